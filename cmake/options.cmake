@@ -1,0 +1,26 @@
+# What every target of this project, and nothing that uses it, is compiled with.
+add_library(diminish_build_options INTERFACE)
+target_compile_options(diminish_build_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+  -Wnon-virtual-dtor -Woverloaded-virtual -Wimplicit-fallthrough
+  # The same bytes on every machine: no contraction of a*b+c where the source does not say so.
+  -ffp-contract=off)
+if(DIMINISH_WARNINGS_AS_ERRORS)
+  target_compile_options(diminish_build_options INTERFACE -Werror)
+endif()
+if(DIMINISH_SANITIZE)
+  add_compile_options(-fsanitize=${DIMINISH_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=${DIMINISH_SANITIZE})
+endif()
+
+# diminish_sources(FILE...): adds FILEs to the library. diminish_tests(FILE...): adds them to the tests.
+function(diminish_sources)
+  list(TRANSFORM ARGV PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
+  target_sources(diminish PRIVATE ${ARGV})
+endfunction()
+function(diminish_tests)
+  if(DIMINISH_BUILD_TESTS)
+    list(TRANSFORM ARGV PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
+    target_sources(diminish_tests PRIVATE ${ARGV})
+  endif()
+endfunction()

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "diminish/image.h"
+#include "diminish/reconstruction.h"
+#include "diminish/registry.h"
+
+namespace diminish {
+
+/// Brings the reconstruction's colours to the colour camera's. Registered by name; the option
+/// `color_correct` chooses.
+class ColorCorrector {
+ public:
+  static constexpr const char* kind = "colour correction";
+  using Factory = std::function<std::unique_ptr<ColorCorrector>()>;
+
+  virtual ~ColorCorrector() = default;
+
+  /// camera: the colour camera's image. occlusion: the objects' mask in it; `camera` shows the
+  /// object there and must not be used. reconstruction: drawn in `reconstruction.region`.
+  /// Writes the corrected colour of every pixel with occlusion and alpha to `picture`, and nothing
+  /// else.
+  virtual void correct(const Image<Bgr>& camera, const Mask& occlusion,
+                       const Reconstruction& reconstruction, Image<Bgr>& picture) = 0;
+};
+
+}  // namespace diminish

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "diminish/image.h"
+#include "diminish/occlusion_masks.h"
+#include "diminish/poses.h"
+#include "diminish/reconstruction.h"
+
+namespace diminish {
+
+/// Where a pixel of the picture comes from. Values 1 to 253: from RGB-D camera `value - 1`.
+namespace provenance {
+inline constexpr std::uint8_t camera = 0;
+inline constexpr std::uint8_t first_rgbd = 1;
+inline constexpr std::uint8_t inpainted = 254;
+inline constexpr std::uint8_t unknown = 255;  ///< part of the object, and nothing to show there
+}  // namespace provenance
+
+/// The parts of a frame's work, as in the paper's Table 2.
+enum class Stage { poses, detection, reconstruction, compositing, color_correction, inpainting };
+inline constexpr std::size_t stage_count = 6;
+inline constexpr std::array<const char*, stage_count> stage_names = {
+    "poses", "detection", "reconstruction", "compositing", "color_correction", "inpainting"};
+
+/// Milliseconds per stage, indexed by Stage.
+using StageTimes = std::array<double, stage_count>;
+
+/// What happened in a frame.
+struct FrameReport {
+  Markers markers;
+  Poses poses;
+  std::vector<OccluderReport> occluders;
+  std::size_t mask_pixels = 0;     ///< to be replaced
+  std::size_t valid_pixels = 0;    ///< of these, seen by an RGB-D camera
+  std::size_t missing_pixels = 0;  ///< of these, not seen by any
+  StageTimes milliseconds{};
+  /// The frame's colour image could not be read: there is no picture.
+  bool skipped = false;
+  /// Images that could not be used (see FrameSet::faults).
+  std::vector<std::string> faults;
+  /// What could not be done, in plain words.
+  std::vector<std::string> messages;
+};
+
+/// The pipeline's output: the colour camera's view without the objects.
+struct DiminishedFrame {
+  std::string name;
+  std::size_t index = 0;
+  double stamp_s = 0;
+  Image<Bgr> picture;  ///< equals the input, bit for bit, where `mask` is 0
+  Mask mask;
+  Image<std::uint8_t> provenance;
+  Reconstruction reconstruction;
+  FrameReport report;
+};
+
+}  // namespace diminish

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+
+#include "diminish/frame_set.h"
+#include "diminish/options.h"
+#include "diminish/rig.h"
+#include "diminish/scene.h"
+
+namespace diminish {
+
+/// Where frames come from.
+class FrameSource {
+ public:
+  virtual ~FrameSource() = default;
+
+  /// Reads the next moment into `frame`, reusing its memory; false at the end. An image that cannot
+  /// be used is a fault of its frame, not an error.
+  virtual bool next(FrameSet& frame) = 0;
+
+  /// The number of frames, where it is known in advance; else 0.
+  virtual std::size_t frame_count() const { return 0; }
+
+  /// The colour stream's mean rate; 0 where it is not known.
+  virtual double frames_per_second() const { return 0; }
+};
+
+/// A recording's folder (docs/recording-format.md): configuration and frames.
+struct Recording {
+  std::filesystem::path folder;
+  Rig rig;
+  Scene scene;
+};
+
+/// Reads a recording's rig.yaml and scene.yaml. Throws Error, naming file and key.
+Recording load_recording(const std::filesystem::path& folder);
+
+/// The frames of a recording: for each colour image the RGB-D images nearest in time, within
+/// `options.sync_tolerance_s`. Throws Error if a stream's list is missing, malformed or empty.
+std::unique_ptr<FrameSource> open_recording(const Recording& recording, const Options& options);
+
+}  // namespace diminish

@@ -1,0 +1,113 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace diminish {
+
+/// 8-bit colour, in the order in which OpenCV stores it.
+struct Bgr {
+  std::uint8_t b = 0, g = 0, r = 0;
+  friend bool operator==(const Bgr&, const Bgr&) = default;
+};
+
+/// 8-bit colour with alpha: 255 where the pixel was seen, 0 where nothing is known.
+struct Bgra {
+  std::uint8_t b = 0, g = 0, r = 0, a = 0;
+  friend bool operator==(const Bgra&, const Bgra&) = default;
+};
+
+/// A rectangle of pixels: columns [x, x + width), rows [y, y + height).
+struct Rect {
+  int x = 0, y = 0, width = 0, height = 0;
+
+  int right() const { return x + width; }
+  int bottom() const { return y + height; }
+  bool empty() const { return width <= 0 || height <= 0; }
+  bool contains(int column, int row) const {
+    return column >= x && column < right() && row >= y && row < bottom();
+  }
+  friend bool operator==(const Rect&, const Rect&) = default;
+};
+
+/// The part that both rectangles cover; empty where they do not meet.
+inline Rect intersect(const Rect& a, const Rect& b) {
+  const int x = std::max(a.x, b.x);
+  const int y = std::max(a.y, b.y);
+  return {x, y, std::max(0, std::min(a.right(), b.right()) - x),
+          std::max(0, std::min(a.bottom(), b.bottom()) - y)};
+}
+
+/// `rect` with `margin` pixels more on each side. An empty rectangle stays empty.
+inline Rect grow(const Rect& rect, int margin) {
+  if (rect.empty()) return {};
+  return {rect.x - margin, rect.y - margin, rect.width + 2 * margin, rect.height + 2 * margin};
+}
+
+/// A row-major image without padding. Pixel centres are at integer coordinates.
+/// `resize` keeps its memory, so that an image that is used again does not allocate.
+template <class Pixel>
+class Image {
+ public:
+  using value_type = Pixel;
+
+  Image() = default;
+  Image(int width, int height, Pixel value = {}) { resize(width, height, value); }
+
+  /// Gives the image this size; its pixels are unspecified unless the size stays the same.
+  void resize(int width, int height) {
+    width_ = width;
+    height_ = height;
+    pixels_.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  }
+  void resize(int width, int height, Pixel value) {
+    resize(width, height);
+    fill(value);
+  }
+  void fill(Pixel value) { std::fill(pixels_.begin(), pixels_.end(), value); }
+  void fill(const Rect& part, Pixel value) {
+    for (int y = part.y; y < part.bottom(); ++y) std::fill_n(row(y) + part.x, part.width, value);
+  }
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  bool empty() const { return pixels_.empty(); }
+  Rect bounds() const { return {0, 0, width_, height_}; }
+  std::size_t size() const { return pixels_.size(); }
+
+  Pixel* row(int y) { return pixels_.data() + index(0, y); }
+  const Pixel* row(int y) const { return pixels_.data() + index(0, y); }
+  Pixel& operator()(int x, int y) { return pixels_[index(x, y)]; }
+  const Pixel& operator()(int x, int y) const { return pixels_[index(x, y)]; }
+  Pixel* data() { return pixels_.data(); }
+  const Pixel* data() const { return pixels_.data(); }
+  auto begin() { return pixels_.begin(); }
+  auto end() { return pixels_.end(); }
+  auto begin() const { return pixels_.begin(); }
+  auto end() const { return pixels_.end(); }
+
+  friend bool operator==(const Image&, const Image&) = default;
+
+ private:
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+           static_cast<std::size_t>(x);
+  }
+
+  int width_ = 0;
+  int height_ = 0;
+  std::vector<Pixel> pixels_;
+};
+
+/// A mask is 255 where something is (an object, a valid pixel) and 0 elsewhere.
+using Mask = Image<std::uint8_t>;
+
+/// The smallest rectangle that holds all non-zero pixels of `mask`. Cost: one pass.
+Rect bounding_box(const Mask& mask);
+
+/// The number of non-zero pixels of `mask` inside `part`.
+std::size_t count_nonzero(const Mask& mask, const Rect& part);
+
+}  // namespace diminish

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "diminish/image.h"
+#include "diminish/poses.h"
+
+namespace diminish {
+
+/// Finds the square markers of one dictionary in an image.
+class MarkerDetector {
+ public:
+  /// dictionary: OpenCV's name, such as DICT_4X4_50. Throws Error for an unknown one.
+  explicit MarkerDetector(const std::string& dictionary);
+  ~MarkerDetector();
+  MarkerDetector(MarkerDetector&&) noexcept;
+  MarkerDetector& operator=(MarkerDetector&&) noexcept;
+
+  /// The markers in `image`, by ascending id. Corners are sub-pixel: each side is a line fitted to
+  /// the image's edge, each corner the meeting point of two. A marker with the same id twice in
+  /// the image is ambiguous and left out.
+  void detect(const Image<Bgr>& image, std::vector<Marker>& markers);
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace diminish

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "diminish/image.h"
+
+namespace diminish {
+
+/// Where the objects to remove are: the union over all of them, in every image.
+struct OcclusionMasks {
+  Mask color;                    ///< the colour camera
+  std::vector<Mask> rgbd_color;  ///< each RGB-D camera's colour sensor
+  std::vector<Mask> rgbd_depth;  ///< each RGB-D camera's depth sensor
+};
+
+/// What became of one occluder in one frame.
+struct OccluderReport {
+  std::string name;
+  bool in_color = false;      ///< a mask was drawn in the colour image
+  std::vector<bool> in_rgbd;  ///< ... in each RGB-D camera
+  std::string message;        ///< why it was not found, in plain words; empty when it was
+};
+
+}  // namespace diminish

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <limits>
+#include <string>
+
+namespace diminish {
+
+/// Everything about a run that can be chosen. Names, units, ranges and meanings are described once,
+/// in `for_each_option`, from which the command line and the docs are made.
+struct Options {
+  double sync_tolerance_s = 0;
+  int mask_margin_px = 3;
+  int rgbd_mask_margin_px = 6;
+  double blob_spread = 1.0;
+  double discontinuity_threshold_m = 0.05;
+  double depth_agreement_m = 0.03;
+  int surroundings_px = 32;
+  bool whole_view = false;
+  std::string color_correct = "poisson";
+  std::string inpaint = "telea";
+  int inpaint_radius_px = 5;
+};
+
+/// An option's description. The range is inclusive and means nothing for texts and switches.
+struct OptionInfo {
+  const char* name;  ///< as in Options; the command line's spelling has '-' for '_'
+  const char* unit;
+  const char* help;
+  double min = 0;
+  double max = std::numeric_limits<double>::max();
+};
+
+/// Calls `visit(info, value)` for each option, `value` being a reference into `options`.
+template <class AnyOptions, class Visit>
+void for_each_option(AnyOptions& options, Visit&& visit) {
+  visit(OptionInfo{"sync_tolerance_s", "seconds",
+                   "Largest difference between the colour image's timestamp and an RGB-D image's; "
+                   "0: half a colour frame period",
+                   0, 3600},
+        options.sync_tolerance_s);
+  visit(OptionInfo{"mask_margin_px", "pixels", "Growth of the objects' masks in the colour image",
+                   0, 200},
+        options.mask_margin_px);
+  visit(OptionInfo{"rgbd_mask_margin_px", "pixels",
+                   "Growth of the objects' masks in the RGB-D cameras' colour images; in their "
+                   "depth images it is scaled to the same angle",
+                   0, 200},
+        options.rgbd_mask_margin_px);
+  visit(OptionInfo{"blob_spread", "standard deviations",
+                   "How far a blob's mean colour may be from the training images' mean", 0.01, 100},
+        options.blob_spread);
+  visit(OptionInfo{"discontinuity_threshold_m", "metres",
+                   "Depth pixels further apart than this are not joined by a triangle (SDCT)", 1e-4,
+                   100},
+        options.discontinuity_threshold_m);
+  visit(OptionInfo{"depth_agreement_m", "metres",
+                   "Surfaces of two RGB-D cameras closer than this are one surface", 0, 100},
+        options.depth_agreement_m);
+  visit(OptionInfo{"surroundings_px", "pixels",
+                   "How far around the mask the scene is reconstructed", 1, 10000},
+        options.surroundings_px);
+  visit(OptionInfo{"whole_view", "",
+                   "Reconstruct the whole picture, not just the mask's surroundings"},
+        options.whole_view);
+  visit(OptionInfo{"color_correct", "method", "How the reconstruction's colours are corrected"},
+        options.color_correct);
+  visit(OptionInfo{"inpaint", "method", "How pixels that no RGB-D camera sees are filled"},
+        options.inpaint);
+  visit(OptionInfo{"inpaint_radius_px", "pixels", "Neighbourhood of telea and ns", 1, 100},
+        options.inpaint_radius_px);
+}
+
+/// Throws Error that names the option and what was given, if a value is out of range or names no
+/// registered method.
+void check(const Options& options);
+
+}  // namespace diminish

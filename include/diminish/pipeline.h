@@ -1,0 +1,36 @@
+#pragma once
+
+#include <memory>
+
+#include "diminish/diminished_frame.h"
+#include "diminish/frame_set.h"
+#include "diminish/options.h"
+#include "diminish/rig.h"
+#include "diminish/scene.h"
+
+namespace diminish {
+
+/// The whole frame: a FrameSet in, a DiminishedFrame out. Nothing of a frame influences the next;
+/// what is kept between frames is memory and what follows from the configuration. One object may
+/// be used by one thread at a time.
+class Pipeline {
+ public:
+  /// Throws Error on configurations that cannot work.
+  Pipeline(const Rig& rig, const Scene& scene, const Options& options);
+  ~Pipeline();
+  Pipeline(Pipeline&&) noexcept;
+  Pipeline& operator=(Pipeline&&) noexcept;
+
+  /// Takes effect with the next frame. Throws Error on values out of range.
+  void set_options(const Options& options);
+  const Options& options() const;
+
+  /// `result`'s memory is used again. Never throws for what a camera delivered: that is reported.
+  void process(const FrameSet& frame, DiminishedFrame& result);
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace diminish

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "diminish/rigid_transform.h"
+
+namespace diminish {
+
+/// A marker seen in an image. Corners: outer corners of the black square, clockwise from the
+/// marker's top left, pixels in the (distorted) image.
+struct Marker {
+  int id = 0;
+  std::array<Eigen::Vector2d, 4> corners;
+};
+
+/// The markers seen in each colour image of a frame.
+struct Markers {
+  std::vector<Marker> color;
+  std::vector<std::vector<Marker>> rgbd;  ///< one list per RGB-D camera
+};
+
+/// Where the cameras are in this frame. What is not known in this frame is absent; poses of
+/// earlier frames are never used.
+struct Poses {
+  std::optional<RigidTransform> color_from_world;
+  std::vector<std::optional<RigidTransform>> depth_from_world;  ///< one per RGB-D camera
+  /// To the (user's) colour camera from each RGB-D camera's depth sensor: what reconstruction
+  /// needs.
+  std::vector<std::optional<RigidTransform>> color_from_depth;
+  /// What is missing, in plain words: "world marker 0 not visible in rgbd0".
+  std::vector<std::string> messages;
+};
+
+}  // namespace diminish

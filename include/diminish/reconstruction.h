@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+
+#include "diminish/image.h"
+
+namespace diminish {
+
+/// The scene behind the objects as the RGB-D cameras see it, drawn from the colour camera's
+/// viewpoint. All images have the colour camera's size.
+struct Reconstruction {
+  Rect region;                 ///< the part that was drawn; nothing is known outside it
+  Image<Bgra> color;           ///< alpha 255 where a triangle was drawn, else all 0
+  Image<float> depth_m;        ///< z in the colour camera's frame; 0 where alpha is 0
+  Image<std::uint8_t> source;  ///< 0 where alpha is 0, else 1 + the RGB-D camera's index
+};
+
+/// The smallest angle between a surface and the line of sight at which SDCT still joins
+/// neighbouring depth pixels (Meerits & Saito 2015, equation 2), in degrees: a surface seen more
+/// edge-on than this, at this distance, is torn.
+/// distance_m: along the line of sight. pixel_angle_deg: between neighbouring depth pixels.
+/// threshold_m: the largest depth difference that is joined.
+double smallest_visible_surface_angle_deg(double distance_m, double pixel_angle_deg,
+                                          double threshold_m);
+
+}  // namespace diminish

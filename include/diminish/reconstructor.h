@@ -1,0 +1,32 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "diminish/frame_set.h"
+#include "diminish/occlusion_masks.h"
+#include "diminish/options.h"
+#include "diminish/poses.h"
+#include "diminish/reconstruction.h"
+#include "diminish/registry.h"
+#include "diminish/rig.h"
+
+namespace diminish {
+
+/// Draws what the RGB-D cameras see, without the objects, from the colour camera's viewpoint.
+/// Registered by name: one per implementation ("reference", ...).
+class Reconstructor {
+ public:
+  static constexpr const char* kind = "reconstruction backend";
+  using Factory = std::function<std::unique_ptr<Reconstructor>(const Rig& rig)>;
+
+  virtual ~Reconstructor() = default;
+
+  /// masks: grown already. region: the part to draw, inside the colour image. RGB-D cameras without
+  /// images or without a pose in this frame take no part.
+  virtual void reconstruct(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks,
+                           const Rect& region, const Options& options,
+                           Reconstruction& reconstruction) = 0;
+};
+
+}  // namespace diminish

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "diminish/config.h"
+#include "diminish/intrinsics.h"
+#include "diminish/rigid_transform.h"
+
+namespace diminish {
+
+/// A depth sensor with a colour sensor rigidly beside it.
+struct RgbdCamera {
+  std::string name;
+  Intrinsics color;
+  Intrinsics depth;
+  /// Metres = depth value * depth_unit_m; value 0 = no measurement.
+  double depth_unit_m = 0.001;
+  /// From this camera's depth sensor to its own colour sensor.
+  RigidTransform color_from_depth;
+};
+
+/// The cameras and where their poses come from: a recording's `rig.yaml`.
+/// "The colour camera" is always the user's view; an RGB-D camera's colour sensor is named so.
+struct Rig {
+  Intrinsics color;
+  std::vector<RgbdCamera> rgbd;
+  /// The name of a registered `PoseSource`, and its own settings (the file's `pose` key).
+  std::string pose_source = "marker";
+  Config pose;
+};
+
+/// Reads `rig.yaml`. Throws Error, naming file and key.
+Rig load_rig(const std::filesystem::path& file);
+
+/// The name by which messages call camera `index`'s colour sensor: "color" or "rgbd0 color".
+inline std::string color_sensor_name(const RgbdCamera& camera) {
+  return camera.name + " color";
+}
+
+}  // namespace diminish
