@@ -38,6 +38,9 @@ class Lens {
   /// The ray (x, y, 1) of a pixel: the inverse of `distort`, by Newton's method, to 1e-9.
   Eigen::Vector2d undistort(const Eigen::Vector2d& pixel) const;
 
+  /// The squared radius |(x, y)| of a ray from which on the distortion polynomial folds back.
+  double max_radius_squared() const { return max_radius_squared_; }
+
   /// The ray of every pixel, row by row.
   Image<Eigen::Vector2f> rays() const;
 

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "diminish/image.h"
+#include "diminish/intrinsics.h"
 #include "diminish/poses.h"
 
 namespace diminish {
@@ -20,9 +20,10 @@ class MarkerDetector {
   MarkerDetector& operator=(MarkerDetector&&) noexcept;
 
   /// The markers in `image`, by ascending id. Corners are sub-pixel: each side is a line fitted to
-  /// the image's edge, each corner the meeting point of two. A marker with the same id twice in
-  /// the image is ambiguous and left out.
-  void detect(const Image<Bgr>& image, std::vector<Marker>& markers);
+  /// the image's edge, each corner the meeting point of two. A marker whose id is in the image
+  /// twice is ambiguous and left out. lens: the camera's, in whose undistorted rays sides are
+  /// straight.
+  void detect(const Image<Bgr>& image, const Lens& lens, std::vector<Marker>& markers);
 
  private:
   struct Implementation;

@@ -1,0 +1,47 @@
+#include "option_flags.h"
+
+#include <algorithm>
+#include <string>
+#include <type_traits>
+
+#include "diminish/color_corrector.h"
+#include "diminish/inpainter.h"
+
+namespace diminish {
+namespace {
+
+std::string flag_name(const OptionInfo& info) {
+  std::string name = info.name;
+  std::replace(name.begin(), name.end(), '_', '-');
+  return "--" + name;
+}
+
+/// The names that a text option can have.
+std::string choices(const OptionInfo& info, const Options& options, const std::string& value) {
+  (void)info;
+  if (&value == &options.color_correct) return Registry<ColorCorrector>::known();
+  if (&value == &options.inpaint) return Registry<Inpainter>::known();
+  return {};
+}
+
+}  // namespace
+
+void add_option_flags(CLI::App& command, Options& options) {
+  for_each_option(options, [&](const OptionInfo& info, auto& value) {
+    using Value = std::decay_t<decltype(value)>;
+    if constexpr (std::is_same_v<Value, bool>) {
+      command.add_flag(flag_name(info), value, info.help)->group("Options of the pipeline");
+    } else {
+      auto* flag = command.add_option(flag_name(info), value, info.help)
+                       ->capture_default_str()
+                       ->group("Options of the pipeline");
+      if constexpr (std::is_same_v<Value, std::string>) {
+        flag->type_name(choices(info, options, value));
+      } else {
+        flag->type_name(info.unit);
+      }
+    }
+  });
+}
+
+}  // namespace diminish

@@ -1,0 +1,93 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <csignal>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "commands.h"
+#include "diminish/diminish.h"
+#include "diminish/runner.h"
+#include "option_flags.h"
+#include "sink/result_writer.h"
+
+namespace diminish {
+namespace {
+
+constexpr int some_frames_faulty = 3;
+constexpr int interrupted = 130;
+
+std::atomic<bool> stop_requested = false;
+
+struct RunCommand {
+  std::filesystem::path recording;
+  std::filesystem::path out;
+  int threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  bool force = false;
+  bool preview = false;
+  Options options;
+
+  int execute() const;
+};
+
+/// A bar on a terminal, nothing elsewhere.
+void show_progress(std::size_t done, std::size_t total) {
+  if (isatty(STDERR_FILENO) == 0) return;
+  constexpr std::size_t width = 40;
+  const std::size_t filled = total > 0 ? width * done / total : 0;
+  fmt::print(stderr, "\r[{:=<{}}{: <{}}] {}/{}{}", "", filled, "", width - filled, done, total,
+             done == total ? "\n" : "");
+}
+
+int RunCommand::execute() const {
+  check(options);
+  const Recording input = load_recording(recording);
+  const auto source = open_recording(input, options);
+  std::error_code ignored;
+  if (std::filesystem::equivalent(recording, out, ignored)) {
+    throw Error(out.string() + ": --out is the recording itself, expected another folder");
+  }
+  ResultWriter writer(out, input.rig, options, source->frames_per_second(),
+                      {.preview_only = preview, .force = force});
+
+  std::signal(SIGINT, [](int) { stop_requested = true; });
+  std::signal(SIGTERM, [](int) { stop_requested = true; });
+  RunnerOptions runner;
+  runner.threads = threads;
+  runner.stop = &stop_requested;
+  runner.progress = [total = source->frame_count()](std::size_t done) {
+    show_progress(done, total);
+  };
+  run(*source, input.rig, input.scene, options, writer, runner);
+  writer.finish(stop_requested);
+
+  fmt::print("{}\n", writer.summary_text());
+  fmt::print("Written to {}\n", out.string());
+  if (stop_requested) return interrupted;
+  return writer.faulty_frames() > 0 ? some_frames_faulty : 0;
+}
+
+}  // namespace
+
+void add_run(CLI::App& program, int& exit_code) {
+  auto command = std::make_shared<RunCommand>();
+  CLI::App* sub = program.add_subcommand(
+      "run", "Removes the objects of a recording and writes what the colour camera would see");
+  sub->add_option("recording", command->recording, "The recording's folder (rig.yaml, scene.yaml)")
+      ->required();
+  sub->add_option("--out", command->out, "Folder for the results; made if it is not there")
+      ->required();
+  sub->add_flag("--force", command->force, "Replace the results that --out already holds");
+  sub->add_flag("--preview", command->preview, "Write only pictures with input and result side by side");
+  sub->add_option("--threads", command->threads, "Frames in work at a time; the results are the same")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1024))
+      ->type_name("N");
+  add_option_flags(*sub, command->options);
+  sub->callback([command, &exit_code] { exit_code = command->execute(); });
+}
+
+}  // namespace diminish

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <functional>
+
+#include "diminish/frame_sink.h"
+#include "diminish/frame_source.h"
+#include "diminish/options.h"
+
+namespace diminish {
+
+/// How a run uses the machine.
+struct RunnerOptions {
+  /// Frames in work at a time, each by one thread. The output does not depend on it.
+  int threads = 1;
+  /// Set to true from anywhere (a signal handler) to end the run after the frames in work.
+  const std::atomic<bool>* stop = nullptr;
+  /// Called after each frame, in order.
+  std::function<void(std::size_t frames_done)> progress;
+};
+
+/// Takes every frame from `source` through the pipeline to `sink`; the number of frames done.
+/// Throws what the sink throws and Error on a configuration that cannot work.
+std::size_t run(FrameSource& source, const Rig& rig, const Scene& scene, const Options& options,
+                FrameSink& sink, const RunnerOptions& runner_options);
+
+}  // namespace diminish

@@ -1,0 +1,145 @@
+#include "diminish/pipeline.h"
+
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "composite/compositor.h"
+#include "core/stopwatch.h"
+#include "detect/occlusion_masks.h"
+#include "diminish/marker_detector.h"
+#include "diminish/reconstructor.h"
+#include "pose/camera_poses.h"
+
+namespace diminish {
+namespace {
+
+template <class Pixel>
+void expect_size(const Image<Pixel>& image, const Intrinsics& intrinsics, const std::string& name) {
+  if (image.width() != intrinsics.width || image.height() != intrinsics.height) {
+    throw Error(fmt::format("{}: expected an image of {}x{}, got {}x{}", name, intrinsics.width,
+                            intrinsics.height, image.width(), image.height()));
+  }
+}
+
+/// Frame sources deliver images of the rig's sizes; a program that makes its own frames may not.
+void expect_sizes(const FrameSet& frame, const Rig& rig) {
+  if (!frame.color.empty()) expect_size(frame.color, rig.color, "color");
+  if (frame.rgbd.size() != rig.rgbd.size()) {
+    throw Error(fmt::format("frame: expected {} RGB-D cameras, got {}", rig.rgbd.size(),
+                            frame.rgbd.size()));
+  }
+  for (std::size_t k = 0; k < rig.rgbd.size(); ++k) {
+    if (!frame.rgbd[k].available()) continue;
+    expect_size(frame.rgbd[k].color, rig.rgbd[k].color, color_sensor_name(rig.rgbd[k]));
+    expect_size(frame.rgbd[k].depth, rig.rgbd[k].depth, rig.rgbd[k].name + " depth");
+  }
+}
+
+}  // namespace
+
+struct Pipeline::Implementation {
+  Implementation(const Rig& rig_, const Scene& scene)
+      : rig(rig_),
+        color_lens(rig.color),
+        camera_poses(rig, scene),
+        occluders(rig, scene),
+        reconstructor(Registry<Reconstructor>::get("reference")(rig)) {
+    for (const RgbdCamera& camera : rig.rgbd) rgbd_color_lenses.emplace_back(camera.color);
+    if (camera_poses.needs_markers() || occluders.needs_markers()) {
+      marker_detector.emplace(scene.marker_dictionary);
+    }
+  }
+
+  void find_markers(const FrameSet& frame, Markers& markers) {
+    markers.color.clear();
+    markers.rgbd.resize(rig.rgbd.size());
+    for (auto& list : markers.rgbd) list.clear();
+    if (!marker_detector) return;
+    marker_detector->detect(frame.color, color_lens, markers.color);
+    for (std::size_t k = 0; k < rig.rgbd.size(); ++k) {
+      if (!frame.rgbd[k].available()) continue;
+      marker_detector->detect(frame.rgbd[k].color, rgbd_color_lenses[k], markers.rgbd[k]);
+    }
+  }
+
+  /// What compositing needs: the objects and their surroundings.
+  Rect region_to_reconstruct() const {
+    if (options.whole_view) return rig.color.bounds();
+    return intersect(grow(bounding_box(masks.color), options.surroundings_px), rig.color.bounds());
+  }
+
+  static void begin(const FrameSet& frame, DiminishedFrame& result) {
+    result.name = frame.name;
+    result.index = frame.index;
+    result.stamp_s = frame.stamp_s;
+    FrameReport& report = result.report;
+    report.mask_pixels = report.valid_pixels = report.missing_pixels = 0;
+    report.milliseconds.fill(0);
+    report.skipped = frame.color.empty();
+    report.faults = frame.faults;
+    report.messages.clear();
+    for (const RgbdFrame& rgbd : frame.rgbd) {
+      if (!rgbd.missing.empty()) report.messages.push_back(rgbd.missing);
+    }
+  }
+
+  Rig rig;
+  Options options;
+  Lens color_lens;
+  std::vector<Lens> rgbd_color_lenses;
+  std::optional<MarkerDetector> marker_detector;
+  CameraPoses camera_poses;
+  OccluderStage occluders;
+  std::unique_ptr<Reconstructor> reconstructor;
+  Compositor compositor;
+  OcclusionMasks masks;
+};
+
+Pipeline::Pipeline(const Rig& rig, const Scene& scene, const Options& options)
+    : implementation_(std::make_unique<Implementation>(rig, scene)) {
+  set_options(options);
+}
+Pipeline::~Pipeline() = default;
+Pipeline::Pipeline(Pipeline&&) noexcept = default;
+Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;
+
+void Pipeline::set_options(const Options& options) {
+  check(options);
+  implementation_->options = options;
+}
+const Options& Pipeline::options() const { return implementation_->options; }
+
+// Meerits & Saito 2015, section 3, in its order.
+void Pipeline::process(const FrameSet& frame, DiminishedFrame& result) {
+  Implementation& self = *implementation_;
+  FrameReport& report = result.report;
+  expect_sizes(frame, self.rig);
+  self.begin(frame, result);
+  if (report.skipped) return;
+
+  {  // 3.2 Camera poses
+    const ScopedTimer timer(report.milliseconds, Stage::poses);
+    self.find_markers(frame, report.markers);
+    self.camera_poses.estimate(frame, report.markers, report.poses);
+  }
+  {  // 3.2 Objects to remove
+    const ScopedTimer timer(report.milliseconds, Stage::detection);
+    self.occluders.detect({frame, report.markers, report.poses, self.options}, self.masks,
+                          report.occluders);
+  }
+  {  // 3.3 Reconstruction of what is behind them
+    const ScopedTimer timer(report.milliseconds, Stage::reconstruction);
+    self.reconstructor->reconstruct(frame, report.poses, self.masks, self.region_to_reconstruct(),
+                                    self.options, result.reconstruction);
+  }
+  // 3.4 Compositing, colour correction, inpainting
+  self.compositor.composite(frame.color, self.masks, self.options, result);
+
+  for (const std::string& message : report.poses.messages) report.messages.push_back(message);
+  for (const OccluderReport& occluder : report.occluders) {
+    if (!occluder.message.empty()) report.messages.push_back(occluder.message);
+  }
+}
+
+}  // namespace diminish

@@ -1,0 +1,33 @@
+#include "pose/depth_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace diminish {
+
+std::optional<double> marker_depth_error_m(const RigidTransform& depth_from_marker, double size_m,
+                                           const Lens& depth_lens,
+                                           const Image<std::uint16_t>& depth, double depth_unit_m) {
+  constexpr int places = 9;  // per side
+  std::vector<double> errors;
+  for (int row = 0; row < places; ++row) {
+    for (int column = 0; column < places; ++column) {
+      const Eigen::Vector3d on_marker(((column + 0.5) / places - 0.5) * size_m,
+                                      ((row + 0.5) / places - 0.5) * size_m, 0);
+      const Eigen::Vector3d x_in_depth = depth_from_marker * on_marker;
+      const auto pixel = depth_lens.project(x_in_depth);
+      if (!pixel) continue;
+      const auto x = static_cast<int>(std::lround(pixel->x()));
+      const auto y = static_cast<int>(std::lround(pixel->y()));
+      if (!depth.bounds().contains(x, y) || depth(x, y) == 0) continue;
+      errors.push_back(std::abs(depth(x, y) * depth_unit_m - x_in_depth.z()));
+    }
+  }
+  if (errors.size() * 2 < static_cast<std::size_t>(places * places)) return std::nullopt;
+  const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
+  std::nth_element(errors.begin(), middle, errors.end());
+  return *middle;
+}
+
+}  // namespace diminish

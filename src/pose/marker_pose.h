@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+
+#include "diminish/intrinsics.h"
+#include "diminish/rigid_transform.h"
+
+namespace diminish {
+
+/// A marker's pose from its four corners. A square seen in (nearly) weak perspective has two poses
+/// that explain its corners almost equally well (Schweighofer & Pinz 2006); both are given.
+struct MarkerPose {
+  RigidTransform camera_from_marker;
+  double error_px = 0;  ///< root mean square reprojection error of the corners
+  RigidTransform alternative;
+  /// error_px divided by the alternative's error: 0 = certain, near 1 = either may be right.
+  double ambiguity = 0;
+};
+
+/// corners: as in `Marker`, pixels. size_m: side of the black square. Nothing if the corners are
+/// no convex quadrilateral in front of the camera. IPPE (Collins & Bartoli 2014), then
+/// Levenberg-Marquardt on the reprojection error of each solution.
+std::optional<MarkerPose> estimate_marker_pose(const std::array<Eigen::Vector2d, 4>& corners,
+                                               double size_m, const Lens& lens);
+
+/// The marker's corners in its own frame, in the order of `Marker::corners`.
+std::array<Eigen::Vector3d, 4> marker_corners(double size_m);
+
+}  // namespace diminish

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "diminish/frame_set.h"
+#include "diminish/image.h"
+#include "diminish/rig.h"
+#include "geometry/projection.h"
+
+namespace diminish {
+
+/// A depth pixel as the colour camera sees it.
+struct MeshVertex {
+  std::int32_t x = 0;   ///< column in the colour camera's image, in 1/256 pixels
+  std::int32_t y = 0;   ///< row, likewise
+  float inverse_z = 0;  ///< 1 / z in the colour camera's frame, 1/m; 0: not a vertex
+  float u = 0;          ///< column in the RGB-D camera's own colour image
+  float v = 0;          ///< row, likewise
+  float depth_m = 0;    ///< z in the depth sensor's frame
+
+  bool valid() const { return inverse_z > 0; }
+};
+
+/// Turns one RGB-D camera's depth images into vertices. What depends on the camera alone is kept.
+class DepthMesh {
+ public:
+  /// color: the user's colour camera, into which the vertices are projected.
+  DepthMesh(const RgbdCamera& camera, const Intrinsics& color);
+
+  /// One vertex per depth pixel, by rule 1 of sdct.h. The masks are the camera's own.
+  void compute(const RgbdFrame& frame, const RigidTransform& color_from_depth,
+               const Mask& depth_mask, const Mask& color_mask, Image<MeshVertex>& vertices) const;
+
+ private:
+  RgbdCamera camera_;
+  Image<Eigen::Vector2f> rays_;
+  Projection color_;
+  Projection rgbd_color_;
+};
+
+}  // namespace diminish

@@ -1,0 +1,56 @@
+#include <vector>
+
+#include "diminish/reconstructor.h"
+#include "reconstruct/depth_mesh.h"
+#include "reconstruct/layers.h"
+#include "reconstruct/rasterizer.h"
+
+namespace diminish {
+namespace {
+
+/// The plain version: every depth pixel, every triangle, one after the other.
+class ReferenceReconstructor : public Reconstructor {
+ public:
+  explicit ReferenceReconstructor(const Rig& rig) : color_(rig.color) {
+    for (const RgbdCamera& camera : rig.rgbd) meshes_.emplace_back(camera, rig.color);
+    layers_.resize(rig.rgbd.size());
+    drawn_.resize(rig.rgbd.size());
+  }
+
+  void reconstruct(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks,
+                   const Rect& region, const Options& options,
+                   Reconstruction& reconstruction) override {
+    clear(region, reconstruction);
+    const auto threshold_m = static_cast<float>(options.discontinuity_threshold_m);
+    for (std::size_t k = 0; k < meshes_.size(); ++k) {
+      drawn_[k] = nullptr;
+      if (!frame.rgbd[k].available() || !poses.color_from_depth[k]) continue;
+      meshes_[k].compute(frame.rgbd[k], *poses.color_from_depth[k], masks.rgbd_depth[k],
+                         masks.rgbd_color[k], vertices_);
+      layers_[k].clear(color_.width, color_.height, region);
+      draw_mesh(vertices_, frame.rgbd[k].color, threshold_m, region, layers_[k]);
+      drawn_[k] = &layers_[k];
+    }
+    merge_layers(drawn_, static_cast<float>(options.depth_agreement_m), reconstruction);
+  }
+
+ private:
+  void clear(const Rect& region, Reconstruction& reconstruction) const {
+    reconstruction.region = region;
+    reconstruction.color.resize(color_.width, color_.height, {});
+    reconstruction.depth_m.resize(color_.width, color_.height, 0.F);
+    reconstruction.source.resize(color_.width, color_.height, 0);
+  }
+
+  Intrinsics color_;
+  std::vector<DepthMesh> meshes_;
+  Image<MeshVertex> vertices_;
+  std::vector<Layer> layers_;
+  std::vector<const Layer*> drawn_;
+};
+
+const bool registered = Registry<Reconstructor>::add(
+    "reference", [](const Rig& rig) { return std::make_unique<ReferenceReconstructor>(rig); });
+
+}  // namespace
+}  // namespace diminish
