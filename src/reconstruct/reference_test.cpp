@@ -1,0 +1,205 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "analytic_scene.h"
+#include "diminish/reconstructor.h"
+
+namespace diminish {
+namespace {
+
+using testing::AnalyticFrame;
+using testing::AnalyticScene;
+using testing::empty_masks;
+
+const Eigen::Vector3d rgbd_eye(-0.45, 0.3, 0.9);
+
+Reconstruction reconstruct(const AnalyticFrame& scene, const OcclusionMasks& masks,
+                           const Options& options = {}) {
+  Reconstruction result;
+  Registry<Reconstructor>::get("reference")(scene.rig)->reconstruct(
+      scene.frame, scene.poses, masks, scene.rig.color.bounds(), options, result);
+  return result;
+}
+
+/// Whether both sensors of RGB-D camera 0 see the point, in their pictures and unoccluded.
+bool is_seen(const AnalyticScene& scene, const AnalyticFrame& frame, const Eigen::Vector3d& point) {
+  const RgbdCamera& camera = frame.rig.rgbd[0];
+  const RigidTransform depth_from_world = *frame.poses.depth_from_world[0];
+  for (const bool color : {false, true}) {
+    const RigidTransform sensor_from_world =
+        color ? camera.color_from_depth * depth_from_world : depth_from_world;
+    const Intrinsics& intrinsics = color ? camera.color : camera.depth;
+    const auto pixel = Lens(intrinsics).project(sensor_from_world * point);
+    constexpr double rim = 3;
+    if (!pixel || pixel->x() < rim || pixel->y() < rim || pixel->x() > intrinsics.width - 1 - rim ||
+        pixel->y() > intrinsics.height - 1 - rim) {
+      return false;
+    }
+    const Eigen::Vector3d eye = sensor_from_world.inverse().translation;
+    if ((scene.cast(eye, point - eye).point - point).norm() > 1e-6) return false;
+  }
+  return true;
+}
+
+// The whole chain (rays, transforms, two lens models, rasterisation, texture lookup) against a ray
+// caster that shares none of it.
+TEST(ReferenceReconstructor, ShowsAPlaneAndABoxWhereTheyAre) {
+  const AnalyticScene scene;
+  const AnalyticFrame frame(scene, {rgbd_eye});
+  const Reconstruction result = reconstruct(frame, empty_masks(frame.rig));
+
+  // Pixels within a few pixels of an outline (the box's, the shadow's) are of either side.
+  Image<std::uint8_t> expected(frame.rig.color.width, frame.rig.color.height);
+  Image<float> exact_depth(frame.rig.color.width, frame.rig.color.height);
+  scene.render(Lens(frame.rig.color), *frame.poses.color_from_world,
+               [&](int x, int y, const AnalyticScene::Hit& hit) {
+                 expected(x, y) = is_seen(scene, frame, hit.point) ? (hit.on_box ? 2 : 1) : 0;
+                 exact_depth(x, y) =
+                     static_cast<float>((*frame.poses.color_from_world * hit.point).z());
+               });
+  const auto uniform_around = [&](int x, int y) {
+    constexpr int radius = 5;
+    for (int dy = -radius; dy <= radius; ++dy) {
+      for (int dx = -radius; dx <= radius; ++dx) {
+        if (!expected.bounds().contains(x + dx, y + dy) ||
+            expected(x + dx, y + dy) != expected(x, y)) {
+          return false;
+        }
+      }
+    }
+    return true;
+  };
+
+  std::size_t drawn = 0;
+  std::size_t hidden = 0;
+  double color_squares = 0;
+  double worst_depth = 0;
+  double shift_numerator = 0;
+  double shift_denominator = 0;
+  for (int y = 1; y + 1 < expected.height(); ++y) {
+    for (int x = 1; x + 1 < expected.width(); ++x) {
+      if (!uniform_around(x, y)) continue;
+      const Bgra& color = result.color(x, y);
+      ASSERT_EQ(color.a, expected(x, y) != 0 ? 255 : 0) << x << ' ' << y;
+      ASSERT_EQ(result.source(x, y), expected(x, y) != 0 ? 1 : 0);
+      if (expected(x, y) == 0) {
+        ++hidden;
+        continue;
+      }
+      ++drawn;
+      const Bgr& exact = frame.frame.color(x, y);
+      const double error = color.b - exact.b;
+      color_squares +=
+          error * error + std::pow(color.g - exact.g, 2) + std::pow(color.r - exact.r, 2);
+      worst_depth =
+          std::max(worst_depth, std::abs(double{result.depth_m(x, y)} - exact_depth(x, y)));
+      // A horizontal shift s changes the colour by s times its gradient (least squares for s).
+      const double gradient = (frame.frame.color(x + 1, y).b - frame.frame.color(x - 1, y).b) / 2.0;
+      shift_numerator += error * gradient;
+      shift_denominator += gradient * gradient;
+    }
+  }
+  EXPECT_GT(drawn, 25000U);
+  EXPECT_GT(hidden, 1000U) << "the box's shadow must be in the picture";
+  EXPECT_LT(std::sqrt(color_squares / (3.0 * static_cast<double>(drawn))), 1.0) << "grey levels";
+  EXPECT_LT(std::abs(shift_numerator / shift_denominator), 0.02) << "pixels";
+  EXPECT_LT(worst_depth, 0.0005) << "metres";
+}
+
+// Rule 1: depth pixels on the object are no vertices.
+TEST(ReferenceReconstructor, LeavesOutDepthPixelsOnTheObject) {
+  const AnalyticScene scene;
+  const AnalyticFrame frame(scene, {rgbd_eye});
+  OcclusionMasks masks = empty_masks(frame.rig);
+  scene.render(Lens(frame.rig.rgbd[0].depth), *frame.poses.depth_from_world[0],
+               [&](int x, int y, const AnalyticScene::Hit& hit) {
+                 masks.rgbd_depth[0](x, y) = hit.on_box ? 255 : 0;
+               });
+  const Reconstruction result = reconstruct(frame, masks);
+  std::size_t drawn = 0;
+  for (int y = 0; y < result.depth_m.height(); ++y) {
+    for (int x = 0; x < result.depth_m.width(); ++x) {
+      if (result.depth_m(x, y) == 0) continue;
+      ++drawn;
+      const Eigen::Vector2d ray = Lens(frame.rig.color).undistort(Eigen::Vector2d(x, y));
+      const Eigen::Vector3d point =
+          frame.poses.color_from_world->inverse() *
+          (double{result.depth_m(x, y)} * Eigen::Vector3d(ray.x(), ray.y(), 1));
+      ASSERT_LT(std::abs(point.z()), 0.002) << "only the wall is left";
+    }
+  }
+  EXPECT_GT(drawn, 20000U);
+}
+
+// Rule 1, second half: the sensors are 5 cm apart, so depth pixels of the wall beside the box look
+// up the box's colour. With the colour mask none of it is left; without it there is some.
+TEST(ReferenceReconstructor, LeavesOutDepthPixelsWhoseColorIsTheObjects) {
+  const AnalyticScene scene;
+  const AnalyticFrame frame(scene, {rgbd_eye});
+  OcclusionMasks masks = empty_masks(frame.rig);
+  scene.render(Lens(frame.rig.rgbd[0].depth), *frame.poses.depth_from_world[0],
+               [&](int x, int y, const AnalyticScene::Hit& hit) {
+                 masks.rgbd_depth[0](x, y) = hit.on_box ? 255 : 0;
+               });
+  const auto count_red = [&] {
+    const Reconstruction result = reconstruct(frame, masks);
+    return std::count_if(result.color.begin(), result.color.end(),
+                         [](const Bgra& pixel) { return pixel.r > 150; });
+  };
+  EXPECT_GT(count_red(), 100);
+  scene.render(Lens(frame.rig.rgbd[0].color),
+               frame.rig.rgbd[0].color_from_depth * *frame.poses.depth_from_world[0],
+               [&](int x, int y, const AnalyticScene::Hit& hit) {
+                 masks.rgbd_color[0](x, y) = hit.on_box ? 255 : 0;
+               });
+  // Bilinear lookups reach half a pixel over the mask's edge.
+  Mask grown = masks.rgbd_color[0];
+  for (int y = 1; y + 1 < grown.height(); ++y) {
+    for (int x = 1; x + 1 < grown.width(); ++x) {
+      for (int i = 0; i < 9; ++i) {
+        grown(x, y) |= masks.rgbd_color[0](x + i % 3 - 1, y + i / 3 - 1);
+      }
+    }
+  }
+  masks.rgbd_color[0] = grown;
+  EXPECT_EQ(count_red(), 0);
+}
+
+TEST(ReferenceReconstructor, DrawsTheRegionAndNothingElse) {
+  const AnalyticScene scene;
+  const AnalyticFrame frame(scene, {rgbd_eye});
+  const Reconstruction whole = reconstruct(frame, empty_masks(frame.rig));
+  const auto reconstructor = Registry<Reconstructor>::get("reference")(frame.rig);
+  const Rect region{40, 50, 100, 90};
+  Reconstruction part;
+  // Twice, so that what an earlier frame left behind would show.
+  reconstructor->reconstruct(frame.frame, frame.poses, empty_masks(frame.rig), {0, 0, 200, 200}, {},
+                             part);
+  reconstructor->reconstruct(frame.frame, frame.poses, empty_masks(frame.rig), region, {}, part);
+  for (int y = 0; y < whole.color.height(); ++y) {
+    for (int x = 0; x < whole.color.width(); ++x) {
+      const Bgra expected = region.contains(x, y) ? whole.color(x, y) : Bgra{};
+      ASSERT_EQ(part.color(x, y), expected) << x << ' ' << y;
+    }
+  }
+}
+
+TEST(ReferenceReconstructor, GoesOnWithoutACameraThatHasNoImagesOrNoPose) {
+  const AnalyticScene scene;
+  AnalyticFrame frame(scene, {rgbd_eye, {0.5, 0.3, 0.9}});
+  const OcclusionMasks masks = empty_masks(frame.rig);
+  const auto sources = [&] {
+    bool seen[3] = {};
+    for (const std::uint8_t source : reconstruct(frame, masks).source) seen[source] = true;
+    return std::pair(seen[1], seen[2]);
+  };
+  EXPECT_EQ(sources(), std::pair(true, true));
+  frame.frame.rgbd[0].missing = "rgbd0: unplugged";
+  EXPECT_EQ(sources(), std::pair(false, true));
+  frame.poses.color_from_depth[1].reset();
+  EXPECT_EQ(sources(), std::pair(false, false));
+}
+
+}  // namespace
+}  // namespace diminish
