@@ -1,0 +1,42 @@
+# The two commands to know: `make demo` and `make test`. Everything they need, they install.
+
+.PHONY: help demo test build deps bench lint format sanitize fuzz clean
+
+help:
+	@echo "make demo      remove the objects of the bundled recordings, print the figures"
+	@echo "make test      build and run all tests"
+	@echo "make build     build the program: build/release/diminish"
+	@echo "make bench     measure each stage beside its peer"
+	@echo "make lint      clang-format and clang-tidy"
+	@echo "make sanitize  all tests under the address and undefined-behaviour sanitizers"
+	@echo "make fuzz      fuzz what parses, a minute each"
+
+deps:
+	@scripts/install-deps
+
+build: deps
+	scripts/build
+
+demo: build
+	scripts/demo
+
+test: build
+	scripts/test
+
+bench: deps
+	scripts/bench
+
+lint: deps
+	scripts/lint
+
+format:
+	scripts/format
+
+sanitize: deps
+	scripts/sanitize
+
+fuzz: deps
+	scripts/fuzz
+
+clean:
+	rm -rf build demo/out
