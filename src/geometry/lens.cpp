@@ -11,12 +11,23 @@ namespace {
 /// growing.
 double monotonic_radius_squared(const std::array<double, 5>& distortion) {
   const auto [k1, k2, p1, p2, k3] = distortion;
-  // Scanned up to a field of view of about 170 degrees; beyond that no such lens is used.
+  const auto slope = [k1 = k1, k2 = k2, k3 = k3](double r2) {
+    return 1 + r2 * (3 * k1 + r2 * (5 * k2 + r2 * 7 * k3));
+  };
+  // Up to a field of view of about 170 degrees; beyond that no such lens is used.
   constexpr double largest = 130;
-  constexpr double step = 1e-3;
-  for (double r2 = 0; r2 < largest; r2 += step) {
-    const double slope = 1 + r2 * (3 * k1 + r2 * (5 * k2 + r2 * 7 * k3));
-    if (slope <= 0) return r2;
+  constexpr int steps = 2000;
+  double below = 0;
+  for (int i = 1; i <= steps; ++i) {
+    double above = largest * i * i / (double{steps} * steps);
+    if (slope(above) <= 0) {
+      for (int halving = 0; halving < 50; ++halving) {
+        const double middle = (below + above) / 2;
+        (slope(middle) > 0 ? below : above) = middle;
+      }
+      return below;
+    }
+    below = above;
   }
   return largest;
 }

@@ -108,7 +108,9 @@ void Pipeline::set_options(const Options& options) {
   check(options);
   implementation_->options = options;
 }
-const Options& Pipeline::options() const { return implementation_->options; }
+const Options& Pipeline::options() const {
+  return implementation_->options;
+}
 
 // Meerits & Saito 2015, section 3, in its order.
 void Pipeline::process(const FrameSet& frame, DiminishedFrame& result) {

@@ -30,7 +30,8 @@ bool is_convex_clockwise(const std::vector<cv::Point2d>& p) {
   for (std::size_t i = 0; i < 4; ++i) {
     const cv::Point2d a = p[(i + 1) % 4] - p[i];
     const cv::Point2d b = p[(i + 2) % 4] - p[(i + 1) % 4];
-    if (!(a.cross(b) > 0)) return false;
+    constexpr double min_sine = 0.02;
+    if (!(a.cross(b) > min_sine * cv::norm(a) * cv::norm(b))) return false;
   }
   return true;
 }

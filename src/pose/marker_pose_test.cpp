@@ -42,7 +42,7 @@ TEST(EstimateMarkerPose, IsExactOnExactCorners) {
 TEST(EstimateMarkerPose, GivesBothSolutionsWhereTwoFit) {
   const Lens lens(color);
   std::mt19937 random(5);
-  std::normal_distribution<double> noise(0, 0.1);
+  std::normal_distribution<double> noise(0, 0.25);
   int wrong_choices = 0;
   for (int trial = 0; trial < 40; ++trial) {
     const RigidTransform truth = facing(0.5, {std::cos(trial), std::sin(trial), 0}, {0.1, 0.1, 6});
@@ -52,7 +52,7 @@ TEST(EstimateMarkerPose, GivesBothSolutionsWhereTwoFit) {
     ASSERT_TRUE(pose);
     const double best = rotation_difference_deg(pose->camera_from_marker.rotation, truth.rotation);
     const double other = rotation_difference_deg(pose->alternative.rotation, truth.rotation);
-    EXPECT_LT(std::min(best, other), 12) << "trial " << trial;
+    EXPECT_LT(std::min(best, other), 20) << "trial " << trial;
     if (other < best) {
       ++wrong_choices;
       EXPECT_GT(pose->ambiguity, 0.2) << "a wrong choice must be known to be doubtful";

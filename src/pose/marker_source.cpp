@@ -39,7 +39,7 @@ class MarkerSource : public PoseSource {
  public:
   MarkerSource(const Rig& rig, const Scene& scene)
       : rig_(rig), world_marker_(scene.world_marker), color_lens_(rig.color) {
-    rig.pose.expect_keys({"source"});
+    if (rig.pose.exists()) rig.pose.expect_keys({"source"});
     if (!(world_marker_.size_m > 0)) {
       throw Error("scene.yaml: world_marker: expected {id, size_m}, needed by pose.source marker");
     }

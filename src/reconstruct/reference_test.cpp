@@ -22,24 +22,16 @@ Reconstruction reconstruct(const AnalyticFrame& scene, const OcclusionMasks& mas
   return result;
 }
 
-/// Whether both sensors of RGB-D camera 0 see the point, in their pictures and unoccluded.
-bool is_seen(const AnalyticScene& scene, const AnalyticFrame& frame, const Eigen::Vector3d& point) {
-  const RgbdCamera& camera = frame.rig.rgbd[0];
-  const RigidTransform depth_from_world = *frame.poses.depth_from_world[0];
-  for (const bool color : {false, true}) {
-    const RigidTransform sensor_from_world =
-        color ? camera.color_from_depth * depth_from_world : depth_from_world;
-    const Intrinsics& intrinsics = color ? camera.color : camera.depth;
-    const auto pixel = Lens(intrinsics).project(sensor_from_world * point);
-    constexpr double rim = 3;
-    if (!pixel || pixel->x() < rim || pixel->y() < rim || pixel->x() > intrinsics.width - 1 - rim ||
-        pixel->y() > intrinsics.height - 1 - rim) {
-      return false;
-    }
-    const Eigen::Vector3d eye = sensor_from_world.inverse().translation;
-    if ((scene.cast(eye, point - eye).point - point).norm() > 1e-6) return false;
+/// Whether a sensor at `sensor_from_world` has the point in its picture and nothing in front of it.
+bool is_seen(const AnalyticScene& scene, const Lens& lens, const RigidTransform& sensor_from_world,
+             const Eigen::Vector3d& point) {
+  const auto pixel = lens.project(sensor_from_world * point);
+  if (!pixel || pixel->x() < 0 || pixel->y() < 0 || pixel->x() > lens.intrinsics().width - 1 ||
+      pixel->y() > lens.intrinsics().height - 1) {
+    return false;
   }
-  return true;
+  const Eigen::Vector3d eye = sensor_from_world.inverse().translation;
+  return (scene.cast(eye, point - eye).point - point).norm() < 1e-6;
 }
 
 // The whole chain (rays, transforms, two lens models, rasterisation, texture lookup) against a ray
@@ -49,16 +41,26 @@ TEST(ReferenceReconstructor, ShowsAPlaneAndABoxWhereTheyAre) {
   const AnalyticFrame frame(scene, {rgbd_eye});
   const Reconstruction result = reconstruct(frame, empty_masks(frame.rig));
 
-  // Pixels within a few pixels of an outline (the box's, the shadow's) are of either side.
+  const RgbdCamera& camera = frame.rig.rgbd[0];
+  const Lens depth_lens(camera.depth);
+  const Lens color_lens(camera.color);
+  const RigidTransform depth_from_world = *frame.poses.depth_from_world[0];
+  const RigidTransform color_from_world = camera.color_from_depth * depth_from_world;
+  // 0: hidden from the depth sensor, 1: wall, 2: box, 3: only the colour sensor's view is blocked,
+  // so that a wrong colour is looked up (what the colour masks are for).
   Image<std::uint8_t> expected(frame.rig.color.width, frame.rig.color.height);
   Image<float> exact_depth(frame.rig.color.width, frame.rig.color.height);
   scene.render(Lens(frame.rig.color), *frame.poses.color_from_world,
                [&](int x, int y, const AnalyticScene::Hit& hit) {
-                 expected(x, y) = is_seen(scene, frame, hit.point) ? (hit.on_box ? 2 : 1) : 0;
+                 const bool in_depth = is_seen(scene, depth_lens, depth_from_world, hit.point);
+                 const bool in_color = is_seen(scene, color_lens, color_from_world, hit.point);
+                 expected(x, y) = !in_depth ? 0 : !in_color ? 3 : hit.on_box ? 2 : 1;
                  exact_depth(x, y) =
                      static_cast<float>((*frame.poses.color_from_world * hit.point).z());
                });
+  // Pixels within a few pixels of an outline (the box's, the shadow's) are of either side.
   const auto uniform_around = [&](int x, int y) {
+    if (expected(x, y) == 3) return false;
     constexpr int radius = 5;
     for (int dy = -radius; dy <= radius; ++dy) {
       for (int dx = -radius; dx <= radius; ++dx) {
@@ -118,11 +120,12 @@ TEST(ReferenceReconstructor, LeavesOutDepthPixelsOnTheObject) {
                });
   const Reconstruction result = reconstruct(frame, masks);
   std::size_t drawn = 0;
+  const Lens lens(frame.rig.color);
   for (int y = 0; y < result.depth_m.height(); ++y) {
     for (int x = 0; x < result.depth_m.width(); ++x) {
       if (result.depth_m(x, y) == 0) continue;
       ++drawn;
-      const Eigen::Vector2d ray = Lens(frame.rig.color).undistort(Eigen::Vector2d(x, y));
+      const Eigen::Vector2d ray = lens.undistort(Eigen::Vector2d(x, y));
       const Eigen::Vector3d point =
           frame.poses.color_from_world->inverse() *
           (double{result.depth_m(x, y)} * Eigen::Vector3d(ray.x(), ray.y(), 1));
