@@ -33,6 +33,8 @@ struct Rig {
 
 /// Reads `rig.yaml`. Throws Error, naming file and key.
 Rig load_rig(const std::filesystem::path& file);
+/// The same for a file that has been read already.
+Rig read_rig(const Config& config);
 
 /// Reads `{rotation: [9 numbers, row-major], translation: [3 numbers]}`, metres. The rotation must
 /// be orthonormal to 1e-3; it is made so exactly.
