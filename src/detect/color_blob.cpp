@@ -30,11 +30,17 @@ class ColorBlobFinder {
   /// Sets the object's pixels in `mask` to 255 and returns whether there are any.
   bool find(const Image<Bgr>& image, double spread, Mask& mask) {
     segmentation_.segment(image);
-    deviations_.assign(segmentation_.blob_count(), std::numeric_limits<double>::infinity());
+    // Label 0 is the lines between blobs.
+    constexpr double never = std::numeric_limits<double>::infinity();
+    core_deviations_.assign(segmentation_.blob_count(), never);
+    neighbor_deviations_.assign(segmentation_.blob_count(), never);
     for (int label = 1; label < segmentation_.blob_count(); ++label) {
-      deviations_[label] = model_.deviation(segmentation_.mean_bgr(label));
+      const ColorDeviation deviation = model_.deviation(segmentation_.mean_bgr(label));
+      core_deviations_[label] = std::max(deviation.tint, deviation.value);
+      // Shading changes the brightness most.
+      neighbor_deviations_[label] = std::max(deviation.tint, deviation.value / 2);
     }
-    select_blobs(spread, core_);
+    select_blobs(core_deviations_, spread, core_);
     if (cv::countNonZero(core_) == 0) return false;
     const cv::Mat region = round_ ? round_region(spread) : any_region(spread);
     if (region.empty()) return false;
@@ -43,13 +49,13 @@ class ColorBlobFinder {
   }
 
  private:
-  /// The blobs within `limit` standard deviations, joined across the lines between them.
-  void select_blobs(double limit, cv::Mat& selected) const {
+  /// The blobs that deviate at most `limit`, joined across the lines between them.
+  void select_blobs(const std::vector<double>& deviations, double limit, cv::Mat& selected) const {
     const cv::Mat& labels = segmentation_.labels();
     selected.create(labels.size(), CV_8U);
     for (int y = 0; y < labels.rows; ++y) {
       for (int x = 0; x < labels.cols; ++x) {
-        selected.at<std::uint8_t>(y, x) = deviations_[labels.at<int>(y, x)] <= limit ? 255 : 0;
+        selected.at<std::uint8_t>(y, x) = deviations[labels.at<int>(y, x)] <= limit ? 255 : 0;
       }
     }
     cv::morphologyEx(selected, selected, cv::MORPH_CLOSE,
@@ -62,7 +68,11 @@ class ColorBlobFinder {
   std::vector<Component> components(double limit, double largest_hole) {
     constexpr double smallest_area = 1.0 / 16;  // of the smallest object in the training images
     constexpr double smallest_core = 1.0 / 5;
-    select_blobs(limit, selected_);
+    select_blobs(neighbor_deviations_, limit, selected_);
+    if (round_) {  // no ball has an edge or a pole of its colour behind it for a handle
+      cv::morphologyEx(selected_, selected_, cv::MORPH_OPEN,
+                       cv::getStructuringElement(cv::MORPH_ELLIPSE, {5, 5}));
+    }
     const double fewest_pixels =
         std::max(16.0, smallest_area * model_.smallest_area * static_cast<double>(core_.total()));
     std::vector<Outline> outlines;
@@ -142,7 +152,7 @@ class ColorBlobFinder {
   ColorModel model_;
   bool round_;
   BlobSegmentation segmentation_;
-  std::vector<double> deviations_;
+  std::vector<double> core_deviations_, neighbor_deviations_;  ///< by label
   cv::Mat core_, selected_;
   Mask object_;
 };

@@ -151,20 +151,22 @@ ColorModel read_color_model(const fs::path& file) {
 
 }  // namespace
 
-double ColorModel::deviation(const Eigen::Vector3d& bgr) const {
-  // A few even training images must not make the distribution narrower than what noise, JPEG and a
-  // lamp switched on elsewhere do to a colour. Near grey, the same noise turns the hue further.
+ColorDeviation ColorModel::deviation(const Eigen::Vector3d& bgr) const {
+  // A few even training images must not make the distribution narrower than what noise and JPEG do
+  // to a colour. Near grey, the same noise turns the hue further.
   constexpr double smallest_chroma_spread = 0.05;
-  constexpr double smallest_value_spread = 0.1;
-  const double hue_noise_deg = smallest_chroma_spread / std::max(saturation, 1e-3) * degrees;
+  const double smallest_hue_spread_deg =
+      smallest_chroma_spread / std::max(saturation, 1e-3) * degrees;
+  // Brightness is the light's as much as the object's; only for a grey object it is all there is.
+  const double smallest_value_spread = 0.1 + 0.15 * saturation;
 
   const Hsv hsv = to_hsv(bgr);
   const double hue_difference_deg =
       std::abs(std::remainder(std::arg(hsv.chroma) * degrees - hue_deg, 360));
-  return std::max(
-      {hue_difference_deg / std::max(hue_spread_deg, hue_noise_deg),
-       std::abs(hsv.saturation - saturation) / std::max(saturation_spread, smallest_chroma_spread),
-       std::abs(hsv.value - value) / std::max(value_spread, smallest_value_spread)});
+  return {std::max(hue_difference_deg / std::max(hue_spread_deg, smallest_hue_spread_deg),
+                   std::abs(hsv.saturation - saturation) /
+                       std::max(saturation_spread, smallest_chroma_spread)),
+          std::abs(hsv.value - value) / std::max(value_spread, smallest_value_spread)};
 }
 
 ColorModel train_color_model(const fs::path& folder) {

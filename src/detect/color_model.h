@@ -5,6 +5,12 @@
 
 namespace diminish {
 
+/// In standard deviations.
+struct ColorDeviation {
+  double tint = 0;  ///< the larger of hue's and saturation's
+  double value = 0;
+};
+
 /// How an object's colour is distributed over its training images' pixels, in HSV (section 3.2 of
 /// Meerits & Saito 2015). Saturation and value are from 0 to 1.
 struct ColorModel {
@@ -17,9 +23,8 @@ struct ColorModel {
   /// The smallest of the training images' objects, as a part of the picture.
   double smallest_area = 0;
 
-  /// How far a mean colour (blue, green, red; 0 to 255) is from the model's, in standard
-  /// deviations: the largest of hue's, saturation's and value's.
-  double deviation(const Eigen::Vector3d& bgr) const;
+  /// How far a mean colour (blue, green, red; 0 to 255) is from the model's.
+  ColorDeviation deviation(const Eigen::Vector3d& bgr) const;
 };
 
 /// Learns from all images NAME.jpg (or png, bmp) in `folder` with their NAME_mask.png, which is 255
