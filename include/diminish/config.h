@@ -32,9 +32,10 @@ class Config {
 
   /// Complains of keys that are not in `known`, so that a typing error is not silently ignored.
   void expect_keys(std::initializer_list<const char*> known) const;
+  void expect_keys(const std::vector<std::string>& known) const;
   /// The value of a key of this map; complains when it is missing.
   Config at(const std::string& key) const;
-  /// The same; `exists()` is false when it is missing.
+  /// The same; `exists()` is false when it is missing. What does not exist has no keys either.
   Config find(const std::string& key) const;
   /// The items of this list.
   std::vector<Config> items() const;

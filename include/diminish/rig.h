@@ -33,6 +33,8 @@ struct Rig {
 
 /// Reads `rig.yaml`. Throws Error, naming file and key.
 Rig load_rig(const std::filesystem::path& file);
+/// The same for a file that has been read already.
+Rig read_rig(const Config& config);
 
 /// The name by which messages call camera `index`'s colour sensor: "color" or "rgbd0 color".
 inline std::string color_sensor_name(const RgbdCamera& camera) {

@@ -23,13 +23,15 @@ struct OccluderSpec {
 
 /// What is in front of the cameras: a recording's `scene.yaml`.
 struct Scene {
-  std::string marker_dictionary;
-  MarkerSpec world_marker;
+  std::string marker_dictionary = "DICT_4X4_50";
+  MarkerSpec world_marker;  ///< of size 0: there is none
   std::vector<OccluderSpec> occluders;
 };
 
 /// Reads `scene.yaml`. Throws Error, naming file and key.
 Scene load_scene(const std::filesystem::path& file);
+/// The same for a file that has been read already.
+Scene read_scene(const Config& config);
 
 /// Reads `{id: .., size_m: ..}`.
 MarkerSpec read_marker(const Config& config);

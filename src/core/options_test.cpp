@@ -1,0 +1,72 @@
+#include "diminish/options.h"
+
+#include <cmath>
+
+#include "diminish/color_corrector.h"
+#include "diminish/inpainter.h"
+#include "expect_error.h"
+
+namespace diminish {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+class OptionsCheck : public testing::Test {
+ protected:
+  /// Methods under names of this test's own, as the defaults may or may not be registered.
+  OptionsCheck() {
+    Registry<ColorCorrector>::add("options-test", [] { return nullptr; });
+    Registry<Inpainter>::add("options-test", [] { return nullptr; });
+    options_.color_correct = "options-test";
+    options_.inpaint = "options-test";
+  }
+
+  Options options_;
+};
+
+TEST_F(OptionsCheck, AcceptsTheDefaultsAndBothEndsOfARange) {
+  EXPECT_NO_THROW(check(options_));
+  options_.mask_margin_px = 0;
+  EXPECT_NO_THROW(check(options_));
+  options_.mask_margin_px = 200;
+  EXPECT_NO_THROW(check(options_));
+}
+
+TEST_F(OptionsCheck, NamesTheOptionWhatWasGivenAndWhatIsAllowed) {
+  options_.mask_margin_px = 201;
+  EXPECT_EQ(error_of([&] { check(options_); }),
+            "mask_margin_px: expected 0 to 200 pixels, got 201");
+}
+
+TEST_F(OptionsCheck, EveryNumberHasAnUpperAndALowerEnd) {
+  for_each_option(options_, [&](const OptionInfo& info, auto& value) {
+    using Value = std::decay_t<decltype(value)>;
+    if constexpr (std::is_same_v<Value, int> || std::is_same_v<Value, double>) {
+      const Value good = value;
+      value = static_cast<Value>(info.min - 1);
+      EXPECT_THAT(error_of([&] { check(options_); }), HasSubstr(info.name));
+      value = static_cast<Value>(info.max + 1);
+      EXPECT_THAT(error_of([&] { check(options_); }), HasSubstr(info.name));
+      if constexpr (std::is_same_v<Value, double>) {
+        value = std::nan("");
+        EXPECT_THAT(error_of([&] { check(options_); }),
+                    AllOf(HasSubstr(info.name), HasSubstr("nan")));
+      }
+      value = good;
+    }
+  });
+}
+
+TEST_F(OptionsCheck, MethodsMustBeRegistered) {
+  options_.inpaint = "magic";
+  EXPECT_THAT(error_of([&] { check(options_); }),
+              AllOf(HasSubstr("inpaint: expected one of "), HasSubstr("options-test"),
+                    HasSubstr("got 'magic'")));
+  options_.inpaint = "options-test";
+  options_.color_correct = "";
+  EXPECT_THAT(error_of([&] { check(options_); }), HasSubstr("color_correct: expected one of "));
+}
+
+}  // namespace
+}  // namespace diminish

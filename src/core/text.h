@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace diminish {
+
+/// A decimal number that fills all of `text`; nothing for everything else, NaN and infinity.
+std::optional<double> parse_number(std::string_view text);
+
+/// `text` as it can stand in a one-line message: control characters replaced, cut to a readable
+/// length.
+std::string printable(std::string_view text);
+
+/// The words of a line; space, tab and carriage return separate them.
+std::vector<std::string_view> split_words(std::string_view line);
+
+/// "a, b, c"
+std::string join(const std::vector<std::string>& words);
+
+/// All of a text file. Throws Error that names the file if it cannot be read, or is larger than
+/// `max_bytes`.
+std::string read_text_file(const std::filesystem::path& file, std::size_t max_bytes);
+
+}  // namespace diminish
