@@ -36,10 +36,6 @@ Rig load_rig(const std::filesystem::path& file);
 /// The same for a file that has been read already.
 Rig read_rig(const Config& config);
 
-/// Reads `{rotation: [9 numbers, row-major], translation: [3 numbers]}`, metres. The rotation must
-/// be orthonormal to 1e-3; it is made so exactly.
-RigidTransform read_rigid_transform(const Config& config);
-
 /// The name by which messages call an RGB-D camera's colour sensor: "rgbd0 color".
 inline std::string color_sensor_name(const RgbdCamera& camera) {
   return camera.name + " color";

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "diminish/color_corrector.h"
+#include "diminish/diminished_frame.h"
+#include "diminish/inpainter.h"
+#include "diminish/options.h"
+
+namespace diminish {
+
+/// Puts the reconstruction where the objects are (Meerits & Saito 2015, section 3.4).
+class Compositor {
+ public:
+  /// result.reconstruction has been drawn. Fills picture, mask, provenance, the pixel counts and
+  /// the times of the stages. Outside the mask the picture is `camera`, bit for bit; inside, pixels
+  /// that were reconstructed are colour-corrected, and the others are inpainted.
+  void composite(const Image<Bgr>& camera, const OcclusionMasks& masks, const Options& options,
+                 DiminishedFrame& result);
+
+ private:
+  ColorCorrector& corrector(const std::string& name);
+  Inpainter& inpainter(const std::string& name);
+
+  std::map<std::string, std::unique_ptr<ColorCorrector>> correctors_;
+  std::map<std::string, std::unique_ptr<Inpainter>> inpainters_;
+  Mask missing_;
+};
+
+}  // namespace diminish

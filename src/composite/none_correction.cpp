@@ -1,0 +1,25 @@
+#include "diminish/color_corrector.h"
+
+namespace diminish {
+namespace {
+
+/// The reconstruction's colours as they are.
+class NoCorrection : public ColorCorrector {
+ public:
+  void correct(const Image<Bgr>&, const Mask& occlusion, const Reconstruction& reconstruction,
+               Image<Bgr>& picture) override {
+    const Rect& region = reconstruction.region;
+    for (int y = region.y; y < region.bottom(); ++y) {
+      for (int x = region.x; x < region.right(); ++x) {
+        const Bgra& color = reconstruction.color(x, y);
+        if (occlusion(x, y) != 0 && color.a != 0) picture(x, y) = {color.b, color.g, color.r};
+      }
+    }
+  }
+};
+
+const bool registered =
+    Registry<ColorCorrector>::add("none", [] { return std::make_unique<NoCorrection>(); });
+
+}  // namespace
+}  // namespace diminish

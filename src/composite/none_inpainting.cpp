@@ -1,0 +1,23 @@
+#include "diminish/inpainter.h"
+
+namespace diminish {
+namespace {
+
+/// Unknown pixels stay unknown: black.
+class NoInpainting : public Inpainter {
+ public:
+  bool inpaint(const Mask& missing, const Options&, Image<Bgr>& picture) override {
+    for (int y = 0; y < missing.height(); ++y) {
+      for (int x = 0; x < missing.width(); ++x) {
+        if (missing(x, y) != 0) picture(x, y) = {};
+      }
+    }
+    return false;
+  }
+};
+
+const bool registered =
+    Registry<Inpainter>::add("none", [] { return std::make_unique<NoInpainting>(); });
+
+}  // namespace
+}  // namespace diminish

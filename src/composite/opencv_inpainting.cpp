@@ -1,0 +1,40 @@
+#include <opencv2/photo.hpp>
+
+#include "core/mat.h"
+#include "diminish/inpainter.h"
+
+namespace diminish {
+namespace {
+
+/// cv::inpaint: fast marching (Telea 2004) or fluid dynamics (Bertalmio, Bertozzi & Sapiro 2001).
+class OpenCvInpainting : public Inpainter {
+ public:
+  explicit OpenCvInpainting(int method) : method_(method) {}
+
+  bool inpaint(const Mask& missing, const Options& options, Image<Bgr>& picture) override {
+    const Rect holes = bounding_box(missing);
+    if (holes.empty()) return true;
+    // A hole's pixels depend on what is within the radius, no more.
+    const Rect part = intersect(grow(holes, options.inpaint_radius_px + 2), picture.bounds());
+    if (count_nonzero(missing, part) == static_cast<std::size_t>(part.width) * part.height) {
+      for (int y = part.y; y < part.bottom(); ++y) picture.fill({part.x, y, part.width, 1}, {});
+      return false;
+    }
+    cv::Mat window = as_mat(picture)(as_cv(part));
+    cv::inpaint(window, as_mat(missing)(as_cv(part)), filled_, options.inpaint_radius_px, method_);
+    filled_.copyTo(window, as_mat(missing)(as_cv(part)));
+    return true;
+  }
+
+ private:
+  int method_;
+  cv::Mat filled_;
+};
+
+const bool telea_registered = Registry<Inpainter>::add(
+    "telea", [] { return std::make_unique<OpenCvInpainting>(cv::INPAINT_TELEA); });
+const bool ns_registered = Registry<Inpainter>::add(
+    "ns", [] { return std::make_unique<OpenCvInpainting>(cv::INPAINT_NS); });
+
+}  // namespace
+}  // namespace diminish

@@ -1,0 +1,118 @@
+#include "detect/round_shape.h"
+
+#include <Eigen/Core>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <opencv2/imgproc.hpp>
+
+namespace diminish {
+namespace {
+
+using Points = std::vector<cv::Point>;
+
+/// 1 on the ellipse, less inside.
+double relative_radius(const RoundShape& shape, double x, double y) {
+  const double dx = x - shape.center.x;
+  const double dy = y - shape.center.y;
+  const double cos = std::cos(shape.angle_rad);
+  const double sin = std::sin(shape.angle_rad);
+  return std::hypot((cos * dx + sin * dy) / shape.half_axes.width,
+                    (cos * dy - sin * dx) / shape.half_axes.height);
+}
+
+RoundShape fit_ellipse(const Points& points) {
+  const cv::RotatedRect fit = cv::fitEllipseDirect(points);
+  return {fit.center, fit.size / 2.f, fit.angle * std::numbers::pi / 180};
+}
+
+/// Least squares on x^2 + y^2 = 2 a x + 2 b y + c (Kasa 1976).
+RoundShape fit_circle(const Points& points) {
+  Eigen::MatrixX3d system(points.size(), 3);
+  Eigen::VectorXd squares(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double x = points[i].x;
+    const double y = points[i].y;
+    system.row(i) << 2 * x, 2 * y, 1;
+    squares[i] = x * x + y * y;
+  }
+  const Eigen::Vector3d solution = system.colPivHouseholderQr().solve(squares);
+  const double radius = std::sqrt(solution[2] + solution.head<2>().squaredNorm());
+  return {{solution[0], solution[1]}, {radius, radius}, 0};
+}
+
+/// The points without those that are much further from the shape than half of them are.
+Points without_outliers(const Points& points, const RoundShape& shape) {
+  const double radius = shape.diameter() / 2;
+  std::vector<double> distances;
+  for (const cv::Point& point : points) {
+    distances.push_back(std::abs(relative_radius(shape, point.x, point.y) - 1) * radius);
+  }
+  std::vector<double> sorted = distances;
+  const auto middle = sorted.begin() + sorted.size() / 2;
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  const double limit = std::max(1.0, 2.5 * *middle);
+  Points kept;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (distances[i] <= limit) kept.push_back(points[i]);
+  }
+  return kept;
+}
+
+double intersection_over_union(const RoundShape& shape, const cv::Mat& region) {
+  cv::Mat drawn = cv::Mat::zeros(region.size(), CV_8U);
+  shape.draw(drawn);
+  const int both = cv::countNonZero(drawn & region);
+  const int either = cv::countNonZero(drawn | region);
+  return either > 0 ? static_cast<double>(both) / either : 0;
+}
+
+bool usable(const RoundShape& shape) {
+  const double smaller = std::min(shape.half_axes.width, shape.half_axes.height);
+  return std::isfinite(shape.center.x + shape.center.y + shape.diameter()) && smaller > 0.5;
+}
+
+}  // namespace
+
+void RoundShape::draw(cv::Mat& mask) const {
+  const double reach = std::max(half_axes.width, half_axes.height);
+  const auto first = [](double from) { return static_cast<int>(std::ceil(std::max(from, 0.0))); };
+  const auto last = [](double to, int size) {
+    return static_cast<int>(std::floor(std::min(to, size - 1.0)));
+  };
+  for (int y = first(center.y - reach); y <= last(center.y + reach, mask.rows); ++y) {
+    for (int x = first(center.x - reach); x <= last(center.x + reach, mask.cols); ++x) {
+      if (relative_radius(*this, x, y) <= 1) mask.at<std::uint8_t>(y, x) = 255;
+    }
+  }
+}
+
+std::optional<RoundShape> fit_round_shape(const Points& outline, const cv::Mat& region) {
+  const cv::Rect inner(1, 1, region.cols - 2, region.rows - 2);
+  Points points;
+  std::copy_if(outline.begin(), outline.end(), std::back_inserter(points),
+               [&](const cv::Point& point) { return inner.contains(point); });
+  const auto fit = points.size() == outline.size() ? fit_ellipse : fit_circle;
+  constexpr std::size_t fewest_points = 8;
+  if (points.size() < fewest_points) return std::nullopt;
+  RoundShape shape = fit(points);
+  if (!usable(shape)) return std::nullopt;
+  const Points good = without_outliers(points, shape);
+  if (good.size() >= fewest_points) shape = fit(good);
+  if (!usable(shape)) return std::nullopt;
+  // The outline leads through the centres of the region's outermost pixels.
+  shape.half_axes += cv::Size2d(0.5, 0.5);
+  shape.agreement = intersection_over_union(shape, region);
+  return shape;
+}
+
+bool is_round(const RoundShape& shape) {
+  // A ball 45 degrees off the axis is 1.4 times as long as wide.
+  constexpr double smallest_aspect = 0.6;
+  constexpr double smallest_agreement = 0.85;
+  const auto [shorter, longer] = std::minmax(shape.half_axes.width, shape.half_axes.height);
+  return shorter >= smallest_aspect * longer && shape.agreement >= smallest_agreement;
+}
+
+}  // namespace diminish

@@ -1,0 +1,260 @@
+#include "detect/silhouette.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace diminish {
+namespace {
+
+constexpr double near_m = 0.01;
+
+/// Rays (x, y, 1) or pixels.
+using Polygon = std::vector<Eigen::Vector2d>;
+
+double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+/// Where the line through two points meets the plane (or line) at which the signed distances that
+/// belong to them become 0.
+template <class Point>
+Point meeting_point(const Point& a, double distance_a, const Point& b, double distance_b) {
+  return a + distance_a / (distance_a - distance_b) * (b - a);
+}
+
+/// The part of a convex polygon where `distance` is not negative (Sutherland & Hodgman 1974).
+template <class Point, class SignedDistance>
+void clip(const std::vector<Point>& polygon, const SignedDistance& distance,
+          std::vector<Point>& result) {
+  result.clear();
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Point& a = polygon[i];
+    const Point& b = polygon[(i + 1) % polygon.size()];
+    const double distance_a = distance(a);
+    const double distance_b = distance(b);
+    if (distance_a >= 0) result.push_back(a);
+    if ((distance_a < 0) != (distance_b < 0)) {
+      result.push_back(meeting_point(a, distance_a, b, distance_b));
+    }
+  }
+}
+
+/// The rays that can reach the picture: a regular polygon around it, inside the radius where the
+/// distortion polynomial folds back.
+class FieldOfView {
+ public:
+  explicit FieldOfView(const Lens& lens) {
+    // A little more than the picture, so that the polygon's sides stay outside of it.
+    const double radius = std::min(1.02 * picture_radius(lens), valid_radius(lens));
+    constexpr int sides = 32;
+    constexpr double half_angle = std::numbers::pi / sides;
+    inner_radius_ = radius * std::cos(half_angle);
+    for (int i = 0; i < sides; ++i) {
+      normals_.emplace_back(std::cos(2 * half_angle * i), std::sin(2 * half_angle * i));
+    }
+  }
+
+  /// Cuts off a convex polygon's part outside.
+  void clip_to_field(Polygon& rays, Polygon& scratch) const {
+    const auto inside = [this](const Eigen::Vector2d& ray) { return ray.norm() <= inner_radius_; };
+    if (std::all_of(rays.begin(), rays.end(), inside)) return;
+    for (const Eigen::Vector2d& normal : normals_) {
+      const auto distance = [&](const Eigen::Vector2d& ray) {
+        return inner_radius_ - normal.dot(ray);
+      };
+      clip(rays, distance, scratch);
+      rays.swap(scratch);
+    }
+  }
+
+ private:
+  /// The largest radius of a ray on the picture's border; infinite where the lens model does not
+  /// hold for the whole picture.
+  static double picture_radius(const Lens& lens) {
+    const Intrinsics& intrinsics = lens.intrinsics();
+    constexpr int samples = 16;
+    double radius = 0;
+    for (int i = 0; i <= samples; ++i) {
+      const double x = (intrinsics.width - 1.0) * i / samples;
+      const double y = (intrinsics.height - 1.0) * i / samples;
+      const double right = intrinsics.width - 1.0;
+      const double bottom = intrinsics.height - 1.0;
+      for (const Eigen::Vector2d& pixel : {Eigen::Vector2d(x, 0), Eigen::Vector2d(x, bottom),
+                                           Eigen::Vector2d(0, y), Eigen::Vector2d(right, y)}) {
+        const Eigen::Vector2d ray = lens.undistort(pixel);
+        const auto back = lens.distort(ray);
+        if (!back || !((*back - pixel).norm() < 0.5)) {
+          return std::numeric_limits<double>::infinity();
+        }
+        radius = std::max(radius, ray.norm());
+      }
+    }
+    return radius;
+  }
+
+  /// The radius up to which the lens has a pixel for a ray.
+  static double valid_radius(const Lens& lens) {
+    double valid = 0;
+    double invalid = 10;
+    if (lens.distort({invalid, 0})) return invalid;
+    for (int halving = 0; halving < 50; ++halving) {
+      const double middle = (valid + invalid) / 2;
+      (lens.distort({middle, 0}) ? valid : invalid) = middle;
+    }
+    return valid * (1 - 1e-9);
+  }
+
+  double inner_radius_ = 0;
+  std::vector<Eigen::Vector2d> normals_;
+};
+
+/// Draws polygons of rays; keeps its memory from one polygon to the next.
+class PolygonFiller {
+ public:
+  PolygonFiller(const Lens& lens, Mask& mask) : lens_(lens), field_(lens), mask_(mask) {}
+
+  /// Draws a convex polygon of rays. Changes `rays`.
+  bool fill(Polygon& rays) {
+    field_.clip_to_field(rays, scratch_);
+    if (rays.size() < 3) return false;
+    pixels_.clear();
+    Eigen::Vector2d begin = lens_.distort(rays.back()).value();
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const Eigen::Vector2d& previous = i > 0 ? rays[i - 1] : rays.back();
+      const Eigen::Vector2d end = lens_.distort(rays[i]).value();
+      append_bent_edge(previous, begin, rays[i], end);
+      begin = end;
+    }
+    return fill_pixels();
+  }
+
+ private:
+  /// Appends the picture of the edge from ray `a` to ray `b`, without its first point, as straight
+  /// pieces that follow its bend.
+  void append_bent_edge(const Eigen::Vector2d& a, const Eigen::Vector2d& pixel_a,
+                        const Eigen::Vector2d& b, const Eigen::Vector2d& pixel_b) {
+    constexpr double always_straight_px = 4;
+    constexpr double longest_px = 64;  // a longer piece could bend to both sides of its middle
+    constexpr double largest_bend_px = 0.02;
+    const double length_px = (pixel_b - pixel_a).norm();
+    if (length_px > always_straight_px) {
+      const Eigen::Vector2d middle = (a + b) / 2;
+      const Eigen::Vector2d pixel_middle = lens_.distort(middle).value();
+      const double bend_px = (pixel_middle - (pixel_a + pixel_b) / 2).norm();
+      if (length_px > longest_px || bend_px > largest_bend_px) {
+        append_bent_edge(a, pixel_a, middle, pixel_middle);
+        append_bent_edge(middle, pixel_middle, b, pixel_b);
+        return;
+      }
+    }
+    pixels_.push_back(pixel_b);
+  }
+
+  /// Sets the pixels whose centres are inside `pixels_`, by the even-odd rule.
+  bool fill_pixels() {
+    const auto by_y = [](const auto& a, const auto& b) { return a.y() < b.y(); };
+    const auto [top, bottom] = std::minmax_element(pixels_.begin(), pixels_.end(), by_y);
+    const int first_row = static_cast<int>(std::ceil(std::max(top->y(), 0.0)));
+    const int last_row = static_cast<int>(std::floor(std::min(bottom->y(), mask_.height() - 1.0)));
+    bool any = false;
+    for (int row = first_row; row <= last_row; ++row) any |= fill_row(row);
+    return any;
+  }
+
+  bool fill_row(int row) {
+    crossings_.clear();
+    for (std::size_t i = 0; i < pixels_.size(); ++i) {
+      const Eigen::Vector2d& a = i > 0 ? pixels_[i - 1] : pixels_.back();
+      const Eigen::Vector2d& b = pixels_[i];
+      if ((a.y() <= row) == (b.y() <= row)) continue;
+      crossings_.push_back(a.x() + (row - a.y()) / (b.y() - a.y()) * (b.x() - a.x()));
+    }
+    std::sort(crossings_.begin(), crossings_.end());
+    // A centre on the edge between two triangles must not fall between them by rounding.
+    constexpr double rounding_px = 1e-9;
+    bool any = false;
+    for (std::size_t i = 0; i + 1 < crossings_.size(); i += 2) {
+      const double left = std::max(crossings_[i] - rounding_px, 0.0);
+      const double right = std::min(crossings_[i + 1] + rounding_px, mask_.width() - 1.0);
+      const int first = static_cast<int>(std::ceil(left));
+      const int last = static_cast<int>(std::floor(right));
+      if (first > last) continue;
+      std::fill(mask_.row(row) + first, mask_.row(row) + last + 1, std::uint8_t{255});
+      any = true;
+    }
+    return any;
+  }
+
+  const Lens& lens_;
+  FieldOfView field_;
+  Mask& mask_;
+  Polygon scratch_;
+  Polygon pixels_;
+  std::vector<double> crossings_;
+};
+
+/// The corners of the convex hull, in order (Andrew 1979).
+Polygon convex_hull(Polygon points) {
+  std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) {
+    return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
+  });
+  Polygon hull;
+  const auto add_chain = [&hull](auto begin, auto end) {
+    const std::size_t start = hull.size();
+    for (auto point = begin; point != end; ++point) {
+      while (hull.size() >= start + 2 &&
+             cross(hull.back() - hull[hull.size() - 2], *point - hull.back()) <= 0) {
+        hull.pop_back();
+      }
+      hull.push_back(*point);
+    }
+    if (!hull.empty()) hull.pop_back();  // the other chain begins with it
+  };
+  add_chain(points.begin(), points.end());
+  add_chain(points.rbegin(), points.rend());
+  return hull;
+}
+
+}  // namespace
+
+bool fill_convex_hull(const std::vector<Eigen::Vector3d>& points_in_camera, const Lens& lens,
+                      Mask& mask) {
+  Polygon rays;
+  for (const Eigen::Vector3d& point : points_in_camera) {
+    if (point.z() < near_m) continue;
+    rays.emplace_back(point.head<2>() / point.z());
+    // What the near plane leaves of the hull has corners on lines between points on its two sides.
+    for (const Eigen::Vector3d& behind : points_in_camera) {
+      if (behind.z() >= near_m) continue;
+      const Eigen::Vector3d corner =
+          meeting_point(point, point.z() - near_m, behind, behind.z() - near_m);
+      rays.emplace_back(corner.head<2>() / near_m);
+    }
+  }
+  Polygon hull = convex_hull(std::move(rays));
+  return PolygonFiller(lens, mask).fill(hull);
+}
+
+bool fill_triangles(const std::vector<Eigen::Vector3d>& vertices_in_camera,
+                    const std::vector<std::array<int, 3>>& triangles, const Lens& lens,
+                    Mask& mask) {
+  PolygonFiller filler(lens, mask);
+  std::vector<Eigen::Vector3d> corners;
+  std::vector<Eigen::Vector3d> in_front;
+  Polygon rays;
+  bool any = false;
+  for (const std::array<int, 3>& triangle : triangles) {
+    corners.clear();
+    for (const int index : triangle) corners.push_back(vertices_in_camera[index]);
+    clip(
+        corners, [](const Eigen::Vector3d& point) { return point.z() - near_m; }, in_front);
+    rays.clear();
+    for (const Eigen::Vector3d& point : in_front) rays.emplace_back(point.head<2>() / point.z());
+    any |= filler.fill(rays);
+  }
+  return any;
+}
+
+}  // namespace diminish
