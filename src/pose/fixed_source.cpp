@@ -3,6 +3,7 @@
 
 #include "diminish/pose_source.h"
 #include "pose/marker_pose.h"
+#include "source/read_rigid_transform.h"
 
 namespace diminish {
 namespace {

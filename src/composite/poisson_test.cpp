@@ -1,0 +1,272 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Sparse>
+#include <cmath>
+#include <random>
+
+#include "diminish/color_corrector.h"
+
+namespace diminish {
+namespace {
+
+struct Problem {
+  Image<Bgr> camera;
+  Mask occlusion;
+  Reconstruction reconstruction;
+
+  Problem(int width, int height, unsigned seed) : random(seed) {
+    camera.resize(width, height);
+    occlusion.resize(width, height, 0);
+    reconstruction.region = camera.bounds();
+    reconstruction.color.resize(width, height);
+    reconstruction.depth_m.resize(width, height, 1.F);
+    reconstruction.source.resize(width, height, 1);
+    for (Bgr& pixel : camera) pixel = {level(), level(), level()};
+    for (Bgra& pixel : reconstruction.color) pixel = {level(), level(), level(), 255};
+  }
+  std::uint8_t level() { return static_cast<std::uint8_t>(60 + random() % 120); }
+  void hide(const Rect& rect) {
+    for (int y = rect.y; y < rect.bottom(); ++y) {
+      for (int x = rect.x; x < rect.right(); ++x) {
+        reconstruction.color(x, y) = {};
+        reconstruction.source(x, y) = 0;
+      }
+    }
+  }
+  bool valid(int x, int y) const {
+    return occlusion(x, y) != 0 && reconstruction.color(x, y).a != 0;
+  }
+  Image<Bgr> solve() const {
+    Image<Bgr> picture = camera;
+    Registry<ColorCorrector>::get("poisson")()->correct(camera, occlusion, reconstruction, picture);
+    return picture;
+  }
+
+  std::mt19937 random;
+};
+
+double value(const Bgr& color, int channel) {
+  return channel == 0 ? color.b : channel == 1 ? color.g : color.r;
+}
+double value(const Bgra& color, int channel) {
+  return value(Bgr{color.b, color.g, color.r}, channel);
+}
+
+/// The exact result, unrounded, for the result itself (not its correction): for each valid pixel p,
+/// the sum over neighbours q of f_p - f_q = guidance, f = camera outside the mask. Parts without a
+/// boundary are not in it: `anchored` must hold for every part.
+std::vector<Image<double>> solve_directly(const Problem& problem) {
+  const int width = problem.camera.width();
+  const int height = problem.camera.height();
+  const auto& [camera, occlusion, reconstruction, random] = problem;
+  Image<int> index(width, height, -1);
+  int count = 0;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      if (problem.valid(x, y)) index(x, y) = count++;
+    }
+  }
+  std::vector<Eigen::Triplet<double>> entries;
+  Eigen::MatrixXd right = Eigen::MatrixXd::Zero(count, 3);
+  constexpr int steps[4][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const int row = index(x, y);
+      if (row < 0) continue;
+      for (const auto& step : steps) {
+        const int nx = x + step[0];
+        const int ny = y + step[1];
+        if (nx < 0 || ny < 0 || nx >= width || ny >= height) continue;
+        if (reconstruction.color(nx, ny).a == 0) continue;
+        const bool seam = reconstruction.source(x, y) != reconstruction.source(nx, ny);
+        entries.emplace_back(row, row, 1.0);
+        if (index(nx, ny) >= 0) entries.emplace_back(row, index(nx, ny), -1.0);
+        for (int c = 0; c < 3; ++c) {
+          if (!seam) {
+            right(row, c) +=
+                value(reconstruction.color(x, y), c) - value(reconstruction.color(nx, ny), c);
+          }
+          if (index(nx, ny) < 0) right(row, c) += value(camera(nx, ny), c);
+        }
+      }
+    }
+  }
+  Eigen::SparseMatrix<double> matrix(count, count);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
+  EXPECT_EQ(solver.info(), Eigen::Success);
+  const Eigen::MatrixXd solution = solver.solve(right);
+  std::vector<Image<double>> result(3, Image<double>(width, height, 0));
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      for (int c = 0; c < 3 && index(x, y) >= 0; ++c) {
+        result[static_cast<std::size_t>(c)](x, y) = solution(index(x, y), c);
+      }
+    }
+  }
+  return result;
+}
+
+/// Within 0.5 levels for rounding and a twentieth for the solver, everywhere; nothing else changes.
+void expect_exact(const Problem& problem) {
+  const Image<Bgr> picture = problem.solve();
+  const auto exact = solve_directly(problem);
+  double worst = 0;
+  for (int y = 0; y < picture.height(); ++y) {
+    for (int x = 0; x < picture.width(); ++x) {
+      if (!problem.valid(x, y)) {
+        ASSERT_EQ(picture(x, y), problem.camera(x, y)) << x << ' ' << y;
+        continue;
+      }
+      for (int c = 0; c < 3; ++c) {
+        const double expected = std::clamp(exact[static_cast<std::size_t>(c)](x, y), 0.0, 255.0);
+        worst = std::max(worst, std::abs(value(picture(x, y), c) - expected));
+      }
+    }
+  }
+  EXPECT_LE(worst, 0.55);
+}
+
+void fill(Mask& mask, const Rect& rect) {
+  mask.fill(rect, 255);
+}
+
+TEST(PoissonCorrection, EqualsADirectSolveOnARectangle) {
+  Problem problem(130, 97, 1);
+  fill(problem.occlusion, {20, 15, 83, 61});
+  expect_exact(problem);
+}
+
+TEST(PoissonCorrection, EqualsADirectSolveWithHolesThinLinesAndAtThePicturesEdge) {
+  Problem problem(257, 90, 2);
+  fill(problem.occlusion, {0, 0, 120, 70});
+  fill(problem.occlusion, {140, 3, 1, 80});  // a line of one pixel
+  fill(problem.occlusion, {150, 40, 107, 1});
+  fill(problem.occlusion, {170, 60, 3, 3});
+  problem.hide({30, 20, 40, 25});   // free borders inside
+  problem.hide({0, 60, 80, 10});    // ... and on the mask's rim
+  problem.hide({100, 65, 30, 10});  // not reconstructed outside the mask either
+  expect_exact(problem);
+}
+
+TEST(PoissonCorrection, EqualsADirectSolveOnRandomSpeckle) {
+  for (unsigned seed = 3; seed < 8; ++seed) {
+    Problem problem(61, 43, seed);
+    for (std::uint8_t& pixel : problem.occlusion) pixel = problem.random() % 3 == 0 ? 255 : 0;
+    expect_exact(problem);
+  }
+}
+
+TEST(PoissonCorrection, EqualsADirectSolveAcrossTheSeamOfTwoCameras) {
+  Problem problem(100, 80, 9);
+  fill(problem.occlusion, {10, 10, 80, 60});
+  for (int y = 0; y < 80; ++y) {
+    for (int x = 40 + y / 4; x < 100; ++x) {
+      problem.reconstruction.source(x, y) = 2;
+      problem.reconstruction.color(x, y).b =
+          static_cast<std::uint8_t>(problem.reconstruction.color(x, y).b + 60);
+    }
+  }
+  expect_exact(problem);
+}
+
+TEST(PoissonCorrection, EqualsADirectSolveAtAwkwardSizes) {
+  for (const int size : {1, 3, 13, 257}) {
+    Problem problem(size + 2, 9, static_cast<unsigned>(size));
+    fill(problem.occlusion, {1, 1, size, 7});
+    expect_exact(problem);
+  }
+}
+
+// A correction that is a linear ramp on the boundary is that ramp inside: it is harmonic.
+TEST(PoissonCorrection, ReproducesARampExactly) {
+  Problem problem(120, 90, 10);
+  for (int y = 0; y < 90; ++y) {
+    for (int x = 0; x < 120; ++x) {
+      const Bgra& color = problem.reconstruction.color(x, y);
+      problem.camera(x, y) = {static_cast<std::uint8_t>(color.b + x / 4 - 15),
+                              static_cast<std::uint8_t>(color.g + 7),
+                              static_cast<std::uint8_t>(color.r - y / 3)};
+    }
+  }
+  // Steps of a quarter level are rounded in the 8-bit boundary; a constant is not.
+  fill(problem.occlusion, {8, 8, 100, 70});
+  const Image<Bgr> picture = problem.solve();
+  for (int y = 8; y < 78; ++y) {
+    for (int x = 8; x < 108; ++x) {
+      EXPECT_EQ(picture(x, y).g, problem.camera(x, y).g);
+      EXPECT_NEAR(picture(x, y).b, problem.camera(x, y).b, 1);
+      EXPECT_NEAR(picture(x, y).r, problem.camera(x, y).r, 1);
+    }
+  }
+}
+
+// With cv::seamlessClone the object's own colours bleed into the result.
+TEST(PoissonCorrection, NeverLooksAtTheObject) {
+  Problem problem(140, 110, 11);
+  fill(problem.occlusion, {0, 20, 90, 60});
+  problem.hide({0, 30, 50, 30});
+  const Image<Bgr> before = problem.solve();
+  for (int y = 0; y < 110; ++y) {
+    for (int x = 0; x < 140; ++x) {
+      if (problem.occlusion(x, y) != 0) {
+        problem.camera(x, y) = {problem.level(), problem.level(), problem.level()};
+      }
+    }
+  }
+  const Image<Bgr> after = problem.solve();
+  for (int y = 0; y < 110; ++y) {
+    for (int x = 0; x < 140; ++x) {
+      if (!problem.valid(x, y)) continue;
+      ASSERT_EQ(before(x, y), after(x, y)) << x << ' ' << y;
+    }
+  }
+}
+
+// An island that meets the camera's picture nowhere gets the mean correction of the rest.
+TEST(PoissonCorrection, AnIslandGetsTheMeanCorrection) {
+  Problem problem(100, 60, 12);
+  for (int y = 0; y < 60; ++y) {
+    for (int x = 0; x < 100; ++x) {
+      const Bgra& color = problem.reconstruction.color(x, y);
+      problem.camera(x, y) = {static_cast<std::uint8_t>(color.b + 20), color.g,
+                              static_cast<std::uint8_t>(color.r - 12)};
+    }
+  }
+  fill(problem.occlusion, {5, 5, 90, 50});
+  problem.hide({50, 5, 45, 50});
+  problem.hide({95, 0, 5, 60});
+  problem.hide({50, 0, 50, 5});
+  problem.hide({50, 55, 50, 5});
+  for (int y = 20; y < 30; ++y) {
+    for (int x = 70; x < 80; ++x) problem.reconstruction.color(x, y) = {100, 100, 100, 255};
+  }
+  EXPECT_EQ(problem.solve()(75, 25), (Bgr{120, 100, 88}));
+  // Nothing at all to go by: the colours stay.
+  problem.hide({0, 0, 70, 60});
+  EXPECT_EQ(problem.solve()(75, 25), (Bgr{100, 100, 100}));
+}
+
+TEST(PoissonCorrection, AnObjectUsedTwiceForgetsTheFirstFrame) {
+  const auto corrector = Registry<ColorCorrector>::get("poisson")();
+  Problem large(150, 120, 13);
+  fill(large.occlusion, {10, 10, 120, 90});
+  Problem small(60, 50, 14);
+  fill(small.occlusion, {5, 5, 40, 30});
+  Image<Bgr> picture = large.camera;
+  corrector->correct(large.camera, large.occlusion, large.reconstruction, picture);
+  picture = small.camera;
+  corrector->correct(small.camera, small.occlusion, small.reconstruction, picture);
+  EXPECT_EQ(picture, small.solve());
+}
+
+TEST(PoissonCorrection, LeavesThePictureAloneWithoutMaskOrReconstruction) {
+  Problem problem(40, 30, 15);
+  EXPECT_EQ(problem.solve(), problem.camera);
+  fill(problem.occlusion, {5, 5, 20, 20});
+  problem.hide({0, 0, 40, 30});
+  EXPECT_EQ(problem.solve(), problem.camera);
+}
+
+}  // namespace
+}  // namespace diminish
