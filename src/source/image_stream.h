@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <vector>
+
+#include "diminish/image.h"
+#include "diminish/intrinsics.h"
+#include "source/stream_list.h"
+#include "source/video_reader.h"
+
+namespace diminish {
+
+/// The images of one sensor, in the order of a list: colour (`Bgr`) or depth (`std::uint16_t`).
+template <class Pixel>
+class ImageStream {
+ public:
+  /// list: the "timestamp filename" file; names in it are relative to its folder.
+  /// Throws Error if the list cannot be used, none of its files exist, or the first that does is
+  /// an image of another camera: that would be wrong in every frame.
+  ImageStream(const std::filesystem::path& list, const Intrinsics& camera);
+
+  const std::vector<StreamEntry>& entries() const { return entries_; }
+
+  /// Fast if `index` does not go down from call to call. Throws Error that names the file as the
+  /// list does, and what was expected; `image` is empty then.
+  void read(std::size_t index, Image<Pixel>& image);
+
+ private:
+  cv::Mat decode_entry(const StreamEntry& entry);
+  void check_first(const std::filesystem::path& list);
+
+  std::filesystem::path folder_;
+  Intrinsics camera_;
+  std::vector<StreamEntry> entries_;
+  std::optional<VideoReader> video_;
+};
+
+}  // namespace diminish
