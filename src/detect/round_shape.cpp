@@ -98,9 +98,13 @@ std::optional<RoundShape> fit_round_shape(const Points& outline, const cv::Mat& 
   if (points.size() < fewest_points) return std::nullopt;
   RoundShape shape = fit(points);
   if (!usable(shape)) return std::nullopt;
-  const Points good = without_outliers(points, shape);
-  if (good.size() >= fewest_points) shape = fit(good);
-  if (!usable(shape)) return std::nullopt;
+  // The first fit is drawn towards what does not belong to the outline, the later ones less.
+  for (int pass = 0; pass < 4; ++pass) {
+    const Points good = without_outliers(points, shape);
+    if (good.size() < fewest_points) break;
+    shape = fit(good);
+    if (!usable(shape)) return std::nullopt;
+  }
   // The outline leads through the centres of the region's outermost pixels.
   shape.half_axes += cv::Size2d(0.5, 0.5);
   shape.agreement = intersection_over_union(shape, region);

@@ -1,0 +1,208 @@
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "detect/disc_dilation.h"
+#include "detect/silhouette.h"
+#include "diminish/occluder_detector.h"
+#include "geometry/triangle_mesh.h"
+
+namespace diminish {
+namespace {
+
+/// Whatever the RGB-D cameras see inside a box.
+class BoxOccluder : public OccluderDetector {
+ public:
+  BoxOccluder(const OccluderSpec& spec, const Rig& rig)
+      : name_(spec.name), rig_(rig), color_lens_(rig.color) {
+    const Config& config = spec.config;
+    config.expect_keys({"name", "detector", "frame", "min", "max"});
+    read_frame(config.at("frame"));
+    min_ = config.at("min").vector3();
+    max_ = config.at("max").vector3();
+    if ((min_.array() >= max_.array()).any()) {
+      config.at("max").fail("expected three numbers, each above min's");
+    }
+    for (const RgbdCamera& camera : rig.rgbd) {
+      rgbd_lenses_.emplace_back(camera.color);
+      depth_rays_.push_back(Lens(camera.depth).rays());
+    }
+    meshes_.resize(rig.rgbd.size());
+    object_in_rgbd_.resize(rig.rgbd.size());
+  }
+
+  OccluderReport detect(const Observation& observation, OcclusionMasks& masks) override {
+    const auto& [frame, markers, poses, options] = observation;
+    const std::size_t count = rig_.rgbd.size();
+    OccluderReport report;
+    report.name = name_;
+    report.in_rgbd.assign(count, false);
+    bool any = false;
+    for (std::size_t k = 0; k < count; ++k) {
+      meshes_[k].vertices.clear();
+      meshes_[k].triangles.clear();
+      if (!frame.rgbd[k].available()) continue;
+      const auto box_from_depth = find_box(k, poses);
+      if (!box_from_depth) {
+        report.message += (report.message.empty() ? name_ + ": " : ", ") +
+                          "where the box is from " + rig_.rgbd[k].name + " is not known";
+        continue;
+      }
+      report.in_rgbd[k] = select_pixels(k, frame.rgbd[k].depth, *box_from_depth,
+                                        options.discontinuity_threshold_m, masks.rgbd_depth[k]);
+      any = any || report.in_rgbd[k];
+    }
+    if (!any) {
+      if (report.message.empty()) report.message = name_ + ": no RGB-D camera sees anything inside";
+      return report;
+    }
+    report.in_color = draw_in_color(poses, masks.color);
+    for (std::size_t k = 0; k < count; ++k) {
+      if (frame.rgbd[k].available() && draw_in_rgbd(k, poses, masks.rgbd_color[k])) {
+        report.in_rgbd[k] = true;
+      }
+    }
+    return report;
+  }
+
+ private:
+  void read_frame(const Config& config) {
+    const std::string frame = config.text();
+    if (frame == "world") return;
+    std::string known = "world";
+    for (std::size_t k = 0; k < rig_.rgbd.size(); ++k) {
+      if (rig_.rgbd[k].name == frame) {
+        frame_camera_ = k;
+        return;
+      }
+      known += ", " + rig_.rgbd[k].name;
+    }
+    config.fail("expected one of " + known + ", got '" + frame + "'");
+  }
+
+  /// box_from_depth of camera k.
+  std::optional<RigidTransform> find_box(std::size_t k, const Poses& poses) const {
+    if (!frame_camera_) {
+      if (!poses.depth_from_world[k]) return std::nullopt;
+      return poses.depth_from_world[k]->inverse();
+    }
+    return depth_from_depth(*frame_camera_, k, poses);
+  }
+
+  /// To camera `to`'s depth sensor from camera `from`'s.
+  static std::optional<RigidTransform> depth_from_depth(std::size_t to, std::size_t from,
+                                                        const Poses& poses) {
+    if (to == from) return RigidTransform{};
+    const auto& color_from_to = poses.color_from_depth[to];
+    const auto& color_from_from = poses.color_from_depth[from];
+    if (!color_from_to || !color_from_from) return std::nullopt;
+    return color_from_to->inverse() * *color_from_from;
+  }
+
+  /// Sets the depth pixels that are in the box, and makes the mesh of their surface (SDCT): two
+  /// triangles for each four neighbours whose depths differ by less than `threshold_m`. Returns
+  /// whether there are any.
+  bool select_pixels(std::size_t k, const Image<std::uint16_t>& depth,
+                     const RigidTransform& box_from_depth, double threshold_m, Mask& mask) {
+    TriangleMesh& mesh = meshes_[k];
+    vertex_.resize(depth.width(), depth.height(), -1);
+    for (int y = 0; y < depth.height(); ++y) {
+      for (int x = 0; x < depth.width(); ++x) {
+        if (depth(x, y) == 0) continue;
+        const double z = depth(x, y) * rig_.rgbd[k].depth_unit_m;
+        const Eigen::Vector3d x_in_depth = z * depth_rays_[k](x, y).cast<double>().homogeneous();
+        const Eigen::Vector3d x_in_box = box_from_depth * x_in_depth;
+        if ((x_in_box.array() < min_.array() || x_in_box.array() > max_.array()).any()) continue;
+        vertex_(x, y) = static_cast<int>(mesh.vertices.size());
+        mesh.vertices.push_back(x_in_depth);
+        mask(x, y) = 255;
+      }
+    }
+    for (int y = 0; y + 1 < depth.height(); ++y) {
+      for (int x = 0; x + 1 < depth.width(); ++x) {
+        add_triangle({vertex_(x, y), vertex_(x + 1, y), vertex_(x, y + 1)}, threshold_m, mesh);
+        add_triangle({vertex_(x + 1, y), vertex_(x + 1, y + 1), vertex_(x, y + 1)}, threshold_m,
+                     mesh);
+      }
+    }
+    return !mesh.vertices.empty();
+  }
+
+  static void add_triangle(const std::array<int, 3>& corners, double threshold_m,
+                           TriangleMesh& mesh) {
+    if (std::any_of(corners.begin(), corners.end(), [](int corner) { return corner < 0; })) return;
+    const auto z = [&](int i) { return mesh.vertices[corners[i]].z(); };
+    const auto [nearest, farthest] = std::minmax({z(0), z(1), z(2)});
+    if (farthest - nearest < threshold_m) mesh.triangles.push_back(corners);
+  }
+
+  bool draw_in_color(const Poses& poses, Mask& mask) {
+    return draw(color_lens_, mask, object_in_color_,
+                [&](std::size_t from) { return poses.color_from_depth[from]; });
+  }
+
+  bool draw_in_rgbd(std::size_t k, const Poses& poses, Mask& mask) {
+    return draw(rgbd_lenses_[k], mask, object_in_rgbd_[k],
+                [&](std::size_t from) -> std::optional<RigidTransform> {
+                  const auto depth_from_other = depth_from_depth(k, from, poses);
+                  if (!depth_from_other) return std::nullopt;
+                  return rig_.rgbd[k].color_from_depth * *depth_from_other;
+                });
+  }
+
+  /// Adds what all RGB-D cameras saw in the box to `mask`, as it looks through `lens`.
+  /// camera_from_depth(k): absent where not known.
+  template <class CameraFromDepth>
+  bool draw(const Lens& lens, Mask& mask, Mask& object, const CameraFromDepth& camera_from_depth) {
+    object.resize(mask.width(), mask.height(), 0);
+    bool any = false;
+    int widest_px = 0;
+    for (std::size_t k = 0; k < meshes_.size(); ++k) {
+      if (meshes_[k].triangles.empty()) continue;
+      const std::optional<RigidTransform> transform = camera_from_depth(k);
+      if (!transform) continue;
+      vertices_in_camera_.clear();
+      for (const Eigen::Vector3d& x_in_depth : meshes_[k].vertices) {
+        vertices_in_camera_.push_back(*transform * x_in_depth);
+      }
+      any |= fill_triangles(vertices_in_camera_, meshes_[k].triangles, lens, object);
+      const double ratio = lens.intrinsics().fx / rig_.rgbd[k].depth.fx;
+      widest_px = std::max(widest_px, static_cast<int>(std::ceil(hole_px * ratio)));
+    }
+    if (!any) return false;
+    close_by_disc(object, widest_px, scratch_);
+    for (int y = 0; y < mask.height(); ++y) {
+      std::transform(object.row(y), object.row(y) + mask.width(), mask.row(y), mask.row(y),
+                     [](std::uint8_t a, std::uint8_t b) { return std::max(a, b); });
+    }
+    return true;
+  }
+
+  /// Where a surface reflects badly it has no depth: holes of up to about twice this many depth
+  /// pixels are closed, so that no pixels of the object are left showing.
+  static constexpr int hole_px = 3;
+
+  std::string name_;
+  Rig rig_;
+  std::optional<std::size_t> frame_camera_;  ///< whose depth frame the box is in; absent: world
+  Eigen::Vector3d min_;
+  Eigen::Vector3d max_;
+  Lens color_lens_;
+  std::vector<Lens> rgbd_lenses_;
+  std::vector<Image<Eigen::Vector2f>> depth_rays_;
+  std::vector<TriangleMesh>
+      meshes_;         ///< what each RGB-D camera sees in the box, in its depth frame
+  Image<int> vertex_;  ///< index of a depth pixel's vertex, or -1
+  std::vector<Eigen::Vector3d> vertices_in_camera_;
+  Mask object_in_color_;
+  std::vector<Mask> object_in_rgbd_;
+  Mask scratch_;
+};
+
+const bool registered =
+    Registry<OccluderDetector>::add("box", [](const OccluderSpec& spec, const Rig& rig) {
+      return std::make_unique<BoxOccluder>(spec, rig);
+    });
+
+}  // namespace
+}  // namespace diminish

@@ -1,0 +1,135 @@
+#include <Eigen/QR>
+#include <algorithm>
+#include <vector>
+
+#include "detect/marker_views.h"
+#include "detect/silhouette.h"
+#include "diminish/occluder_detector.h"
+#include "geometry/triangle_mesh.h"
+
+namespace diminish {
+namespace {
+
+std::vector<Eigen::Vector3d> read_vertices(const Config& config) {
+  std::vector<Eigen::Vector3d> vertices;
+  for (const Config& item : config.items()) vertices.push_back(item.vector3());
+  if (vertices.size() < 4) config.fail("expected at least 4 points");
+  Eigen::Matrix3Xd edges(3, vertices.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i) edges.col(i) = vertices[i] - vertices[0];
+  if (edges.colPivHouseholderQr().rank() < 2) {
+    config.fail("expected points that are not all on one line");
+  }
+  return vertices;
+}
+
+/// An object with a marker on it, whose shape in the marker's frame is known.
+class MarkerOccluder : public OccluderDetector {
+ public:
+  MarkerOccluder(const OccluderSpec& spec, const Rig& rig)
+      : name_(spec.name), rig_(rig), color_lens_(rig.color) {
+    const Config& config = spec.config;
+    config.expect_keys({"name", "detector", "marker", "vertices", "mesh"});
+    marker_ = read_marker(config.at("marker"));
+    const Config vertices = config.find("vertices");
+    const Config mesh = config.find("mesh");
+    if (vertices.exists() == mesh.exists()) config.fail("expected either vertices or mesh");
+    if (vertices.exists()) {
+      shape_.vertices = read_vertices(vertices);
+    } else {
+      shape_ = load_obj(mesh.path());
+    }
+    for (const RgbdCamera& camera : rig.rgbd) {
+      rgbd_color_lenses_.emplace_back(camera.color);
+      rgbd_depth_lenses_.emplace_back(camera.depth);
+    }
+  }
+
+  bool needs_markers() const override { return true; }
+
+  OccluderReport detect(const Observation& observation, OcclusionMasks& masks) override {
+    // The colour camera first, then the RGB-D cameras' colour sensors.
+    std::vector<MarkerView> views = {
+        {&color_lens_, corners_in(observation.markers.color), RigidTransform{}}};
+    for (std::size_t k = 0; k < rig_.rgbd.size(); ++k) {
+      MarkerView view{&rgbd_color_lenses_[k], corners_in(observation.markers.rgbd[k]), {}};
+      if (const auto& color_from_depth = observation.poses.color_from_depth[k]) {
+        view.common_from_camera = *color_from_depth * rig_.rgbd[k].color_from_depth.inverse();
+      }
+      views.push_back(view);
+    }
+    const auto camera_from_marker = locate_marker(views, marker_.size_m);
+
+    OccluderReport report;
+    report.name = name_;
+    report.in_color =
+        camera_from_marker[0] && draw(*camera_from_marker[0], color_lens_, masks.color);
+    for (std::size_t k = 0; k < rig_.rgbd.size(); ++k) {
+      const auto& pose = camera_from_marker[k + 1];
+      const bool draws = pose && observation.frame.rgbd[k].available();
+      report.in_rgbd.push_back(draws && draw_in_rgbd(k, *pose, masks));
+    }
+    report.message = message(views, camera_from_marker);
+    return report;
+  }
+
+ private:
+  std::optional<std::array<Eigen::Vector2d, 4>> corners_in(const std::vector<Marker>& seen) const {
+    const auto found = std::find_if(
+        seen.begin(), seen.end(), [this](const Marker& marker) { return marker.id == marker_.id; });
+    if (found == seen.end()) return std::nullopt;
+    return found->corners;
+  }
+
+  bool draw_in_rgbd(std::size_t k, const RigidTransform& color_from_marker, OcclusionMasks& masks) {
+    const RigidTransform depth_from_marker =
+        rig_.rgbd[k].color_from_depth.inverse() * color_from_marker;
+    const bool in_color = draw(color_from_marker, rgbd_color_lenses_[k], masks.rgbd_color[k]);
+    const bool in_depth = draw(depth_from_marker, rgbd_depth_lenses_[k], masks.rgbd_depth[k]);
+    return in_color || in_depth;
+  }
+
+  bool draw(const RigidTransform& camera_from_marker, const Lens& lens, Mask& mask) {
+    vertices_in_camera_.clear();
+    for (const Eigen::Vector3d& vertex : shape_.vertices) {
+      vertices_in_camera_.push_back(camera_from_marker * vertex);
+    }
+    return shape_.triangles.empty()
+               ? fill_convex_hull(vertices_in_camera_, lens, mask)
+               : fill_triangles(vertices_in_camera_, shape_.triangles, lens, mask);
+  }
+
+  /// What is missing. An object that is out of a camera's sight is not: its place is known.
+  std::string message(const std::vector<MarkerView>& views,
+                      const std::vector<std::optional<RigidTransform>>& poses) const {
+    const std::string marker = name_ + ": marker " + std::to_string(marker_.id);
+    if (std::none_of(views.begin(), views.end(), [](const auto& view) { return view.corners; })) {
+      return marker + " not visible in any camera";
+    }
+    std::string cameras;
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      if (poses[i]) continue;
+      cameras += (cameras.empty() ? "" : ", ") +
+                 (i == 0 ? std::string("color") : color_sensor_name(rig_.rgbd[i - 1]));
+    }
+    if (cameras.empty()) return "";
+    return marker + " not visible in " + cameras +
+           ", and the way there from a camera that sees it is not known";
+  }
+
+  std::string name_;
+  Rig rig_;
+  MarkerSpec marker_;
+  TriangleMesh shape_;  ///< in the marker's frame; without triangles: its convex hull
+  Lens color_lens_;
+  std::vector<Lens> rgbd_color_lenses_;
+  std::vector<Lens> rgbd_depth_lenses_;
+  std::vector<Eigen::Vector3d> vertices_in_camera_;
+};
+
+const bool registered =
+    Registry<OccluderDetector>::add("marker", [](const OccluderSpec& spec, const Rig& rig) {
+      return std::make_unique<MarkerOccluder>(spec, rig);
+    });
+
+}  // namespace
+}  // namespace diminish

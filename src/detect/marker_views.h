@@ -1,0 +1,27 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "diminish/intrinsics.h"
+#include "diminish/rigid_transform.h"
+
+namespace diminish {
+
+/// One camera, and a marker's corners in its picture (as in Marker) if it sees the marker.
+struct MarkerView {
+  const Lens* lens = nullptr;
+  std::optional<std::array<Eigen::Vector2d, 4>> corners;
+  /// To a frame that is common to the views; absent where the camera's pose is not known.
+  std::optional<RigidTransform> common_from_camera;
+};
+
+/// camera_from_marker of each view: from the view's own corners where there are any, of two poses
+/// that fit them about equally well the one that agrees with the other views; else from the view in
+/// which the marker is largest. Absent where neither is possible.
+std::vector<std::optional<RigidTransform>> locate_marker(const std::vector<MarkerView>& views,
+                                                         double size_m);
+
+}  // namespace diminish

@@ -1,0 +1,70 @@
+#include "detect/occlusion_masks.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "detect/disc_dilation.h"
+
+namespace diminish {
+namespace {
+
+void clear(const Intrinsics& intrinsics, Mask& mask) {
+  mask.resize(intrinsics.width, intrinsics.height, 0);
+}
+
+/// The depth sensor's margin that covers the same angle as `margin_px` does in the colour sensor.
+int depth_margin_px(const RgbdCamera& camera, int margin_px) {
+  return static_cast<int>(std::ceil(margin_px * camera.depth.fx / camera.color.fx));
+}
+
+}  // namespace
+
+OccluderStage::OccluderStage(const Rig& rig, const Scene& scene) : rig_(rig) {
+  using Detectors = Registry<OccluderDetector>;
+  for (const OccluderSpec& spec : scene.occluders) {
+    if (!Detectors::contains(spec.detector)) {
+      spec.config.at("detector")
+          .fail("expected one of " + Detectors::known() + ", got '" + spec.detector + "'");
+    }
+    detectors_.push_back(Detectors::get(spec.detector)(spec, rig));
+  }
+  scratch_.rgbd_color.resize(rig.rgbd.size());
+  scratch_.rgbd_depth.resize(rig.rgbd.size());
+}
+
+bool OccluderStage::needs_markers() const {
+  return std::any_of(detectors_.begin(), detectors_.end(),
+                     [](const auto& detector) { return detector->needs_markers(); });
+}
+
+void OccluderStage::detect(const Observation& observation, OcclusionMasks& masks,
+                           std::vector<OccluderReport>& reports) {
+  clear(masks);
+  reports.clear();
+  for (const auto& detector : detectors_) reports.push_back(detector->detect(observation, masks));
+  grow_by_margins(observation.options, masks);
+}
+
+void OccluderStage::clear(OcclusionMasks& masks) const {
+  diminish::clear(rig_.color, masks.color);
+  masks.rgbd_color.resize(rig_.rgbd.size());
+  masks.rgbd_depth.resize(rig_.rgbd.size());
+  for (std::size_t k = 0; k < rig_.rgbd.size(); ++k) {
+    diminish::clear(rig_.rgbd[k].color, masks.rgbd_color[k]);
+    diminish::clear(rig_.rgbd[k].depth, masks.rgbd_depth[k]);
+  }
+}
+
+void OccluderStage::grow_by_margins(const Options& options, OcclusionMasks& masks) {
+  const auto grow_by = [](int margin_px, Mask& mask, Mask& scratch) {
+    if (margin_px > 0) dilate_by_disc(mask, margin_px, scratch);
+  };
+  grow_by(options.mask_margin_px, masks.color, scratch_.color);
+  for (std::size_t k = 0; k < rig_.rgbd.size(); ++k) {
+    const int margin_px = options.rgbd_mask_margin_px;
+    grow_by(margin_px, masks.rgbd_color[k], scratch_.rgbd_color[k]);
+    grow_by(depth_margin_px(rig_.rgbd[k], margin_px), masks.rgbd_depth[k], scratch_.rgbd_depth[k]);
+  }
+}
+
+}  // namespace diminish
