@@ -1,0 +1,24 @@
+#include <cstdint>
+#include <string>
+
+#include "diminish/error.h"
+#include "diminish/rig.h"
+#include "diminish/scene.h"
+
+/// Any bytes are a rig.yaml and a scene.yaml, or an Error.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace diminish;
+  const std::string yaml(reinterpret_cast<const char*>(data), size);
+  try {
+    const Config config = Config::parse(yaml, "fuzz.yaml");
+    try {
+      read_rig(config);
+    } catch (const Error&) {
+    }
+    for (const OccluderSpec& occluder : read_scene(config).occluders) {
+      for (const std::string& key : occluder.config.keys()) occluder.config.at(key).path();
+    }
+  } catch (const Error&) {
+  }
+  return 0;
+}
