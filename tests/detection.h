@@ -1,0 +1,59 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "diminish/frame_source.h"
+#include "diminish/occluder_detector.h"
+
+namespace diminish {
+
+/// Everything that a detector looks at, to be filled by a test, and what it finds.
+struct Detection {
+  explicit Detection(const Rig& a_rig) : rig(a_rig) {
+    const std::size_t count = rig.rgbd.size();
+    frame.color.resize(rig.color.width, rig.color.height, Bgr{});
+    markers.rgbd.resize(count);
+    poses.depth_from_world.resize(count);
+    poses.color_from_depth.resize(count);
+    masks.color.resize(rig.color.width, rig.color.height, 0);
+    for (const RgbdCamera& camera : rig.rgbd) {
+      RgbdFrame& rgbd = frame.rgbd.emplace_back();
+      rgbd.color.resize(camera.color.width, camera.color.height, Bgr{});
+      rgbd.depth.resize(camera.depth.width, camera.depth.height, 0);
+      masks.rgbd_color.emplace_back(camera.color.width, camera.color.height);
+      masks.rgbd_depth.emplace_back(camera.depth.width, camera.depth.height);
+    }
+  }
+
+  Observation observation() const { return {frame, markers, poses, options}; }
+
+  /// Clears the masks and fills them.
+  OccluderReport detect(OccluderDetector& detector) {
+    masks.color.fill(0);
+    for (Mask& mask : masks.rgbd_color) mask.fill(0);
+    for (Mask& mask : masks.rgbd_depth) mask.fill(0);
+    return detector.detect(observation(), masks);
+  }
+
+  Rig rig;
+  FrameSet frame;
+  Markers markers;
+  Poses poses;
+  Options options;
+  OcclusionMasks masks;
+};
+
+/// A detector from its part of a scene.yaml.
+inline std::unique_ptr<OccluderDetector> make_detector(
+    const std::string& yaml, const Rig& rig, const std::filesystem::path& file = "s.yaml") {
+  const Config config = Config::parse(yaml, file);
+  const OccluderSpec spec{config.at("name").text(), config.at("detector").text(), config};
+  return Registry<OccluderDetector>::get(spec.detector)(spec, rig);
+}
+
+inline bool any_set(const Mask& mask) {
+  return !bounding_box(mask).empty();
+}
+
+}  // namespace diminish
