@@ -64,10 +64,10 @@ int RunCommand::execute() const {
   run(*source, input.rig, input.scene, options, writer, runner);
   writer.finish(stop_requested);
 
-  fmt::print("{}\n", writer.summary_text());
+  fmt::print("{}\n", writer.statistics().table());
   fmt::print("Written to {}\n", out.string());
   if (stop_requested) return interrupted;
-  return writer.faulty_frames() > 0 ? some_frames_faulty : 0;
+  return writer.statistics().faulty() > 0 ? some_frames_faulty : 0;
 }
 
 }  // namespace
@@ -81,8 +81,10 @@ void add_run(CLI::App& program, int& exit_code) {
   sub->add_option("--out", command->out, "Folder for the results; made if it is not there")
       ->required();
   sub->add_flag("--force", command->force, "Replace the results that --out already holds");
-  sub->add_flag("--preview", command->preview, "Write only pictures with input and result side by side");
-  sub->add_option("--threads", command->threads, "Frames in work at a time; the results are the same")
+  sub->add_flag("--preview", command->preview,
+                "Write only pictures with input and result side by side");
+  sub->add_option("--threads", command->threads,
+                  "Frames in work at a time; the results are the same")
       ->capture_default_str()
       ->check(CLI::Range(1, 1024))
       ->type_name("N");

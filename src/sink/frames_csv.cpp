@@ -1,0 +1,105 @@
+#include "sink/frames_csv.h"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <vector>
+
+#include "diminish/error.h"
+
+namespace diminish {
+namespace {
+
+std::string in_quotes(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"') result += '"';
+    result += c;
+  }
+  return result + '"';
+}
+
+std::string joined(const std::vector<std::string>& texts) {
+  std::string result;
+  for (const std::string& text : texts) result += (result.empty() ? "" : "; ") + text;
+  return in_quotes(result);
+}
+
+std::string pose_columns(const std::string& name) {
+  std::string columns;
+  for (const char* part : {"tx", "ty", "tz", "qx", "qy", "qz", "qw"}) {
+    columns += fmt::format(",{}_{}", name, part);
+  }
+  return columns;
+}
+
+std::string pose_values(const std::optional<RigidTransform>& pose) {
+  if (!pose) return ",,,,,,,";
+  const Eigen::Quaterniond q(pose->rotation);
+  const Eigen::Vector3d& t = pose->translation;
+  return fmt::format(",{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}", t.x(), t.y(), t.z(),
+                     q.x(), q.y(), q.z(), q.w());
+}
+
+std::string marker_ids(const std::vector<Marker>& markers) {
+  std::string ids;
+  for (const Marker& marker : markers) ids += (ids.empty() ? "" : " ") + std::to_string(marker.id);
+  return ids;
+}
+
+/// "calendar: color rgbd0" for each occluder, in quotes.
+std::string found_occluders(const std::vector<OccluderReport>& occluders) {
+  std::vector<std::string> texts;
+  for (const OccluderReport& occluder : occluders) {
+    std::string text = occluder.name + ":";
+    if (occluder.in_color) text += " color";
+    for (std::size_t k = 0; k < occluder.in_rgbd.size(); ++k) {
+      if (occluder.in_rgbd[k]) text += fmt::format(" {}", k);
+    }
+    texts.push_back(text);
+  }
+  return joined(texts);
+}
+
+}  // namespace
+
+FramesCsv::FramesCsv(const std::filesystem::path& file, const Rig& rig)
+    : file_(file), stream_(file, std::ios::binary), rgbd_count_(rig.rgbd.size()) {
+  std::string header = "name,stamp_s,skipped,color_markers";
+  for (const RgbdCamera& camera : rig.rgbd) header += "," + camera.name + "_markers";
+  header += pose_columns("color_from_world");
+  for (const RgbdCamera& camera : rig.rgbd) {
+    header += pose_columns(camera.name + "_depth_from_world");
+    header += pose_columns("color_from_" + camera.name + "_depth");
+  }
+  header += ",occluders,mask_pixels,valid_pixels,missing_pixels";
+  for (const char* stage : stage_names) header += fmt::format(",{}_ms", stage);
+  header += ",messages,faults\n";
+  stream_ << header << std::flush;
+  if (!stream_) throw Error(file_.string() + ": cannot be written");
+}
+
+void FramesCsv::append(const DiminishedFrame& frame) {
+  const FrameReport& report = frame.report;
+  const bool known = !report.skipped;
+  std::string row =
+      fmt::format("{},{:.6f},{},{}", in_quotes(frame.name), frame.stamp_s, report.skipped ? 1 : 0,
+                  known ? marker_ids(report.markers.color) : "");
+  for (std::size_t k = 0; k < rgbd_count_; ++k) {
+    row += "," + (known ? marker_ids(report.markers.rgbd[k]) : "");
+  }
+  row += pose_values(known ? report.poses.color_from_world : std::nullopt);
+  for (std::size_t k = 0; k < rgbd_count_; ++k) {
+    row += pose_values(known ? report.poses.depth_from_world[k] : std::nullopt);
+    row += pose_values(known ? report.poses.color_from_depth[k] : std::nullopt);
+  }
+  row += fmt::format(",{},{},{},{}", known ? found_occluders(report.occluders) : in_quotes(""),
+                     report.mask_pixels, report.valid_pixels, report.missing_pixels);
+  for (const double ms : report.milliseconds) row += fmt::format(",{:.3f}", ms);
+  row += fmt::format(",{},{}\n", joined(report.messages), joined(report.faults));
+  // One write a row, so that an interrupted run leaves whole rows.
+  stream_ << row << std::flush;
+  if (!stream_) throw Error(file_.string() + ": cannot be written");
+}
+
+}  // namespace diminish

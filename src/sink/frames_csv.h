@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+
+#include "diminish/diminished_frame.h"
+#include "diminish/rig.h"
+
+namespace diminish {
+
+/// frames.csv: a row a frame, complete when written. Columns: docs/command-line.md.
+class FramesCsv {
+ public:
+  FramesCsv(const std::filesystem::path& file, const Rig& rig);
+  void append(const DiminishedFrame& frame);
+
+ private:
+  std::filesystem::path file_;
+  std::ofstream stream_;
+  std::size_t rgbd_count_;
+};
+
+}  // namespace diminish

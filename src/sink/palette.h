@@ -1,0 +1,13 @@
+#pragma once
+
+#include <vector>
+
+#include "diminish/image.h"
+
+namespace diminish {
+
+/// The colours of provenance pictures, by provenance value: grey for the camera's own pixels, a
+/// colour of its own for each RGB-D camera, magenta for inpainted, black for unknown.
+const std::vector<Bgr>& provenance_palette();
+
+}  // namespace diminish

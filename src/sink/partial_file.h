@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace diminish {
+
+/// A file that comes into being whole or not at all: written under a hidden name beside `target`
+/// (with its extension), renamed by `commit`, deleted if that never comes.
+class PartialFile {
+ public:
+  explicit PartialFile(std::filesystem::path target);
+  ~PartialFile();
+  PartialFile(const PartialFile&) = delete;
+  PartialFile& operator=(const PartialFile&) = delete;
+
+  /// Where to write.
+  const std::filesystem::path& path() const { return partial_; }
+  /// Throws Error that names the target if it cannot be made.
+  void commit();
+
+ private:
+  std::filesystem::path target_;
+  std::filesystem::path partial_;
+  bool committed_ = false;
+};
+
+/// Replaces `target` by a text, whole or not at all.
+void write_text_file(const std::filesystem::path& target, const std::string& text);
+
+}  // namespace diminish

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "diminish/frame_sink.h"
+#include "diminish/options.h"
+#include "diminish/rig.h"
+#include "sink/frames_csv.h"
+#include "sink/run_statistics.h"
+#include "sink/video_file.h"
+
+namespace diminish {
+
+struct ResultWriterOptions {
+  /// Only pictures with input and result side by side (and the tables).
+  bool preview_only = false;
+  /// Replace the results that the folder holds.
+  bool force = false;
+};
+
+/// Writes a run's results into a folder: result/, mask/, reconstruction/, provenance/ (or
+/// preview/), frames.csv, summary.json, result.mp4. What is there is complete at any moment.
+class ResultWriter : public FrameSink {
+ public:
+  /// Throws Error if the folder cannot be made, or holds something and `force` is not given. With
+  /// `force` only what this class writes is removed.
+  ResultWriter(std::filesystem::path folder, const Rig& rig, const Options& options,
+               double frames_per_second, const ResultWriterOptions& writer_options);
+
+  void write_images(const FrameSet& frame, const DiminishedFrame& result) override;
+  void append(const FrameSet& frame, const DiminishedFrame& result) override;
+  /// Ends the video and writes the summary.
+  void finish(bool interrupted);
+
+  const RunStatistics& statistics() const { return statistics_; }
+
+ private:
+  void prepare_folder(bool force) const;
+  void write_summary(bool interrupted, const std::string& video_problem) const;
+
+  std::filesystem::path folder_;
+  Options options_;
+  bool preview_only_;
+  std::optional<FramesCsv> csv_;
+  std::optional<VideoFile> video_;
+  RunStatistics statistics_;
+};
+
+}  // namespace diminish

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "diminish/image.h"
+
+namespace diminish {
+
+/// An MP4 of pictures of one size. It has its name only once it is whole.
+class VideoFile {
+ public:
+  VideoFile(std::filesystem::path file, double frames_per_second);
+  ~VideoFile();
+
+  void append(const Image<Bgr>& picture);
+  /// Ends the video. Why there is none, if there is none: empty when all is well.
+  std::string finish();
+
+ private:
+  struct Writer;
+  std::filesystem::path file_;
+  double frames_per_second_;
+  std::unique_ptr<Writer> writer_;
+  std::string problem_;
+};
+
+}  // namespace diminish
