@@ -1,6 +1,7 @@
 #include "detect/blob_segmentation.h"
 
 #include <algorithm>
+#include <limits>
 #include <opencv2/imgproc.hpp>
 
 #include "core/mat.h"
@@ -11,6 +12,29 @@ namespace {
 /// The size of the picture that is divided: enough for blobs of a few pixels, small enough to be
 /// quick and to average the noise.
 constexpr int segment_width = 480;
+
+constexpr int object = 1;
+constexpr int background = 2;
+
+/// On which side of the watershed's line a pixel of the line belongs: the one with the neighbour
+/// of the most similar colour.
+int nearest_side(const cv::Mat& colors, const cv::Mat& labels, int x, int y) {
+  int side = object;
+  int smallest = std::numeric_limits<int>::max();
+  for (int dy = -1; dy <= 1; ++dy) {
+    for (int dx = -1; dx <= 1; ++dx) {
+      const int label = labels.at<int>(y + dy, x + dx);
+      if (label != object && label != background) continue;
+      const cv::Vec3i difference =
+          cv::Vec3i(colors.at<cv::Vec3b>(y, x)) - cv::Vec3i(colors.at<cv::Vec3b>(y + dy, x + dx));
+      const int distance = difference.dot(difference);
+      if (distance >= smallest) continue;
+      smallest = distance;
+      side = label;
+    }
+  }
+  return side;
+}
 
 cv::Mat square(int size) {
   return cv::getStructuringElement(cv::MORPH_RECT, {size, size});
@@ -103,9 +127,12 @@ void refine_region(const Image<Bgr>& image, const cv::Mat& region, int scale, Ma
       colors.at<cv::Vec3b>(y, x) = {color.b, color.g, color.r};
       const int cell_x = x / scale;
       const int cell_y = y / scale;
-      labels.at<int>(y, x) = inside.at<std::uint8_t>(cell_y, cell_x)        ? 1
-                             : not_outside.at<std::uint8_t>(cell_y, cell_x) ? 0
-                                                                            : 2;
+      int& label = labels.at<int>(y, x);
+      if (inside.at<std::uint8_t>(cell_y, cell_x)) {
+        label = object;
+      } else {
+        label = not_outside.at<std::uint8_t>(cell_y, cell_x) ? 0 : background;
+      }
     }
   }
   cv::GaussianBlur(colors, colors, {3, 3}, 0);
@@ -114,8 +141,9 @@ void refine_region(const Image<Bgr>& image, const cv::Mat& region, int scale, Ma
   const Rect visible = intersect(grow(part, -1), image.bounds());
   for (int y = visible.y; y < visible.bottom(); ++y) {
     for (int x = visible.x; x < visible.right(); ++x) {
-      // The line between inside and outside, -1, is given to the object.
-      if (labels.at<int>(y - part.y, x - part.x) != 2) mask(x, y) = 255;
+      int label = labels.at<int>(y - part.y, x - part.x);
+      if (label == -1) label = nearest_side(colors, labels, x - part.x, y - part.y);
+      if (label == object) mask(x, y) = 255;
     }
   }
 }

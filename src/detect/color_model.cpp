@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <fstream>
@@ -31,12 +32,14 @@ struct Hsv {
 };
 
 Hsv to_hsv(const Eigen::Vector3d& bgr) {
-  const Eigen::Vector3d color = bgr / 255;
-  const double chroma = color.maxCoeff() - color.minCoeff();
-  const double value = color.maxCoeff();
-  const double hue =
-      std::atan2(std::sqrt(3.0) * (color[1] - color[0]), 2 * color[2] - color[1] - color[0]);
-  return {std::polar(chroma, hue), value > 0 ? chroma / value : 0, value};
+  const auto [blue, green, red] = std::array{bgr[0] / 255, bgr[1] / 255, bgr[2] / 255};
+  const double value = std::max({blue, green, red});
+  const double chroma = value - std::min({blue, green, red});
+  if (chroma <= 0) return {0, 0, value};
+  const double sixths = value == red     ? (green - blue) / chroma
+                        : value == green ? (blue - red) / chroma + 2
+                                         : (red - green) / chroma + 4;
+  return {std::polar(chroma, sixths * std::numbers::pi / 3), chroma / value, value};
 }
 
 /// Mean and standard deviation of what is added.

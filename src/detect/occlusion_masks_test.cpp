@@ -1,0 +1,97 @@
+#include "detect/occlusion_masks.h"
+
+#include <gtest/gtest.h>
+
+#include "detection.h"
+#include "expect_error.h"
+#include "mask_overlap.h"
+
+namespace diminish {
+namespace {
+
+Rig small_rig() {
+  Rig rig;
+  rig.color = {64, 48, 60, 60, 32, 24, {}};
+  RgbdCamera camera;
+  camera.name = "rgbd0";
+  camera.color = {80, 60, 90, 90, 40, 30, {}};
+  camera.depth = {32, 24, 30, 30, 16, 12, {}};
+  rig.rgbd = {camera};
+  return rig;
+}
+
+Scene scene_with(const std::string& occluders) {
+  return read_scene(Config::parse("occluders: " + occluders, "scene.yaml"));
+}
+
+/// A mask of one pixel for an occluder in the colour image and in the RGB-D camera's.
+GivenMask pixel(const std::string& occluder, const Rig& rig, int x, int y) {
+  GivenMask mask{occluder,
+                 Mask(rig.color.width, rig.color.height),
+                 {Mask(rig.rgbd[0].color.width, rig.rgbd[0].color.height)}};
+  mask.color(x, y) = 255;
+  mask.rgbd[0](x, y) = 255;
+  return mask;
+}
+
+TEST(OccluderStage, UnitesTheOccludersMasksAndGrowsThem) {
+  Detection detection(small_rig());
+  detection.frame.masks = {pixel("a", detection.rig, 10, 10), pixel("b", detection.rig, 30, 20)};
+  detection.options.mask_margin_px = 2;
+  detection.options.rgbd_mask_margin_px = 3;
+  OccluderStage stage(detection.rig, scene_with("[{name: a, detector: mask, color: x}, "
+                                                "{name: b, detector: mask, color: y}]"));
+  EXPECT_FALSE(stage.needs_markers());
+  OcclusionMasks masks;
+  std::vector<OccluderReport> reports;
+  for (int frame = 0; frame < 2; ++frame) {  // the second one must not see the first one's masks
+    stage.detect(detection.observation(), masks, reports);
+    ASSERT_EQ(reports.size(), 2u);
+    EXPECT_EQ(reports[1].name, "b");
+    EXPECT_TRUE(reports[1].in_color && reports[1].in_rgbd[0]);
+    EXPECT_EQ(count_nonzero(masks.color, masks.color.bounds()), 2u * 13);
+    EXPECT_EQ(masks.color(12, 10), 255);
+    EXPECT_EQ(masks.color(28, 20), 255);
+    EXPECT_EQ(count_nonzero(masks.rgbd_color[0], masks.rgbd_color[0].bounds()), 2u * 29);
+    EXPECT_FALSE(any_set(masks.rgbd_depth[0]));
+  }
+  detection.options.mask_margin_px = 0;
+  stage.detect(detection.observation(), masks, reports);
+  EXPECT_EQ(count_nonzero(masks.color, masks.color.bounds()), 2u);
+}
+
+TEST(OccluderStage, TheDepthMasksMarginCoversTheSameAngle) {
+  Detection detection(small_rig());
+  Image<std::uint16_t>& depth = detection.frame.rgbd[0].depth;
+  depth(15, 10) = 1000;
+  const std::string box =
+      "[{name: zone, detector: box, frame: rgbd0, min: [-5, -5, 0.5], max: [5, 5, 2]}]";
+  OccluderStage stage(detection.rig, scene_with(box));
+  OcclusionMasks masks;
+  std::vector<OccluderReport> reports;
+  for (const auto& [margin_px, pixels] : {std::pair{0, 1}, {1, 5}, {3, 5}, {4, 13}, {6, 13}}) {
+    detection.options.rgbd_mask_margin_px = margin_px;
+    stage.detect(detection.observation(), masks, reports);
+    EXPECT_EQ(count_nonzero(masks.rgbd_depth[0], masks.rgbd_depth[0].bounds()),
+              static_cast<std::size_t>(pixels));
+  }
+}
+
+TEST(OccluderStage, AnUnknownDetectorIsNamed) {
+  EXPECT_THAT(
+      error_of([] { OccluderStage(small_rig(), scene_with("[{name: a, detector: magic}]")); }),
+      testing::MatchesRegex("scene.yaml:1: .*detector: expected one of .*marker.*, got 'magic'"));
+}
+
+TEST(OccluderStage, AFrameWithoutAGivenMaskIsReported) {
+  Detection detection(small_rig());
+  OccluderStage stage(detection.rig, scene_with("[{name: a, detector: mask, color: x}]"));
+  OcclusionMasks masks;
+  std::vector<OccluderReport> reports;
+  stage.detect(detection.observation(), masks, reports);
+  EXPECT_EQ(reports.at(0).message, "a: no mask for the colour image of this frame");
+  EXPECT_FALSE(any_set(masks.color));
+}
+
+}  // namespace
+}  // namespace diminish
