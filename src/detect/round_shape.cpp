@@ -12,15 +12,26 @@ namespace {
 
 using Points = std::vector<cv::Point>;
 
-/// 1 on the ellipse, less inside.
-double relative_radius(const RoundShape& shape, double x, double y) {
-  const double dx = x - shape.center.x;
-  const double dy = y - shape.center.y;
-  const double cos = std::cos(shape.angle_rad);
-  const double sin = std::sin(shape.angle_rad);
-  return std::hypot((cos * dx + sin * dy) / shape.half_axes.width,
-                    (cos * dy - sin * dx) / shape.half_axes.height);
-}
+/// How far out a point is: 1 on the ellipse, less inside.
+class RelativeRadius {
+ public:
+  explicit RelativeRadius(const RoundShape& shape)
+      : center_(shape.center),
+        first_axis_(cv::Point2d(std::cos(shape.angle_rad), std::sin(shape.angle_rad)) /
+                    shape.half_axes.width),
+        second_axis_(cv::Point2d(-std::sin(shape.angle_rad), std::cos(shape.angle_rad)) /
+                     shape.half_axes.height) {}
+
+  double operator()(double x, double y) const {
+    const cv::Point2d from_center = cv::Point2d(x, y) - center_;
+    const double first = first_axis_.dot(from_center);
+    const double second = second_axis_.dot(from_center);
+    return std::sqrt(first * first + second * second);
+  }
+
+ private:
+  cv::Point2d center_, first_axis_, second_axis_;
+};
 
 RoundShape fit_ellipse(const Points& points) {
   const cv::RotatedRect fit = cv::fitEllipseDirect(points);
@@ -44,10 +55,11 @@ RoundShape fit_circle(const Points& points) {
 
 /// The points without those that are much further from the shape than half of them are.
 Points without_outliers(const Points& points, const RoundShape& shape) {
+  const RelativeRadius relative_radius(shape);
   const double radius = shape.diameter() / 2;
   std::vector<double> distances;
   for (const cv::Point& point : points) {
-    distances.push_back(std::abs(relative_radius(shape, point.x, point.y) - 1) * radius);
+    distances.push_back(std::abs(relative_radius(point.x, point.y) - 1) * radius);
   }
   std::vector<double> sorted = distances;
   const auto middle = sorted.begin() + sorted.size() / 2;
@@ -76,6 +88,7 @@ bool usable(const RoundShape& shape) {
 }  // namespace
 
 void RoundShape::draw(cv::Mat& mask) const {
+  const RelativeRadius relative_radius(*this);
   const double reach = std::max(half_axes.width, half_axes.height);
   const auto first = [](double from) { return static_cast<int>(std::ceil(std::max(from, 0.0))); };
   const auto last = [](double to, int size) {
@@ -83,7 +96,7 @@ void RoundShape::draw(cv::Mat& mask) const {
   };
   for (int y = first(center.y - reach); y <= last(center.y + reach, mask.rows); ++y) {
     for (int x = first(center.x - reach); x <= last(center.x + reach, mask.cols); ++x) {
-      if (relative_radius(*this, x, y) <= 1) mask.at<std::uint8_t>(y, x) = 255;
+      if (relative_radius(x, y) <= 1) mask.at<std::uint8_t>(y, x) = 255;
     }
   }
 }
