@@ -1,0 +1,231 @@
+#include "diminish/pipeline.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "analytic_scene.h"
+#include "diminish/error.h"
+#include "diminish/frame_source.h"
+#include "mask_overlap.h"
+#include "truth_poses.h"
+
+namespace diminish {
+namespace {
+
+const std::filesystem::path recordings = DIMINISH_RECORDINGS_DIR;
+
+/// A bundled recording, frame after frame through the whole pipeline.
+class BundledRecording {
+ public:
+  explicit BundledRecording(const std::string& name, const Options& options = {})
+      : folder_(recordings / name),
+        recording_(load_recording(folder_)),
+        truth_(folder_),
+        source_(open_recording(recording_, options)),
+        pipeline_(recording_.rig, recording_.scene, options) {}
+
+  bool next() {
+    if (!source_->next(frame)) return false;
+    pipeline_.process(frame, result);
+    return true;
+  }
+  Poses true_poses() const { return truth_.poses(frame.index, recording_.rig); }
+  Mask true_mask() const { return read_mask_image(folder_ / "truth/mask" / (frame.name + ".png")); }
+
+  /// Peak signal-to-noise ratio inside the true mask, dB.
+  double psnr_db() const {
+    const Image<Bgr> truth = read_color_image(folder_ / "truth/background" / (frame.name + ".jpg"));
+    const Mask mask = true_mask();
+    double squares = 0;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < mask.size(); ++i) {
+      if (mask.data()[i] == 0) continue;
+      const Bgr& a = result.picture.data()[i];
+      const Bgr& b = truth.data()[i];
+      squares += std::pow(a.b - b.b, 2) + std::pow(a.g - b.g, 2) + std::pow(a.r - b.r, 2);
+      count += 3;
+    }
+    return 10 * std::log10(255 * 255 * static_cast<double>(count) / squares);
+  }
+
+  FrameSet frame;
+  DiminishedFrame result;
+
+ private:
+  std::filesystem::path folder_;
+  Recording recording_;
+  TruthPoses truth_;
+  std::unique_ptr<FrameSource> source_;
+  Pipeline pipeline_;
+};
+
+struct Expectation {
+  const char* recording;
+  double mask_iou, psnr_db;
+};
+void PrintTo(const Expectation& expectation, std::ostream* stream) {
+  *stream << expectation.recording;
+}
+
+class PipelineOnRecordings : public ::testing::TestWithParam<Expectation> {};
+
+INSTANTIATE_TEST_SUITE_P(All, PipelineOnRecordings,
+                         ::testing::Values(Expectation{"calendar", 0.97, 17.5},
+                                           Expectation{"ball", 0.93, 21.5},
+                                           Expectation{"workbench", 0.97, 16.3}),
+                         [](const auto& test) { return std::string(test.param.recording); });
+
+// From the markers and colours in the pictures, without margins, against the rendered truth.
+TEST_P(PipelineOnRecordings, FindsTheObject) {
+  Options options;
+  options.mask_margin_px = 0;
+  BundledRecording recording(GetParam().recording, options);
+  while (recording.next()) {
+    EXPECT_GE(intersection_over_union(recording.result.mask, recording.true_mask()),
+              GetParam().mask_iou)
+        << recording.frame.name;
+  }
+}
+
+TEST_P(PipelineOnRecordings, RemovesItAndTouchesNothingElse) {
+  BundledRecording recording(GetParam().recording);
+  double psnr_sum_db = 0;
+  int frames = 0;
+  while (recording.next()) {
+    const DiminishedFrame& result = recording.result;
+    for (std::size_t i = 0; i < result.mask.size(); ++i) {
+      if (result.mask.data()[i] != 0) continue;
+      ASSERT_EQ(result.picture.data()[i], recording.frame.color.data()[i]);
+    }
+    EXPECT_EQ(result.report.valid_pixels + result.report.missing_pixels, result.report.mask_pixels);
+    EXPECT_TRUE(result.report.messages.empty()) << result.report.messages.front();
+    psnr_sum_db += recording.psnr_db();
+    ++frames;
+  }
+  ASSERT_GT(frames, 2);
+  RecordProperty("psnr_db", std::to_string(psnr_sum_db / frames));
+  EXPECT_GE(psnr_sum_db / frames, GetParam().psnr_db);
+}
+
+// One marker of 20 cm at 1.5 m, 160 pixels wide in the colour camera and 130 in the RGB-D camera.
+TEST_P(PipelineOnRecordings, KnowsWhereTheCamerasAre) {
+  BundledRecording recording(GetParam().recording);
+  double worst_mm = 0;
+  double worst_deg = 0;
+  while (recording.next()) {
+    const Poses truth = recording.true_poses();
+    const Poses& poses = recording.result.report.poses;
+    const auto compare = [&](const std::optional<RigidTransform>& pose,
+                             const std::optional<RigidTransform>& exact) {
+      ASSERT_TRUE(pose && exact);
+      worst_mm = std::max(
+          worst_mm, 1000 * (pose->inverse().translation - exact->inverse().translation).norm());
+      worst_deg = std::max(worst_deg, rotation_difference_deg(pose->rotation, exact->rotation));
+    };
+    compare(poses.color_from_world, truth.color_from_world);
+    for (std::size_t k = 0; k < truth.depth_from_world.size(); ++k) {
+      compare(poses.depth_from_world[k], truth.depth_from_world[k]);
+    }
+  }
+  RecordProperty("worst_mm", std::to_string(worst_mm));
+  RecordProperty("worst_deg", std::to_string(worst_deg));
+  EXPECT_LT(worst_mm, 12);
+  EXPECT_LT(worst_deg, 0.5);
+}
+
+/// A scene whose object is given by a mask, without markers in it.
+class PipelineOnAnalyticScene : public ::testing::Test {
+ protected:
+  PipelineOnAnalyticScene() : scene_frame({}, {{-0.45, 0.3, 0.9}}) {
+    const RigidTransform& pose = *scene_frame.poses.color_from_depth[0];
+    std::string yaml = "{source: fixed, color_from_rgbd: {rgbd0: {rotation: [";
+    for (int i = 0; i < 9; ++i) {
+      yaml += (i > 0 ? ", " : "") + std::to_string(pose.rotation(i / 3, i % 3));
+    }
+    yaml += "], translation: [";
+    for (int i = 0; i < 3; ++i) yaml += (i > 0 ? ", " : "") + std::to_string(pose.translation[i]);
+    yaml += "]}}}";
+    rig = scene_frame.rig;
+    rig.pose_source = "fixed";
+    rig.pose = Config::parse(yaml);
+    scene.occluders = {
+        {"patch", "mask", Config::parse("{name: patch, detector: mask, color: masks/color}")}};
+    frame = scene_frame.frame;
+    GivenMask mask{"patch", Mask(rig.color.width, rig.color.height, 0), std::vector<Mask>(1)};
+    mask.color.fill({120, 180, 60, 30}, 255);
+    frame.masks.push_back(mask);
+    // What the object looks like must not matter.
+    for (int y = 180; y < 210; ++y) {
+      for (int x = 120; x < 180; ++x) frame.color(x, y) = {255, 0, 255};
+    }
+  }
+
+  testing::AnalyticFrame scene_frame;
+  Rig rig;
+  Scene scene;
+  FrameSet frame;
+  DiminishedFrame result;
+};
+
+TEST_F(PipelineOnAnalyticScene, ShowsTheWallBehindAPatch) {
+  Pipeline(rig, scene, {}).process(frame, result);
+  ASSERT_EQ(result.report.missing_pixels, 0U);
+  double worst = 0;
+  for (int y = 175; y < 215; ++y) {
+    for (int x = 115; x < 185; ++x) {
+      const Bgr& truth = scene_frame.frame.color(x, y);
+      const Bgr& shown = result.picture(x, y);
+      worst = std::max({worst, std::abs(double(truth.b) - shown.b),
+                        std::abs(double(truth.g) - shown.g), std::abs(double(truth.r) - shown.r)});
+    }
+  }
+  EXPECT_LE(worst, 6) << "levels";
+}
+
+TEST_F(PipelineOnAnalyticScene, GoesOnWithoutTheRgbdCameraAndSaysSo) {
+  frame.rgbd[0].missing = "rgbd0: no depth image within 0.017 s";
+  Pipeline(rig, scene, {}).process(frame, result);
+  EXPECT_EQ(result.report.valid_pixels, 0U);
+  EXPECT_EQ(result.report.missing_pixels, result.report.mask_pixels);
+  EXPECT_THAT(result.report.messages, ::testing::Contains(frame.rgbd[0].missing));
+}
+
+TEST_F(PipelineOnAnalyticScene, NothingOfAFrameInfluencesTheNext) {
+  Pipeline used(rig, scene, {});
+  FrameSet other = frame;
+  other.masks[0].color.fill({0, 0, 320, 256}, 255);
+  other.rgbd[0].missing = "unplugged";
+  used.process(other, result);
+  used.process(frame, result);
+  DiminishedFrame fresh;
+  Pipeline(rig, scene, {}).process(frame, fresh);
+  EXPECT_EQ(result.picture, fresh.picture);
+  EXPECT_EQ(result.provenance, fresh.provenance);
+  EXPECT_EQ(result.reconstruction.color, fresh.reconstruction.color);
+  EXPECT_EQ(result.report.messages, fresh.report.messages);
+}
+
+TEST_F(PipelineOnAnalyticScene, AFrameWithoutColorImageIsSkipped) {
+  frame.color = {};
+  frame.faults = {"color/000000.jpg: cannot be decoded"};
+  Pipeline(rig, scene, {}).process(frame, result);
+  EXPECT_TRUE(result.report.skipped);
+  EXPECT_EQ(result.report.faults, frame.faults);
+}
+
+TEST_F(PipelineOnAnalyticScene, ImagesOfOtherSizesAndWrongOptionsAreErrors) {
+  Pipeline pipeline(rig, scene, {});
+  frame.rgbd[0].depth.resize(10, 10);
+  EXPECT_THROW(pipeline.process(frame, result), Error);
+  frame = scene_frame.frame;
+  frame.rgbd.clear();
+  EXPECT_THROW(pipeline.process(frame, result), Error);
+  Options options;
+  options.inpaint = "magic";
+  EXPECT_THROW(pipeline.set_options(options), Error);
+}
+
+}  // namespace
+}  // namespace diminish

@@ -1,0 +1,90 @@
+#include "diminish/runner.h"
+
+#include <gtest/gtest.h>
+
+#include <mutex>
+#include <numeric>
+#include <set>
+
+#include "diminish/error.h"
+
+namespace diminish {
+namespace {
+
+const std::filesystem::path recordings = DIMINISH_RECORDINGS_DIR;
+
+/// Keeps what it is given.
+class MemorySink : public FrameSink {
+ public:
+  void write_images(const FrameSet&, const DiminishedFrame& result) override {
+    const std::lock_guard lock(mutex_);
+    written.insert(result.name);
+  }
+  void append(const FrameSet& frame, const DiminishedFrame& result) override {
+    EXPECT_TRUE(written.count(result.name)) << "append before write_images";
+    EXPECT_EQ(frame.name, result.name);
+    names.push_back(result.name);
+    pictures.push_back(result.picture);
+    provenances.push_back(result.provenance);
+    reconstructions.push_back(result.reconstruction.color);
+  }
+
+  std::set<std::string> written;
+  std::vector<std::string> names;
+  std::vector<Image<Bgr>> pictures;
+  std::vector<Image<std::uint8_t>> provenances;
+  std::vector<Image<Bgra>> reconstructions;
+
+ private:
+  std::mutex mutex_;
+};
+
+class Runner : public testing::Test {
+ protected:
+  std::size_t run_with(FrameSink& sink, const RunnerOptions& options) {
+    const auto source = open_recording(recording, {});
+    return run(*source, recording.rig, recording.scene, {}, sink, options);
+  }
+
+  Recording recording = load_recording(recordings / "workbench");
+};
+
+TEST_F(Runner, TheSameBytesWhateverTheNumberOfThreads) {
+  MemorySink one;
+  MemorySink two;
+  EXPECT_EQ(run_with(one, {.threads = 1}), run_with(two, {.threads = 2}));
+  ASSERT_GE(one.names.size(), 3U);
+  EXPECT_EQ(one.names, two.names);
+  EXPECT_TRUE(std::is_sorted(two.names.begin(), two.names.end()));
+  for (std::size_t i = 0; i < one.names.size(); ++i) {
+    EXPECT_EQ(one.pictures[i], two.pictures[i]);
+    EXPECT_EQ(one.provenances[i], two.provenances[i]);
+    EXPECT_EQ(one.reconstructions[i], two.reconstructions[i]);
+  }
+}
+
+TEST_F(Runner, StopsAfterTheFramesInWorkAndReportsProgress) {
+  std::atomic<bool> stop = false;
+  MemorySink sink;
+  std::vector<std::size_t> progress;
+  RunnerOptions options{.threads = 1, .stop = &stop};
+  options.progress = [&](std::size_t done) {
+    progress.push_back(done);
+    stop = true;
+  };
+  EXPECT_EQ(run_with(sink, options), 1U);
+  EXPECT_EQ(progress, std::vector<std::size_t>{1});
+}
+
+TEST_F(Runner, AnErrorInTheSinkReachesTheCaller) {
+  class FullDisk : public FrameSink {
+    void write_images(const FrameSet&, const DiminishedFrame&) override {
+      throw Error("result/000000.png: cannot be written");
+    }
+    void append(const FrameSet&, const DiminishedFrame&) override {}
+  } sink;
+  EXPECT_THROW(run_with(sink, {.threads = 2}), Error);
+}
+
+}  // namespace
+}  // namespace diminish
