@@ -26,6 +26,7 @@ int main(int argc, char** argv) {
   int exit_code = 0;
   try {
     diminish::add_run(program, exit_code);
+    diminish::add_score(program, exit_code);
     diminish::add_train_color(program, exit_code);
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

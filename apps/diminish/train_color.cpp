@@ -40,7 +40,7 @@ void train_all(const std::filesystem::path& folder) {
   }
   if (!any) {
     throw Error((folder / "scene.yaml").string() +
-                          ": expected an occluder with detector color_blob");
+                ": expected an occluder with detector color_blob");
   }
 }
 

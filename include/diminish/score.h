@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace diminish {
+
+/// How like the truth a set of pixels is.
+struct Quality {
+  double psnr_db = 0;  ///< over the three channels; identical pictures count as 99
+  /// Structural similarity (Wang et al. 2004: Gaussian window of 11x11, sigma 1.5), per channel,
+  /// averaged.
+  double ssim = 0;
+};
+
+/// How far a pose is from the truth.
+struct PoseError {
+  double position_mm = 0;
+  double rotation_deg = 0;
+};
+
+/// One frame against the truth. What cannot be known (no such pixels, no truth) is absent.
+struct FrameScore {
+  std::string name;
+  std::optional<Quality> inside;   ///< inside the true mask, grown by 3 pixels
+  std::optional<Quality> valid;    ///< of these, pixels that an RGB-D camera saw
+  std::optional<Quality> missing;  ///< of these, pixels that none saw
+  std::optional<double> coverage;  ///< the share of the run's mask that an RGB-D camera saw
+  /// Intersection over union of the run's mask and the true mask grown by the run's margin.
+  std::optional<double> mask_iou;
+  /// The share of the true mask that the run's mask covers.
+  std::optional<double> mask_recall;
+  /// Pixels outside the run's mask that differ from the input: must be 0.
+  std::optional<std::size_t> changed_outside;
+  /// By pose: "color_from_world", "rgbd0_depth_from_world", "color_from_rgbd0_depth".
+  std::map<std::string, PoseError> poses;
+};
+
+/// A run against its recording's truth.
+struct Score {
+  std::vector<FrameScore> frames;
+  /// The mean over the frames that have the figure; `changed_outside` is the sum.
+  FrameScore mean;
+  /// From the squared error over all frames' pixels inside the true mask.
+  std::optional<double> psnr_pooled_db;
+  /// The mean absolute change of (result - truth) between consecutive frames inside both true
+  /// masks, grey levels.
+  std::optional<double> flicker;
+  /// Frames that the recording has and the run did not write.
+  std::vector<std::string> not_written;
+};
+
+/// Compares the results in `run` (of `diminish run`) with `recording`/truth. Throws Error if either
+/// folder lacks what is needed.
+Score score_run(const std::filesystem::path& recording, const std::filesystem::path& run);
+
+/// For a terminal.
+std::string score_table(const Score& score);
+std::string score_json(const Score& score);
+
+/// Writes run/score/NAME.png: input, result, truth and four times the error, side by side, cut to
+/// the object's surroundings.
+void write_score_pictures(const std::filesystem::path& recording, const std::filesystem::path& run);
+
+}  // namespace diminish

@@ -1,0 +1,64 @@
+#include <algorithm>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <utility>
+#include <vector>
+
+#include "diminish/error.h"
+#include "diminish/score.h"
+#include "score/run_folder.h"
+#include "sink/partial_file.h"
+
+namespace diminish {
+namespace {
+
+constexpr int surroundings_px = 40;
+constexpr int panel_height_px = 400;
+constexpr int caption_height_px = 28;
+
+cv::Mat make_panel(const cv::Mat& picture, const char* caption) {
+  const double scale = static_cast<double>(panel_height_px) / picture.rows;
+  cv::Mat scaled;
+  cv::resize(picture, scaled, {}, scale, scale, scale < 1 ? cv::INTER_AREA : cv::INTER_CUBIC);
+  cv::Mat panel;
+  cv::copyMakeBorder(scaled, panel, caption_height_px, 0, 0, 4, cv::BORDER_CONSTANT,
+                     cv::Scalar::all(255));
+  cv::putText(panel, caption, {6, caption_height_px - 9}, cv::FONT_HERSHEY_SIMPLEX, 0.6,
+              cv::Scalar::all(40), 1, cv::LINE_AA);
+  return panel;
+}
+
+}  // namespace
+
+void write_score_pictures(const std::filesystem::path& recording,
+                          const std::filesystem::path& run) {
+  const RunFolder folder(recording, run);
+  std::filesystem::create_directories(run / "score");
+  for (const std::string& name : folder.frames()) {
+    const cv::Mat input = folder.input(name);
+    const cv::Mat result = folder.result(name);
+    const cv::Mat truth = folder.truth(name);
+    const cv::Mat mask = folder.mask(name);
+    if (input.empty() || result.empty() || truth.empty() || mask.empty()) continue;
+    cv::Rect part = cv::boundingRect(mask);
+    if (part.empty()) part = {0, 0, mask.cols, mask.rows};
+    part = cv::Rect(part.x - surroundings_px, part.y - surroundings_px,
+                    part.width + 2 * surroundings_px, part.height + 2 * surroundings_px) &
+           cv::Rect(0, 0, mask.cols, mask.rows);
+    cv::Mat error;
+    cv::absdiff(result(part), truth(part), error);
+    cv::Mat sheet;
+    cv::hconcat(
+        std::vector<cv::Mat>{make_panel(input(part), "input"), make_panel(result(part), "result"),
+                             make_panel(truth(part), "truth"), make_panel(4 * error, "error x 4")},
+        sheet);
+    const std::filesystem::path file = run / "score" / (name + ".png");
+    PartialFile partial(file);
+    if (!cv::imwrite(partial.path().string(), sheet)) {
+      throw Error(file.string() + ": cannot be written");
+    }
+    partial.commit();
+  }
+}
+
+}  // namespace diminish

@@ -1,0 +1,74 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "diminish/score.h"
+
+namespace diminish {
+namespace {
+
+std::string cell(const std::optional<double>& value, int digits) {
+  return value ? fmt::format("{:.{}f}", *value, digits) : "-";
+}
+std::string cell(const std::optional<Quality>& quality) {
+  return quality ? fmt::format("{:.2f} / {:.3f}", quality->psnr_db, quality->ssim) : "-";
+}
+
+std::string row(const FrameScore& frame) {
+  return fmt::format("{:<12}{:>16}{:>16}{:>16}{:>10}{:>8}{:>8}{:>9}\n", frame.name,
+                     cell(frame.inside), cell(frame.valid), cell(frame.missing),
+                     cell(frame.coverage, 3), cell(frame.mask_iou, 3), cell(frame.mask_recall, 3),
+                     frame.changed_outside ? std::to_string(*frame.changed_outside) : "-");
+}
+
+nlohmann::ordered_json to_json(const FrameScore& frame) {
+  nlohmann::ordered_json json;
+  json["name"] = frame.name;
+  const auto add_quality = [&](const char* name, const std::optional<Quality>& quality) {
+    if (quality) json[name] = {{"psnr_db", quality->psnr_db}, {"ssim", quality->ssim}};
+  };
+  add_quality("inside", frame.inside);
+  add_quality("valid", frame.valid);
+  add_quality("missing", frame.missing);
+  if (frame.coverage) json["coverage"] = *frame.coverage;
+  if (frame.mask_iou) json["mask_iou"] = *frame.mask_iou;
+  if (frame.mask_recall) json["mask_recall"] = *frame.mask_recall;
+  if (frame.changed_outside) json["changed_outside"] = *frame.changed_outside;
+  for (const auto& [name, error] : frame.poses) {
+    json["poses"][name] = {{"position_mm", error.position_mm},
+                           {"rotation_deg", error.rotation_deg}};
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string score_table(const Score& score) {
+  std::string text =
+      fmt::format("{:<12}{:>16}{:>16}{:>16}{:>10}{:>8}{:>8}{:>9}\n", "PSNR / SSIM", "inside",
+                  "seen", "not seen", "coverage", "IoU", "recall", "changed");
+  for (const FrameScore& frame : score.frames) text += row(frame);
+  text += row(score.mean);
+  text += fmt::format("PSNR of all frames' error {} dB, flicker {} levels\n",
+                      cell(score.psnr_pooled_db, 2), cell(score.flicker, 2));
+  for (const auto& [name, error] : score.mean.poses) {
+    text += fmt::format("{}: {:.1f} mm, {:.2f} degrees off\n", name, error.position_mm,
+                        error.rotation_deg);
+  }
+  for (const std::string& name : score.not_written) text += name + ": not written by this run\n";
+  return text;
+}
+
+std::string score_json(const Score& score) {
+  nlohmann::ordered_json json;
+  json["mean"] = to_json(score.mean);
+  json["mean"].erase("name");
+  if (score.psnr_pooled_db) json["psnr_pooled_db"] = *score.psnr_pooled_db;
+  if (score.flicker) json["flicker"] = *score.flicker;
+  json["not_written"] = score.not_written;
+  json["frames"] = nlohmann::json::array();
+  for (const FrameScore& frame : score.frames) json["frames"].push_back(to_json(frame));
+  return json.dump(2) + "\n";
+}
+
+}  // namespace diminish
