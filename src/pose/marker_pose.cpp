@@ -48,13 +48,18 @@ double reprojection_error(const std::vector<cv::Point3d>& points, const IdealVie
   return std::sqrt(squares / 4);
 }
 
+/// The solver works on a marker frame with y down and z into the marker: an upright marker that
+/// faces the camera is then not turned at all. In the marker's own frame it is turned by 180
+/// degrees, where rotation vectors jump and OpenCV's solvers fail.
+const Eigen::Matrix3d solver_from_marker = Eigen::Vector3d(1, -1, -1).asDiagonal();
+
 RigidTransform to_transform(const cv::Vec3d& rotation, const cv::Vec3d& translation) {
   cv::Matx33d matrix;
   cv::Rodrigues(rotation, matrix);
-  RigidTransform transform;
-  cv::cv2eigen(matrix, transform.rotation);
-  transform.translation = {translation[0], translation[1], translation[2]};
-  return transform;
+  RigidTransform camera_from_solver;
+  cv::cv2eigen(matrix, camera_from_solver.rotation);
+  camera_from_solver.translation = {translation[0], translation[1], translation[2]};
+  return camera_from_solver * RigidTransform{solver_from_marker, Eigen::Vector3d::Zero()};
 }
 
 struct Solution {
@@ -75,13 +80,14 @@ std::optional<MarkerPose> estimate_marker_pose(const std::array<Eigen::Vector2d,
   const IdealView view = undistort(corners, lens);
   if (!is_convex_clockwise(view.pixels)) return std::nullopt;
   std::vector<cv::Point3d> points;
-  for (const Eigen::Vector3d& corner : marker_corners(size_m)) {
+  for (const Eigen::Vector3d& in_marker : marker_corners(size_m)) {
+    const Eigen::Vector3d corner = solver_from_marker * in_marker;
     points.emplace_back(corner.x(), corner.y(), corner.z());
   }
   std::vector<cv::Vec3d> rotations;
   std::vector<cv::Vec3d> translations;
   cv::solvePnPGeneric(points, view.pixels, view.camera_matrix, cv::noArray(), rotations,
-                      translations, false, cv::SOLVEPNP_IPPE_SQUARE);
+                      translations, false, cv::SOLVEPNP_IPPE);
   std::vector<Solution> solutions;
   for (std::size_t i = 0; i < rotations.size(); ++i) {
     cv::solvePnPRefineLM(points, view.pixels, view.camera_matrix, cv::noArray(), rotations[i],

@@ -26,7 +26,7 @@ std::array<Eigen::Vector2d, 4> project_corners(const RigidTransform& camera_from
 
 TEST(EstimateMarkerPose, IsExactOnExactCorners) {
   const Lens lens(color);
-  for (const double tilt : {0.3, 0.8, 1.2}) {
+  for (const double tilt : {0.0, 1e-6, 1e-3, 0.3, 0.8, 1.2}) {
     const RigidTransform truth = facing(tilt, {0.3, 1, 0.2}, {-0.2, 0.1, 1.5});
     const auto pose = estimate_marker_pose(project_corners(truth, 0.2, lens), 0.2, lens);
     ASSERT_TRUE(pose);
