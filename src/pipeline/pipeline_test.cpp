@@ -109,7 +109,8 @@ TEST_P(PipelineOnRecordings, RemovesItAndTouchesNothingElse) {
   EXPECT_GE(psnr_sum_db / frames, GetParam().psnr_db);
 }
 
-// One marker of 20 cm at 1.5 m, 160 pixels wide in the colour camera and 130 in the RGB-D camera.
+// From one marker of 20 cm, 150 pixels wide in the colour camera, which faces it: there a tenth of
+// a pixel tilts the pose by half a degree. (The marker hangs 3 mm in front of the truth's origin.)
 TEST_P(PipelineOnRecordings, KnowsWhereTheCamerasAre) {
   BundledRecording recording(GetParam().recording);
   double worst_mm = 0;
@@ -131,8 +132,8 @@ TEST_P(PipelineOnRecordings, KnowsWhereTheCamerasAre) {
   }
   RecordProperty("worst_mm", std::to_string(worst_mm));
   RecordProperty("worst_deg", std::to_string(worst_deg));
-  EXPECT_LT(worst_mm, 12);
-  EXPECT_LT(worst_deg, 0.5);
+  EXPECT_LT(worst_mm, 18);
+  EXPECT_LT(worst_deg, 0.7);
 }
 
 /// A scene whose object is given by a mask, without markers in it.
@@ -154,11 +155,11 @@ class PipelineOnAnalyticScene : public ::testing::Test {
         {"patch", "mask", Config::parse("{name: patch, detector: mask, color: masks/color}")}};
     frame = scene_frame.frame;
     GivenMask mask{"patch", Mask(rig.color.width, rig.color.height, 0), std::vector<Mask>(1)};
-    mask.color.fill({120, 180, 60, 30}, 255);
+    mask.color.fill({40, 60, 50, 30}, 255);
     frame.masks.push_back(mask);
     // What the object looks like must not matter.
-    for (int y = 180; y < 210; ++y) {
-      for (int x = 120; x < 180; ++x) frame.color(x, y) = {255, 0, 255};
+    for (int y = 60; y < 90; ++y) {
+      for (int x = 40; x < 90; ++x) frame.color(x, y) = {255, 0, 255};
     }
   }
 
@@ -173,8 +174,8 @@ TEST_F(PipelineOnAnalyticScene, ShowsTheWallBehindAPatch) {
   Pipeline(rig, scene, {}).process(frame, result);
   ASSERT_EQ(result.report.missing_pixels, 0U);
   double worst = 0;
-  for (int y = 175; y < 215; ++y) {
-    for (int x = 115; x < 185; ++x) {
+  for (int y = 55; y < 95; ++y) {
+    for (int x = 35; x < 95; ++x) {
       const Bgr& truth = scene_frame.frame.color(x, y);
       const Bgr& shown = result.picture(x, y);
       worst = std::max({worst, std::abs(double(truth.b) - shown.b),
