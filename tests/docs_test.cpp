@@ -1,0 +1,52 @@
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <type_traits>
+
+#include "core/text.h"
+#include "diminish/color_corrector.h"
+#include "diminish/inpainter.h"
+#include "diminish/options.h"
+
+namespace diminish {
+namespace {
+
+std::string command_line_docs() {
+  return read_text_file(std::filesystem::path(DIMINISH_DOCS_DIR) / "command-line.md", 1 << 20);
+}
+
+// The options are described once, in options.h; the docs must say the same.
+TEST(CommandLineDocs, DescribeEveryOptionAsTheCodeDoes) {
+  const std::string docs = command_line_docs();
+  const Options defaults;
+  for_each_option(defaults, [&](const OptionInfo& info, const auto& value) {
+    std::string flag = info.name;
+    std::replace(flag.begin(), flag.end(), '_', '-');
+    std::string unit = info.unit;
+    std::string text;
+    if constexpr (std::is_same_v<std::decay_t<decltype(value)>, bool>) {
+      text = value ? "on" : "off";
+    } else {
+      text = fmt::format("{}", value);
+    }
+    const std::string row = fmt::format("| `--{}` |{}| {} | {} |", flag,
+                                        unit.empty() ? " " : " " + unit + " ", text, info.help);
+    EXPECT_THAT(docs, testing::HasSubstr(row));
+  });
+}
+
+TEST(CommandLineDocs, NameEveryMethod) {
+  const std::string docs = command_line_docs();
+  for (const std::string& name : Registry<ColorCorrector>::names()) {
+    EXPECT_THAT(docs, testing::HasSubstr("`" + name + "`"));
+  }
+  for (const std::string& name : Registry<Inpainter>::names()) {
+    EXPECT_THAT(docs, testing::HasSubstr("`" + name + "`"));
+  }
+}
+
+}  // namespace
+}  // namespace diminish

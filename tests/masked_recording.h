@@ -1,0 +1,48 @@
+#pragma once
+
+#include <opencv2/imgproc.hpp>
+#include <string>
+
+#include "source/tiny_recording.h"
+
+namespace diminish {
+
+/// A tiny recording that runs: cameras side by side, an object given by masks.
+class MaskedRecording : public TinyRecording {
+ public:
+  MaskedRecording() {
+    write("rig.yaml", rig);
+    write("scene.yaml", "occluders: [{name: patch, detector: mask, color: masks/color}]\n");
+    for (int i = 0; i < 3; ++i) {
+      cv::Mat mask(30, 40, CV_8UC1, cv::Scalar(0));
+      mask(cv::Rect(12, 9, 10, 8)).setTo(255);
+      write("masks/color/" + std::to_string(i) + ".png", mask);
+    }
+  }
+
+  std::string folder() const { return path("").string(); }
+  std::string out() const { return path("out").string(); }
+
+  const std::string rig =
+      "color: {width: 40, height: 30, camera_matrix: [40, 40, 20, 15],"
+      " distortion: [0, 0, 0, 0, 0]}\n"
+      "rgbd:\n"
+      "  - name: rgbd0\n"
+      "    color: {width: 32, height: 24, camera_matrix: [30, 30, 16, 12],"
+      " distortion: [0, 0, 0, 0, 0]}\n"
+      "    depth: {width: 32, height: 24, camera_matrix: [30, 30, 16, 12],"
+      " distortion: [0, 0, 0, 0, 0]}\n"
+      "    depth_unit_m: 0.001\n"
+      "    color_from_depth: {rotation: [1, 0, 0, 0, 1, 0, 0, 0, 1], translation: [0, 0, 0]}\n"
+      "pose: {source: fixed, color_from_rgbd: {rgbd0: {rotation: [1, 0, 0, 0, 1, 0, 0, 0, 1],"
+      " translation: [0, 0, 0]}}}\n";
+
+  /// rig.yaml with one text replaced.
+  void spoil_rig(const std::string& from, const std::string& to) const {
+    std::string text = rig;
+    text.replace(text.find(from), from.size(), to);
+    write("rig.yaml", text);
+  }
+};
+
+}  // namespace diminish

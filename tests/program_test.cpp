@@ -1,0 +1,151 @@
+#include <gmock/gmock.h>
+
+#include <chrono>
+#include <csignal>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <set>
+#include <thread>
+
+#include "core/text.h"
+#include "masked_recording.h"
+#include "run_program.h"
+#include "score/csv_table.h"
+
+namespace diminish {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+std::set<std::string> files_in(const fs::path& folder) {
+  std::set<std::string> names;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.is_regular_file()) names.insert(fs::relative(entry.path(), folder).string());
+  }
+  return names;
+}
+
+class ProgramTest : public testing::Test {
+ protected:
+  Program::Outcome run(std::vector<std::string> more = {}) const {
+    std::vector<std::string> arguments = {"run", recording.folder(), "--out", recording.out()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return Program::run(arguments);
+  }
+  fs::path out(const std::string& name) const { return fs::path(recording.out()) / name; }
+
+  MaskedRecording recording;
+};
+
+TEST_F(ProgramTest, WritesWhatItPromises) {
+  const auto outcome = run();
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("Reconstruction"));
+  EXPECT_THAT(outcome.out, HasSubstr(recording.out()));
+  std::set<std::string> expected = {"frames.csv", "summary.json", "result.mp4"};
+  for (const char* folder : {"result", "mask", "reconstruction", "provenance"}) {
+    for (const char* name : {"0", "1", "2"}) {
+      expected.insert(std::string(folder) + "/" + name + ".png");
+    }
+  }
+  EXPECT_EQ(files_in(recording.out()), expected);
+  for (const char* name : {"0", "1", "2"}) {
+    const std::string file = std::string(name) + ".png";
+    const cv::Mat input = cv::imread(recording.path("color/" + file).string());
+    const cv::Mat result = cv::imread(out("result/" + file).string());
+    const cv::Mat mask = cv::imread(out("mask/" + file).string(), cv::IMREAD_GRAYSCALE);
+    EXPECT_EQ(cv::norm(input, result, cv::NORM_INF, mask == 0), 0);
+    EXPECT_GE(cv::countNonZero(mask), 80);
+  }
+  for (const CsvRow& row : load_csv(out("frames.csv"))) {
+    EXPECT_NE(row.at("valid_pixels"), "0") << "the RGB-D camera sees behind the patch";
+  }
+}
+
+TEST_F(ProgramTest, TheSameBytesWithOneAndTwoThreads) {
+  ASSERT_EQ(run({"--threads", "1"}).exit_code, 0);
+  const fs::path first = recording.path("first");
+  fs::rename(recording.out(), first);
+  ASSERT_EQ(run({"--threads", "2"}).exit_code, 0);
+  for (const std::string& name : files_in(first)) {
+    if (fs::path(name).extension() != ".png") continue;
+    EXPECT_EQ(read_text_file(first / name, 1 << 20), read_text_file(out(name), 1 << 20)) << name;
+  }
+}
+
+TEST_F(ProgramTest, PreviewsAreSideBySide) {
+  ASSERT_EQ(run({"--preview"}).exit_code, 0);
+  EXPECT_EQ(cv::imread(out("preview/1.png").string()).cols, 80);
+  EXPECT_FALSE(fs::exists(out("result")));
+}
+
+// A broken RGB-D image costs the reconstruction, a broken colour image the frame; never the run.
+TEST_F(ProgramTest, GoesOnWithoutImagesThatCannotBeUsed) {
+  const fs::path depth = recording.path("rgbd0_depth/1.png");
+  fs::resize_file(depth, fs::file_size(depth) / 2);
+  fs::remove(recording.path("color/2.png"));
+  const auto outcome = run();
+  EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
+  EXPECT_TRUE(fs::exists(out("result/0.png")));
+  EXPECT_TRUE(fs::exists(out("result/1.png")));
+  EXPECT_FALSE(fs::exists(out("result/2.png")));
+  const auto rows = load_csv(out("frames.csv"));
+  ASSERT_EQ(rows.size(), 3U);
+  EXPECT_EQ(rows[0].at("faults"), "");
+  EXPECT_THAT(rows[1].at("faults"), HasSubstr("rgbd0_depth/1.png"));
+  EXPECT_EQ(rows[1].at("valid_pixels"), "0");
+  EXPECT_THAT(rows[2].at("faults"), HasSubstr("color/2.png"));
+  EXPECT_EQ(rows[2].at("skipped"), "1");
+}
+
+TEST_F(ProgramTest, ReplacesResultsOnlyWhenForced) {
+  ASSERT_EQ(run().exit_code, 0);
+  const auto refused = run();
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("--force"));
+  EXPECT_EQ(run({"--force"}).exit_code, 0);
+}
+
+TEST_F(ProgramTest, AnInterruptedRunLeavesWholeFiles) {
+  const fs::path folder = recording.path("interrupted");
+  Program program({"run", std::string(DIMINISH_RECORDINGS_DIR) + "/calendar", "--out",
+                   folder.string(), "--threads", "1"});
+  for (int i = 0; i < 600 && !fs::exists(folder / "result/000000.png"); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  kill(program.process(), SIGINT);
+  const auto outcome = program.wait();
+  EXPECT_EQ(outcome.exit_code, 130) << outcome.err;
+  const auto names = files_in(folder);
+  for (const std::string& name : names) {
+    EXPECT_NE(fs::path(name).filename().string().front(), '.') << name;
+    if (fs::path(name).extension() != ".png") continue;
+    EXPECT_FALSE(cv::imread((folder / name).string(), cv::IMREAD_UNCHANGED).empty()) << name;
+  }
+  const auto summary = nlohmann::json::parse(read_text_file(folder / "summary.json", 1 << 20));
+  EXPECT_EQ(summary["complete"], false);
+  const auto rows = load_csv(folder / "frames.csv");
+  EXPECT_EQ(summary["frames"], rows.size());
+  EXPECT_LT(rows.size(), 5U);
+  EXPECT_EQ(names.count("result/000004.png"), 0U);
+}
+
+TEST_F(ProgramTest, ExplainsItself) {
+  const auto help = Program::run({"--help"});
+  EXPECT_EQ(help.exit_code, 0);
+  for (const char* command : {"run", "score", "train-color"}) {
+    EXPECT_THAT(help.out, HasSubstr(command));
+  }
+  const auto run_help = Program::run({"run", "--help"});
+  EXPECT_EQ(run_help.exit_code, 0);
+  for (const char* text : {"--out", "--color-correct", "poisson", "--discontinuity-threshold-m"}) {
+    EXPECT_THAT(run_help.out, HasSubstr(text));
+  }
+  EXPECT_THAT(Program::run({"--version"}).out, HasSubstr(DIMINISH_VERSION));
+  EXPECT_EQ(Program::run({}).exit_code, 2);
+  EXPECT_EQ(Program::run({"run", "--nonsense"}).exit_code, 2);
+}
+
+}  // namespace
+}  // namespace diminish
