@@ -17,7 +17,7 @@ struct Options {
   int surroundings_px = 32;
   bool whole_view = false;
   std::string color_correct = "poisson";
-  std::string inpaint = "telea";
+  std::string inpaint = "harmonic";
   int inpaint_radius_px = 5;
 };
 

@@ -12,8 +12,8 @@ namespace diminish {
 /// How like the truth a set of pixels is.
 struct Quality {
   double psnr_db = 0;  ///< over the three channels; identical pictures count as 99
-  /// Structural similarity (Wang et al. 2004: Gaussian window of 11x11, sigma 1.5), per channel,
-  /// averaged.
+  /// Structural similarity of the brightness (Wang et al. 2004: Gaussian window of 11x11, sigma
+  /// 1.5).
   double ssim = 0;
 };
 

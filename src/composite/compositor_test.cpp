@@ -79,7 +79,7 @@ TEST_F(Compositing, SaysWhereEachPixelComesFrom) {
   EXPECT_EQ(result.report.mask_pixels, 50U * 40U);
   EXPECT_EQ(result.report.valid_pixels, 25U * 40U);
   EXPECT_EQ(result.report.missing_pixels, 25U * 40U);
-  options.inpaint = "telea";
+  options.inpaint = "harmonic";
   result.report = {};
   compositor.composite(camera, masks, options, result);
   EXPECT_EQ(result.provenance(70, 30), provenance::inpainted);

@@ -23,8 +23,10 @@ cv::Mat ssim_map(const cv::Mat& picture, const cv::Mat& truth) {
   constexpr double c2 = (0.03 * 255) * (0.03 * 255);
   cv::Mat a;
   cv::Mat b;
-  picture.convertTo(a, CV_64F);
-  truth.convertTo(b, CV_64F);
+  cv::cvtColor(picture, a, cv::COLOR_BGR2GRAY);
+  cv::cvtColor(truth, b, cv::COLOR_BGR2GRAY);
+  a.convertTo(a, CV_64F);
+  b.convertTo(b, CV_64F);
   const auto window = [](const cv::Mat& image) {
     cv::Mat result;
     cv::GaussianBlur(image, result, {11, 11}, 1.5, 1.5, cv::BORDER_REFLECT_101);
@@ -35,16 +37,10 @@ cv::Mat ssim_map(const cv::Mat& picture, const cv::Mat& truth) {
   const cv::Mat variance_a = window(a.mul(a)) - mean_a.mul(mean_a);
   const cv::Mat variance_b = window(b.mul(b)) - mean_b.mul(mean_b);
   const cv::Mat covariance = window(a.mul(b)) - mean_a.mul(mean_b);
-  const cv::Scalar k1 = cv::Scalar::all(c1);
-  const cv::Scalar k2 = cv::Scalar::all(c2);
-  const cv::Mat numerator = cv::Mat(2 * mean_a.mul(mean_b) + k1).mul(cv::Mat(2 * covariance + k2));
-  const cv::Mat denominator = cv::Mat(mean_a.mul(mean_a) + mean_b.mul(mean_b) + k1)
-                                  .mul(cv::Mat(variance_a + variance_b + k2));
-  cv::Mat channels;
-  cv::divide(numerator, denominator, channels);
-  cv::Mat mean;
-  cv::transform(channels, mean, cv::Matx13d(1 / 3.0, 1 / 3.0, 1 / 3.0));
-  return mean;
+  const cv::Mat numerator = cv::Mat(2 * mean_a.mul(mean_b) + c1).mul(cv::Mat(2 * covariance + c2));
+  const cv::Mat denominator = cv::Mat(mean_a.mul(mean_a) + mean_b.mul(mean_b) + c1)
+                                  .mul(cv::Mat(variance_a + variance_b + c2));
+  return numerator / denominator;
 }
 
 std::optional<Quality> quality(const cv::Mat& picture, const cv::Mat& truth, const cv::Mat& ssim,

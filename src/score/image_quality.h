@@ -17,7 +17,7 @@ struct SquaredError {
 };
 SquaredError squared_error(const cv::Mat& picture, const cv::Mat& truth, const cv::Mat& region);
 
-/// Structural similarity at every pixel, averaged over the channels: CV_64F.
+/// Structural similarity of the brightness at every pixel: CV_64F.
 cv::Mat ssim_map(const cv::Mat& picture, const cv::Mat& truth);
 
 /// Nothing for an empty region. ssim: of the whole picture.
