@@ -1,7 +1,6 @@
 #include "detect/marker_views.h"
 
 #include <cmath>
-#include <limits>
 
 #include "pose/marker_pose.h"
 
@@ -14,22 +13,6 @@ double area(const std::array<Eigen::Vector2d, 4>& corners) {
   return std::abs(a.x() * b.y() - a.y() * b.x()) / 2;
 }
 
-/// The sum of the squared distances, in pixels, between the corners that `view` sees and the
-/// marker's at this pose.
-double squared_error(const MarkerView& view, const RigidTransform& camera_from_marker,
-                     double size_m) {
-  const double half = size_m / 2;
-  const std::array<Eigen::Vector3d, 4> square = {
-      {{-half, half, 0}, {half, half, 0}, {half, -half, 0}, {-half, -half, 0}}};
-  double sum = 0;
-  for (std::size_t i = 0; i < square.size(); ++i) {
-    const auto pixel = view.lens->project(camera_from_marker * square[i]);
-    if (!pixel) return std::numeric_limits<double>::infinity();
-    sum += (*pixel - (*view.corners)[i]).squaredNorm();
-  }
-  return sum;
-}
-
 /// `camera_from_marker`, known in the camera of `from`, in the camera of `to`.
 RigidTransform carry_over(const RigidTransform& camera_from_marker, const MarkerView& from,
                           const MarkerView& to) {
@@ -38,10 +21,11 @@ RigidTransform carry_over(const RigidTransform& camera_from_marker, const Marker
 
 double error_in_all_views(const std::vector<MarkerView>& views, const MarkerView& own,
                           const RigidTransform& camera_from_marker, double size_m) {
-  double sum = squared_error(own, camera_from_marker, size_m);
+  double sum = marker_error_px(camera_from_marker, size_m, *own.lens, *own.corners);
   for (const MarkerView& other : views) {
     if (&other == &own || !other.corners || !other.common_from_camera) continue;
-    sum += squared_error(other, carry_over(camera_from_marker, own, other), size_m);
+    sum += marker_error_px(carry_over(camera_from_marker, own, other), size_m, *other.lens,
+                           *other.corners);
   }
   return sum;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/eigen.hpp>
 #include <vector>
@@ -73,6 +74,18 @@ std::array<Eigen::Vector3d, 4> marker_corners(double size_m) {
   const double h = size_m / 2;
   return {Eigen::Vector3d(-h, h, 0), Eigen::Vector3d(h, h, 0), Eigen::Vector3d(h, -h, 0),
           Eigen::Vector3d(-h, -h, 0)};
+}
+
+double marker_error_px(const RigidTransform& camera_from_marker, double size_m, const Lens& lens,
+                       const std::array<Eigen::Vector2d, 4>& corners) {
+  double squares = 0;
+  const auto points = marker_corners(size_m);
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const auto pixel = lens.project(camera_from_marker * points[i]);
+    if (!pixel) return std::numeric_limits<double>::infinity();
+    squares += (*pixel - corners[i]).squaredNorm();
+  }
+  return std::sqrt(squares / static_cast<double>(corners.size()));
 }
 
 std::optional<MarkerPose> estimate_marker_pose(const std::array<Eigen::Vector2d, 4>& corners,

@@ -25,6 +25,11 @@ struct MarkerPose {
 std::optional<MarkerPose> estimate_marker_pose(const std::array<Eigen::Vector2d, 4>& corners,
                                                double size_m, const Lens& lens);
 
+/// How far a marker at this pose is from where it was seen: root mean square over its corners,
+/// pixels; infinite if a corner is out of the lens's view.
+double marker_error_px(const RigidTransform& camera_from_marker, double size_m, const Lens& lens,
+                       const std::array<Eigen::Vector2d, 4>& corners);
+
 /// The marker's corners in its own frame, in the order of `Marker::corners`.
 std::array<Eigen::Vector3d, 4> marker_corners(double size_m);
 

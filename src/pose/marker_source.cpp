@@ -21,19 +21,6 @@ bool is_doubtful(const MarkerPose& pose) {
   return pose.ambiguity > 0.2;
 }
 
-double reprojection_error_px(const RigidTransform& camera_from_marker, double size_m,
-                             const Lens& lens, const std::array<Eigen::Vector2d, 4>& corners) {
-  constexpr double not_visible = 1e6;
-  double squares = 0;
-  const auto points = marker_corners(size_m);
-  for (std::size_t i = 0; i < 4; ++i) {
-    const auto pixel = lens.project(camera_from_marker * points[i]);
-    if (!pixel) return not_visible;
-    squares += (*pixel - corners[i]).squaredNorm();
-  }
-  return std::sqrt(squares / 4);
-}
-
 /// Poses from the world marker, in every frame anew (the default).
 class MarkerSource : public PoseSource {
  public:
@@ -120,10 +107,10 @@ class MarkerSource : public PoseSource {
         if (!rgbd_pose) continue;
         const RigidTransform world_from_marker =
             world_from_depth * settle_by_depth(*rgbd_pose, size->second, frame, k);
-        best_error += reprojection_error_px(pose.camera_from_marker * world_from_marker,
-                                            size->second, color_lens_, in_color->corners);
-        alternative_error += reprojection_error_px(pose.alternative * world_from_marker,
-                                                   size->second, color_lens_, in_color->corners);
+        best_error += marker_error_px(pose.camera_from_marker * world_from_marker, size->second,
+                                      color_lens_, in_color->corners);
+        alternative_error += marker_error_px(pose.alternative * world_from_marker, size->second,
+                                             color_lens_, in_color->corners);
       }
     }
     return alternative_error < best_error ? pose.alternative : pose.camera_from_marker;

@@ -1,0 +1,38 @@
+#include <benchmark/benchmark.h>
+
+#include "diminish/frame_source.h"
+#include "diminish/pipeline.h"
+#include "diminish/reconstructor.h"
+
+namespace diminish {
+namespace {
+
+/// A bundled recording's first frame, with the poses and masks that the pipeline found in it.
+void reconstruct(benchmark::State& state, const char* name, bool whole_view) {
+  const Recording recording = load_recording(std::filesystem::path(DIMINISH_RECORDINGS_DIR) / name);
+  const Options options;
+  FrameSet frame;
+  DiminishedFrame result;
+  open_recording(recording, options)->next(frame);
+  Pipeline(recording.rig, recording.scene, options).process(frame, result);
+  OcclusionMasks masks;
+  masks.color = result.mask;
+  for (const RgbdCamera& camera : recording.rig.rgbd) {
+    masks.rgbd_color.emplace_back(camera.color.width, camera.color.height, std::uint8_t{0});
+    masks.rgbd_depth.emplace_back(camera.depth.width, camera.depth.height, std::uint8_t{0});
+  }
+  const Rect region = whole_view ? recording.rig.color.bounds() : result.reconstruction.region;
+  const auto reconstructor = Registry<Reconstructor>::get("reference")(recording.rig);
+  Reconstruction reconstruction;
+  for (auto _ : state) {
+    reconstructor->reconstruct(frame, result.report.poses, masks, region, options, reconstruction);
+  }
+}
+BENCHMARK_CAPTURE(reconstruct, calendar_mask, "calendar", false)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(reconstruct, calendar_whole_view, "calendar", true)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(reconstruct, workbench_two_cameras, "workbench", true)
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace diminish
