@@ -11,7 +11,7 @@ namespace diminish {
 class MaskedRecording : public TinyRecording {
  public:
   MaskedRecording() {
-    write("rig.yaml", rig);
+    write("rig.yaml", rig());
     write("scene.yaml", "occluders: [{name: patch, detector: mask, color: masks/color}]\n");
     for (int i = 0; i < 3; ++i) {
       cv::Mat mask(30, 40, CV_8UC1, cv::Scalar(0));
@@ -23,23 +23,15 @@ class MaskedRecording : public TinyRecording {
   std::string folder() const { return path("").string(); }
   std::string out() const { return path("out").string(); }
 
-  const std::string rig =
-      "color: {width: 40, height: 30, camera_matrix: [40, 40, 20, 15],"
-      " distortion: [0, 0, 0, 0, 0]}\n"
-      "rgbd:\n"
-      "  - name: rgbd0\n"
-      "    color: {width: 32, height: 24, camera_matrix: [30, 30, 16, 12],"
-      " distortion: [0, 0, 0, 0, 0]}\n"
-      "    depth: {width: 32, height: 24, camera_matrix: [30, 30, 16, 12],"
-      " distortion: [0, 0, 0, 0, 0]}\n"
-      "    depth_unit_m: 0.001\n"
-      "    color_from_depth: {rotation: [1, 0, 0, 0, 1, 0, 0, 0, 1], translation: [0, 0, 0]}\n"
-      "pose: {source: fixed, color_from_rgbd: {rgbd0: {rotation: [1, 0, 0, 0, 1, 0, 0, 0, 1],"
-      " translation: [0, 0, 0]}}}\n";
+  static std::string rig() {
+    return TinyRecording::rig() +
+           "pose: {source: fixed, color_from_rgbd: {rgbd0: {rotation: [1, 0, 0, 0, 1, 0, 0, 0, 1],"
+           " translation: [0, 0, 0]}}}\n";
+  }
 
   /// rig.yaml with one text replaced.
   void spoil_rig(const std::string& from, const std::string& to) const {
-    std::string text = rig;
+    std::string text = rig();
     text.replace(text.find(from), from.size(), to);
     write("rig.yaml", text);
   }

@@ -62,7 +62,8 @@ int RunCommand::execute() const {
     show_progress(done, total);
   };
   run(*source, input.rig, input.scene, options, writer, runner);
-  writer.finish(stop_requested);
+  const std::string video_problem = writer.finish(stop_requested);
+  if (!video_problem.empty()) fmt::print(stderr, "diminish: {}\n", video_problem);
 
   fmt::print("{}\n", writer.statistics().table());
   fmt::print("Written to {}\n", out.string());

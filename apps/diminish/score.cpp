@@ -20,7 +20,7 @@ struct ScoreCommand {
   void execute() const {
     const Score score = score_run(recording, run);
     fmt::print("{}", score_table(score));
-    write_text_file(json.empty() ? run / "score.json" : json, score_json(score));
+    write_file(json.empty() ? run / "score.json" : json, score_json(score));
     if (pictures) write_score_pictures(recording, run);
   }
 };

@@ -50,9 +50,9 @@ TEST_F(OptionsCheck, EveryNumberHasAnUpperAndALowerEnd) {
 
 TEST_F(OptionsCheck, MethodsMustBeRegistered) {
   options_.inpaint = "magic";
-  EXPECT_THAT(error_of([&] { check(options_); }),
-              AllOf(HasSubstr("inpaint: expected one of "), HasSubstr("telea"),
-                    HasSubstr("got 'magic'")));
+  EXPECT_THAT(
+      error_of([&] { check(options_); }),
+      AllOf(HasSubstr("inpaint: expected one of "), HasSubstr("telea"), HasSubstr("got 'magic'")));
   options_.inpaint = "telea";
   options_.color_correct = "";
   EXPECT_THAT(error_of([&] { check(options_); }), HasSubstr("color_correct: expected one of "));

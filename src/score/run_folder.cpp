@@ -89,7 +89,6 @@ void RunFolder::read_frames() {
     if (name == row.end() || skipped == row.end()) {
       throw Error((run_ / "frames.csv").string() + ": expected the columns name and skipped");
     }
-    if (skipped->second == "1") continue;
     frames_.push_back(name->second);
     written.insert(name->second);
     NamedPoses& poses = poses_[name->second];

@@ -17,7 +17,7 @@ class RunFolder {
   /// Throws Error if there is no truth/background, or no run.
   RunFolder(std::filesystem::path recording, std::filesystem::path run);
 
-  /// The frames of frames.csv that were not skipped.
+  /// The frames of frames.csv, skipped ones too: those have no result.
   const std::vector<std::string>& frames() const { return frames_; }
   /// Frames with truth that are not among them.
   const std::vector<std::string>& not_written() const { return not_written_; }

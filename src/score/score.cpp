@@ -1,5 +1,7 @@
 #include "diminish/score.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <numeric>
 #include <opencv2/imgproc.hpp>
@@ -34,9 +36,11 @@ double ratio(const cv::Mat& part, const cv::Mat& whole) {
   return static_cast<double>(cv::countNonZero(part)) / static_cast<double>(cv::countNonZero(whole));
 }
 
-void expect_same_size(const cv::Mat& image, const cv::Mat& truth, const std::string& what) {
-  if (!image.empty() && image.size() != truth.size()) {
-    throw Error(what + ": expected an image of the truth's size");
+void expect_same_size(const cv::Mat& image, const cv::Mat& other, const std::string& what) {
+  if (!image.empty() && image.size() != other.size()) {
+    throw Error(
+        fmt::format("{}: its size and that of what it is compared with differ: {}x{}, {}x{}", what,
+                    image.cols, image.rows, other.cols, other.rows));
   }
 }
 
@@ -141,10 +145,14 @@ Score score_run(const std::filesystem::path& recording, const std::filesystem::p
     const cv::Mat mask = folder.mask(name);
     if (result.empty() || mask.empty()) {
       score.not_written.push_back(name);
+      previous = {};
       continue;
     }
     const std::string what = (run / "result" / (name + ".png")).string();
+    if (!truth.empty()) expect_same_size(result, truth, what);
     const cv::Mat provenance = folder.provenance(name);
+    expect_same_size(mask, result, (run / "mask" / (name + ".png")).string());
+    expect_same_size(provenance, result, (run / "provenance" / (name + ".png")).string());
     const cv::Mat seen = provenance.empty() ? cv::Mat(cv::Mat::zeros(mask.size(), CV_8U))
                                             : cv::Mat((provenance >= provenance::first_rgbd) &
                                                       (provenance < provenance::inpainted));
@@ -155,14 +163,13 @@ Score score_run(const std::filesystem::path& recording, const std::filesystem::p
     }
     const cv::Mat true_mask = folder.true_mask(name);
     expect_same_size(true_mask, mask, what);
-    if (!true_mask.empty() && cv::countNonZero(true_mask) > 0) {
+    if (!true_mask.empty()) {
       const cv::Mat grown = grow(true_mask, folder.mask_margin_px());
-      frame.mask_iou = ratio(grown & mask, grown | mask);
-      frame.mask_recall = ratio(true_mask & mask, true_mask);
+      if (cv::countNonZero(grown | mask) > 0) frame.mask_iou = ratio(grown & mask, grown | mask);
+      if (cv::countNonZero(true_mask) > 0) frame.mask_recall = ratio(true_mask & mask, true_mask);
     }
     Residual residual;
     if (!truth.empty()) {
-      expect_same_size(result, truth, what);
       const cv::Mat region = grow(true_mask.empty() ? mask : true_mask, region_margin_px);
       const cv::Mat ssim = ssim_map(result, truth);
       frame.inside = quality(result, truth, ssim, region);

@@ -1,10 +1,8 @@
 #include <algorithm>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <utility>
 #include <vector>
 
-#include "diminish/error.h"
 #include "diminish/score.h"
 #include "score/run_folder.h"
 #include "sink/partial_file.h"
@@ -52,12 +50,7 @@ void write_score_pictures(const std::filesystem::path& recording,
         std::vector<cv::Mat>{make_panel(input(part), "input"), make_panel(result(part), "result"),
                              make_panel(truth(part), "truth"), make_panel(4 * error, "error x 4")},
         sheet);
-    const std::filesystem::path file = run / "score" / (name + ".png");
-    PartialFile partial(file);
-    if (!cv::imwrite(partial.path().string(), sheet)) {
-      throw Error(file.string() + ": cannot be written");
-    }
-    partial.commit();
+    write_png(run / "score" / (name + ".png"), sheet);
   }
 }
 

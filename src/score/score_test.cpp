@@ -137,6 +137,18 @@ TEST_F(ScoreTest, MeasuresMasksWithTheRunsMargin) {
   EXPECT_DOUBLE_EQ(*score().frames[0].mask_iou, 200.0 / (400 + 4 * 20));
 }
 
+// Removing something where there is nothing to remove is not free.
+TEST_F(ScoreTest, AFalseRemovalCosts) {
+  save("truth/mask/000000.png", cv::Mat(height, width, CV_8U, cv::Scalar(0)));
+  EXPECT_DOUBLE_EQ(*score().frames[0].mask_iou, 0);
+  EXPECT_FALSE(score().frames[0].mask_recall);
+}
+
+TEST_F(ScoreTest, FlickerDoesNotSpanSkippedFrames) {
+  write_csv(csv_row("000000") + csv_row("none") + csv_row("000001"));
+  EXPECT_FALSE(score().flicker);
+}
+
 TEST_F(ScoreTest, WhatIsNotThereIsAbsentAndNotZero) {
   std::filesystem::remove_all(folder.path() / "truth/mask");
   std::filesystem::remove(folder.path() / "truth/poses.json");

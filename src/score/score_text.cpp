@@ -68,7 +68,8 @@ std::string score_json(const Score& score) {
   json["not_written"] = score.not_written;
   json["frames"] = nlohmann::json::array();
   for (const FrameScore& frame : score.frames) json["frames"].push_back(to_json(frame));
-  return json.dump(2) + "\n";
+  // File names need not be UTF-8.
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace diminish

@@ -28,7 +28,7 @@ std::string joined(const std::vector<std::string>& texts) {
 std::string pose_columns(const std::string& name) {
   std::string columns;
   for (const char* part : {"tx", "ty", "tz", "qx", "qy", "qz", "qw"}) {
-    columns += fmt::format(",{}_{}", name, part);
+    columns += "," + in_quotes(name + "_" + part);
   }
   return columns;
 }
@@ -48,13 +48,14 @@ std::string marker_ids(const std::vector<Marker>& markers) {
 }
 
 /// "calendar: color rgbd0" for each occluder, in quotes.
-std::string found_occluders(const std::vector<OccluderReport>& occluders) {
+std::string found_occluders(const std::vector<OccluderReport>& occluders,
+                            const std::vector<std::string>& cameras) {
   std::vector<std::string> texts;
   for (const OccluderReport& occluder : occluders) {
     std::string text = occluder.name + ":";
     if (occluder.in_color) text += " color";
     for (std::size_t k = 0; k < occluder.in_rgbd.size(); ++k) {
-      if (occluder.in_rgbd[k]) text += fmt::format(" {}", k);
+      if (occluder.in_rgbd[k]) text += " " + cameras[k];
     }
     texts.push_back(text);
   }
@@ -64,9 +65,10 @@ std::string found_occluders(const std::vector<OccluderReport>& occluders) {
 }  // namespace
 
 FramesCsv::FramesCsv(const std::filesystem::path& file, const Rig& rig)
-    : file_(file), stream_(file, std::ios::binary), rgbd_count_(rig.rgbd.size()) {
+    : file_(file), stream_(file, std::ios::binary) {
+  for (const RgbdCamera& camera : rig.rgbd) cameras_.push_back(camera.name);
   std::string header = "name,stamp_s,skipped,color_markers";
-  for (const RgbdCamera& camera : rig.rgbd) header += "," + camera.name + "_markers";
+  for (const RgbdCamera& camera : rig.rgbd) header += "," + in_quotes(camera.name + "_markers");
   header += pose_columns("color_from_world");
   for (const RgbdCamera& camera : rig.rgbd) {
     header += pose_columns(camera.name + "_depth_from_world");
@@ -85,15 +87,16 @@ void FramesCsv::append(const DiminishedFrame& frame) {
   std::string row =
       fmt::format("{},{:.6f},{},{}", in_quotes(frame.name), frame.stamp_s, report.skipped ? 1 : 0,
                   known ? marker_ids(report.markers.color) : "");
-  for (std::size_t k = 0; k < rgbd_count_; ++k) {
+  for (std::size_t k = 0; k < cameras_.size(); ++k) {
     row += "," + (known ? marker_ids(report.markers.rgbd[k]) : "");
   }
   row += pose_values(known ? report.poses.color_from_world : std::nullopt);
-  for (std::size_t k = 0; k < rgbd_count_; ++k) {
+  for (std::size_t k = 0; k < cameras_.size(); ++k) {
     row += pose_values(known ? report.poses.depth_from_world[k] : std::nullopt);
     row += pose_values(known ? report.poses.color_from_depth[k] : std::nullopt);
   }
-  row += fmt::format(",{},{},{},{}", known ? found_occluders(report.occluders) : in_quotes(""),
+  row += fmt::format(",{},{},{},{}",
+                     known ? found_occluders(report.occluders, cameras_) : in_quotes(""),
                      report.mask_pixels, report.valid_pixels, report.missing_pixels);
   for (const double ms : report.milliseconds) row += fmt::format(",{:.3f}", ms);
   row += fmt::format(",{},{}\n", joined(report.messages), joined(report.faults));

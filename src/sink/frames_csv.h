@@ -2,6 +2,8 @@
 
 #include <filesystem>
 #include <fstream>
+#include <string>
+#include <vector>
 
 #include "diminish/diminished_frame.h"
 #include "diminish/rig.h"
@@ -17,7 +19,7 @@ class FramesCsv {
  private:
   std::filesystem::path file_;
   std::ofstream stream_;
-  std::size_t rgbd_count_;
+  std::vector<std::string> cameras_;
 };
 
 }  // namespace diminish

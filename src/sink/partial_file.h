@@ -1,7 +1,8 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
+#include <opencv2/core.hpp>
+#include <string_view>
 
 namespace diminish {
 
@@ -25,7 +26,10 @@ class PartialFile {
   bool committed_ = false;
 };
 
-/// Replaces `target` by a text, whole or not at all.
-void write_text_file(const std::filesystem::path& target, const std::string& text);
+/// Replaces `target` by these bytes, whole or not at all. Throws Error that names it.
+void write_file(const std::filesystem::path& target, std::string_view bytes);
+
+/// The same with an 8-bit picture as PNG, compressed for speed.
+void write_png(const std::filesystem::path& target, const cv::Mat& picture);
 
 }  // namespace diminish

@@ -2,7 +2,7 @@
 
 #include <array>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
+#include <opencv2/core.hpp>
 #include <system_error>
 #include <utility>
 
@@ -20,15 +20,6 @@ namespace fs = std::filesystem;
 constexpr std::array picture_folders = {"result", "mask", "reconstruction", "provenance"};
 constexpr const char* preview_folder = "preview";
 constexpr std::array files = {"frames.csv", "summary.json", "result.mp4", "score.json"};
-
-void write_png(const fs::path& file, const cv::Mat& image) {
-  PartialFile partial(file);
-  // Level 1: a tenth of the time for a tenth more bytes.
-  const bool written =
-      cv::imwrite(partial.path().string(), image, {cv::IMWRITE_PNG_COMPRESSION, 1});
-  if (!written) throw Error(file.string() + ": cannot be written");
-  partial.commit();
-}
 
 void make_folder(const fs::path& folder) {
   std::error_code error;
@@ -98,9 +89,10 @@ void ResultWriter::append(const FrameSet&, const DiminishedFrame& result) {
   if (video_ && !result.report.skipped) video_->append(result.picture);
 }
 
-void ResultWriter::finish(bool interrupted) {
+std::string ResultWriter::finish(bool interrupted) {
   const std::string video_problem = video_ ? video_->finish() : "";
   write_summary(interrupted, video_problem);
+  return video_problem;
 }
 
 void ResultWriter::write_summary(bool interrupted, const std::string& video_problem) const {
@@ -123,7 +115,9 @@ void ResultWriter::write_summary(bool interrupted, const std::string& video_prob
   for_each_option(options_, [&](const OptionInfo& info, const auto& value) {
     summary["options"][info.name] = value;
   });
-  write_text_file(folder_ / "summary.json", summary.dump(2) + "\n");
+  // File names in messages need not be UTF-8.
+  constexpr auto replace = nlohmann::ordered_json::error_handler_t::replace;
+  write_file(folder_ / "summary.json", summary.dump(2, ' ', false, replace) + "\n");
 }
 
 }  // namespace diminish

@@ -31,8 +31,8 @@ class ResultWriter : public FrameSink {
 
   void write_images(const FrameSet& frame, const DiminishedFrame& result) override;
   void append(const FrameSet& frame, const DiminishedFrame& result) override;
-  /// Ends the video and writes the summary.
-  void finish(bool interrupted);
+  /// Ends the video and writes the summary. Why there is no video, if there is none.
+  std::string finish(bool interrupted);
 
   const RunStatistics& statistics() const { return statistics_; }
 

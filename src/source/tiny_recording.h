@@ -17,18 +17,7 @@ namespace diminish {
 class TinyRecording {
  public:
   TinyRecording() {
-    write(
-        "rig.yaml",
-        "color: {width: 40, height: 30, camera_matrix: [40, 40, 20, 15],"
-        " distortion: [0, 0, 0, 0, 0]}\n"
-        "rgbd:\n"
-        "  - name: rgbd0\n"
-        "    color: {width: 32, height: 24, camera_matrix: [30, 30, 16, 12],"
-        " distortion: [0, 0, 0, 0, 0]}\n"
-        "    depth: {width: 32, height: 24, camera_matrix: [30, 30, 16, 12],"
-        " distortion: [0, 0, 0, 0, 0]}\n"
-        "    depth_unit_m: 0.001\n"
-        "    color_from_depth: {rotation: [1, 0, 0, 0, 1, 0, 0, 0, 1], translation: [0, 0, 0]}\n");
+    write("rig.yaml", rig());
     write("scene.yaml", "occluders: [{name: ball, detector: color_blob}]\n");
     for (const char* list : {"color", "rgbd0_color", "rgbd0_depth"}) write_list(list, {0, 1, 2});
     for (int i = 0; i < 3; ++i) {
@@ -36,6 +25,20 @@ class TinyRecording {
       write(fmt::format("rgbd0_color/{}.png", i), cv::Mat(24, 32, CV_8UC3, cv::Scalar(i, 1, 2)));
       write(fmt::format("rgbd0_depth/{}.png", i), cv::Mat(24, 32, CV_16UC1, cv::Scalar(1000 + i)));
     }
+  }
+
+  static std::string rig() {
+    return "color: {width: 40, height: 30, camera_matrix: [40, 40, 20, 15],"
+           " distortion: [0, 0, 0, 0, 0]}\n"
+           "rgbd:\n"
+           "  - name: rgbd0\n"
+           "    color: {width: 32, height: 24, camera_matrix: [30, 30, 16, 12],"
+           " distortion: [0, 0, 0, 0, 0]}\n"
+           "    depth: {width: 32, height: 24, camera_matrix: [30, 30, 16, 12],"
+           " distortion: [0, 0, 0, 0, 0]}\n"
+           "    depth_unit_m: 0.001\n"
+           "    color_from_depth: {rotation: [1, 0, 0, 0, 1, 0, 0, 0, 1],"
+           " translation: [0, 0, 0]}\n";
   }
 
   std::filesystem::path path(const std::string& name) const { return folder_.path() / name; }
