@@ -15,12 +15,13 @@ deps:
 	@scripts/install-deps
 
 build: deps
-	scripts/build
+	scripts/build "" diminish_program
 
 demo: build
 	scripts/demo
 
-test: build
+test: deps
+	scripts/build
 	scripts/test
 
 bench: deps
