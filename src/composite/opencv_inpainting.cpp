@@ -17,7 +17,7 @@ class OpenCvInpainting : public Inpainter {
     // A hole's pixels depend on what is within the radius, no more.
     const Rect part = intersect(grow(holes, options.inpaint_radius_px + 2), picture.bounds());
     if (count_nonzero(missing, part) == static_cast<std::size_t>(part.width) * part.height) {
-      for (int y = part.y; y < part.bottom(); ++y) picture.fill({part.x, y, part.width, 1}, {});
+      picture.fill(part, {});
       return false;
     }
     cv::Mat window = as_mat(picture)(as_cv(part));

@@ -76,7 +76,7 @@ class MarkerSource : public PoseSource {
   RigidTransform settle_by_depth(const MarkerPose& pose, double size_m, const FrameSet& frame,
                                  std::size_t k) const {
     const RigidTransform depth_from_color = rig_.rgbd[k].color_from_depth.inverse();
-    const RigidTransform best = depth_from_color * pose.camera_from_marker;
+    RigidTransform best = depth_from_color * pose.camera_from_marker;
     if (!is_doubtful(pose)) return best;
     const RigidTransform alternative = depth_from_color * pose.alternative;
     const auto error = [&](const RigidTransform& depth_from_marker) {
