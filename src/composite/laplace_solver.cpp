@@ -149,11 +149,11 @@ void LaplaceSolver::coarsen() {
   }
 }
 
-// Gauss-Seidel forwards before and backwards after the coarse correction: symmetric, as conjugate
-// gradients need it.
+// A W-cycle, which corrects on each coarser grid twice, as constant interpolation alone carries
+// corrections poorly over many levels. Gauss-Seidel forwards before and backwards after the coarse
+// correction: symmetric, as conjugate gradients need it.
 void LaplaceSolver::cycle(std::size_t number) {
   Level& level = levels_[number];
-  std::fill(level.x.begin(), level.x.end(), Channels::Zero());
   if (number + 1 == level_count_) {
     for (int sweep = 0; sweep < coarsest_sweeps; ++sweep) {
       for (std::size_t i = 0; i < level.size(); ++i) level.relax(i);
@@ -168,7 +168,9 @@ void LaplaceSolver::cycle(std::size_t number) {
     coarse.right_side[static_cast<std::size_t>(level.parent[i])] +=
         level.right_side[i] - level.apply(i, level.x);
   }
+  std::fill(coarse.x.begin(), coarse.x.end(), Channels::Zero());
   cycle(number + 1);
+  if (number + 2 < level_count_) cycle(number + 1);
   for (std::size_t i = 0; i < level.size(); ++i) {
     level.x[i] += coarse.x[static_cast<std::size_t>(level.parent[i])];
   }
@@ -177,9 +179,11 @@ void LaplaceSolver::cycle(std::size_t number) {
 
 void LaplaceSolver::precondition(const std::vector<Channels>& residual,
                                  std::vector<Channels>& result) {
-  levels_.front().right_side = residual;
+  Level& finest = levels_.front();
+  finest.right_side = residual;
+  std::fill(finest.x.begin(), finest.x.end(), Channels::Zero());
   cycle(0);
-  result = levels_.front().x;
+  result = finest.x;
 }
 
 const std::vector<LaplaceSolver::Channels>& LaplaceSolver::solve(float tolerance) {

@@ -16,9 +16,9 @@ namespace diminish {
 /// neighbour of value v is 1 added to the anchor and v to the right side. Every connected part
 /// needs an anchor somewhere.
 ///
-/// Conjugate gradients, preconditioned by one multigrid V-cycle on 2x2 aggregates (Braess 1995),
+/// Conjugate gradients, preconditioned by one multigrid W-cycle on 2x2 aggregates (Braess 1995),
 /// which any mask, however thin or scattered, coarsens to without growing. Cost: linear in the
-/// number of pixels; about ten iterations.
+/// number of pixels.
 class LaplaceSolver {
  public:
   using Channels = Eigen::Array3f;
