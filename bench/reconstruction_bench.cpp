@@ -1,5 +1,6 @@
 #include <benchmark/benchmark.h>
 
+#include "analytic_scene.h"
 #include "diminish/frame_source.h"
 #include "diminish/pipeline.h"
 #include "diminish/reconstructor.h"
@@ -7,7 +8,7 @@
 namespace diminish {
 namespace {
 
-/// A bundled recording's first frame, with the poses and masks that the pipeline found in it.
+/// A bundled recording's first frame, with the poses that the pipeline found in it.
 void reconstruct(benchmark::State& state, const char* name, bool whole_view) {
   const Recording recording = load_recording(std::filesystem::path(DIMINISH_RECORDINGS_DIR) / name);
   const Options options;
@@ -15,12 +16,7 @@ void reconstruct(benchmark::State& state, const char* name, bool whole_view) {
   DiminishedFrame result;
   open_recording(recording, options)->next(frame);
   Pipeline(recording.rig, recording.scene, options).process(frame, result);
-  OcclusionMasks masks;
-  masks.color = result.mask;
-  for (const RgbdCamera& camera : recording.rig.rgbd) {
-    masks.rgbd_color.emplace_back(camera.color.width, camera.color.height, std::uint8_t{0});
-    masks.rgbd_depth.emplace_back(camera.depth.width, camera.depth.height, std::uint8_t{0});
-  }
+  const OcclusionMasks masks = testing::empty_masks(recording.rig);
   const Rect region = whole_view ? recording.rig.color.bounds() : result.reconstruction.region;
   const auto reconstructor = Registry<Reconstructor>::get("reference")(recording.rig);
   Reconstruction reconstruction;

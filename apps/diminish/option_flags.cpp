@@ -17,8 +17,7 @@ std::string flag_name(const OptionInfo& info) {
 }
 
 /// The names that a text option can have.
-std::string choices(const OptionInfo& info, const Options& options, const std::string& value) {
-  (void)info;
+std::string choices(const Options& options, const std::string& value) {
   if (&value == &options.color_correct) return Registry<ColorCorrector>::known();
   if (&value == &options.inpaint) return Registry<Inpainter>::known();
   return {};
@@ -36,7 +35,7 @@ void add_option_flags(CLI::App& command, Options& options) {
                        ->capture_default_str()
                        ->group("Options of the pipeline");
       if constexpr (std::is_same_v<Value, std::string>) {
-        flag->type_name(choices(info, options, value));
+        flag->type_name(choices(options, value));
       } else {
         flag->type_name(info.unit);
       }

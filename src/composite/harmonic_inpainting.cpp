@@ -1,7 +1,7 @@
 #include <array>
-#include <cmath>
 #include <vector>
 
+#include "composite/channels.h"
 #include "composite/laplace_solver.h"
 #include "diminish/inpainter.h"
 
@@ -34,8 +34,7 @@ class HarmonicInpainting : public Inpainter {
       constexpr std::array<std::array<int, 2>, 4> steps = {{{-1, 0}, {1, 0}, {0, -1}, {0, 1}}};
       for (const auto& [dx, dy] : steps) {
         if (!picture.bounds().contains(x + dx, y + dy) || missing(x + dx, y + dy) != 0) continue;
-        const Bgr& known = picture(x + dx, y + dy);
-        solver_.add_anchor(index, 1, Channels(known.b, known.g, known.r));
+        solver_.add_anchor(index, 1, to_channels(picture(x + dx, y + dy)));
         anything_known = true;
       }
     });
@@ -45,11 +44,7 @@ class HarmonicInpainting : public Inpainter {
     }
     const std::vector<Channels>& filling = solver_.solve(tolerance_levels);
     for_each_pixel([&](int x, int y, int index) {
-      const Channels& value = filling[static_cast<std::size_t>(index)];
-      const auto level = [&](int channel) {
-        return static_cast<std::uint8_t>(std::lrint(std::clamp(value[channel], 0.F, 255.F)));
-      };
-      picture(x, y) = {level(0), level(1), level(2)};
+      picture(x, y) = to_color(filling[static_cast<std::size_t>(index)]);
     });
     return true;
   }

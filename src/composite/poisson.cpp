@@ -1,8 +1,7 @@
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <vector>
 
+#include "composite/channels.h"
 #include "composite/laplace_solver.h"
 #include "diminish/color_corrector.h"
 
@@ -16,18 +15,8 @@ constexpr float tolerance_levels = 0.02F;
 /// mean correction. Small, so that seams inside them are evened out first.
 constexpr float weak = 1e-3F;
 
-Channels channels(const Bgr& color) {
-  return {static_cast<float>(color.b), static_cast<float>(color.g), static_cast<float>(color.r)};
-}
 Channels channels(const Bgra& color) {
-  return channels(Bgr{color.b, color.g, color.r});
-}
-
-Bgr to_color(const Channels& value) {
-  const auto level = [](float v) {
-    return static_cast<std::uint8_t>(std::lrint(std::clamp(v, 0.F, 255.F)));
-  };
-  return {level(value[0]), level(value[1]), level(value[2])};
+  return to_channels({color.b, color.g, color.r});
 }
 
 struct Offset {
@@ -76,7 +65,7 @@ class PoissonCorrection : public ColorCorrector {
         if (occlusion(nx, ny) != 0) {
           if (seam) solver_.add_source(index, other - own);
         } else {
-          const Channels difference = channels(camera(nx, ny)) - (seam ? own : other);
+          const Channels difference = to_channels(camera(nx, ny)) - (seam ? own : other);
           solver_.add_anchor(index, 1, difference);
           anchored_[static_cast<std::size_t>(index)] = true;
           difference_sum += difference.cast<double>();
