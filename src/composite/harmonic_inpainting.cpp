@@ -1,15 +1,11 @@
-#include <array>
-#include <vector>
-
-#include "composite/channels.h"
-#include "composite/laplace_solver.h"
+#include "composite/membrane_picture.h"
+#include "composite/membrane_solver.h"
 #include "diminish/inpainter.h"
 
 namespace diminish {
 namespace {
 
-using Channels = LaplaceSolver::Channels;
-
+/// Of the last multigrid correction; what is left of the error is smaller.
 constexpr float tolerance_levels = 0.1F;
 
 /// The smoothest filling: Laplace's equation with the known neighbours as Dirichlet boundary. It
@@ -19,38 +15,33 @@ class HarmonicInpainting : public Inpainter {
   bool inpaint(const Mask& missing, const Options&, Image<Bgr>& picture) override {
     const Rect holes = bounding_box(missing);
     if (holes.empty()) return true;
-    const auto for_each_pixel = [&](auto&& visit) {
-      for (int y = holes.y; y < holes.bottom(); ++y) {
-        for (int x = holes.x; x < holes.right(); ++x) {
-          if (missing(x, y) != 0) visit(x, y, solver_.index(x - holes.x, y - holes.y));
-        }
-      }
-    };
-    solver_.begin(holes.width, holes.height);
-    for_each_pixel([&](int x, int y, int) { solver_.add(x - holes.x, y - holes.y); });
+    const Rect window = intersect(grow(holes, 1), picture.bounds());
+    solver_.begin(window.width, window.height);
+    for (int row = 0; row < window.height; ++row) {
+      const std::uint8_t* mask = missing.row(window.y + row) + window.x;
+      std::uint8_t* keys = solver_.keys(row);
+      for (int i = 0; i < window.width; ++i) keys[i] = mask[i] != 0 ? 1 : MembraneSolver::fixed;
+    }
     solver_.connect();
     bool anything_known = false;
-    for_each_pixel([&](int x, int y, int index) {
-      constexpr std::array<std::array<int, 2>, 4> steps = {{{-1, 0}, {1, 0}, {0, -1}, {0, 1}}};
-      for (const auto& [dx, dy] : steps) {
-        if (!picture.bounds().contains(x + dx, y + dy) || missing(x + dx, y + dy) != 0) continue;
-        solver_.add_anchor(index, 1, to_channels(picture(x + dx, y + dy)));
-        anything_known = true;
-      }
+    solver_.for_each_fixed([&](int x, int y) {
+      const Bgr& color = picture(window.x + x, window.y + y);
+      solver_.set_fixed(x, y,
+                        {static_cast<float>(color.b), static_cast<float>(color.g),
+                         static_cast<float>(color.r)});
+      anything_known = true;
     });
     if (!anything_known) {
-      for_each_pixel([&](int x, int y, int) { picture(x, y) = {}; });
+      picture.fill(holes, {});
       return false;
     }
-    const std::vector<Channels>& filling = solver_.solve(tolerance_levels);
-    for_each_pixel([&](int x, int y, int index) {
-      picture(x, y) = to_color(filling[static_cast<std::size_t>(index)]);
-    });
+    solver_.solve(tolerance_levels);
+    write_solution(solver_, window, picture);
     return true;
   }
 
  private:
-  LaplaceSolver solver_;
+  MembraneSolver solver_;
 };
 
 const bool registered =

@@ -1,0 +1,111 @@
+#include "composite/membrane_level.h"
+
+#include <algorithm>
+
+namespace diminish {
+namespace {
+
+/// The runs of tiles for which `wanted` holds, row by row.
+template <class Wanted>
+void collect(const MembraneLevel& level, Wanted wanted, std::vector<MembraneLevel::Span>& spans,
+             std::vector<int>& rows) {
+  spans.clear();
+  rows.clear();
+  for (int row = 0; row < level.tile_rows; ++row) {
+    rows.push_back(static_cast<int>(spans.size()));
+    for (int column = 0; column < level.tile_columns; ++column) {
+      if (!wanted(level.state(column, row))) continue;
+      const int first = column;
+      while (column < level.tile_columns && wanted(level.state(column, row))) ++column;
+      spans.push_back({first, column});
+    }
+  }
+  rows.push_back(static_cast<int>(spans.size()));
+}
+
+}  // namespace
+
+void AlignedFloats::require(std::size_t count) {
+  if (count <= capacity_) return;
+  capacity_ = count + count / 4;
+  data_ = hwy::AllocateAligned<float>(capacity_);
+  std::fill_n(data_.get(), capacity_, 0.F);
+}
+
+void MembraneLevel::begin(int width_, int height_) {
+  clear_stored();
+  width = width_;
+  height = height_;
+  tile_columns = (width + tile_width - 1) / tile_width;
+  tile_rows = (height + tile_height - 1) / tile_height;
+  pitch = (tile_columns + 2) * lanes;
+  const std::size_t size = static_cast<std::size_t>(rows() + 2) * 2 * static_cast<std::size_t>(pitch);
+  for (AlignedFloats* values : {&right, &down, &inverse}) values->require(size);
+  for (AlignedFloats* values : {&x, &right_side, &error, &residual}) {
+    values->require(size * channels);
+  }
+  blocks.assign(static_cast<std::size_t>(rows()) * static_cast<std::size_t>(tile_columns),
+                Block::empty);
+  tiles.assign(static_cast<std::size_t>(tile_rows + 2) *
+                   static_cast<std::size_t>(tile_columns + 2),
+               Tile::empty);
+}
+
+void MembraneLevel::clear_stored() {
+  for (int row = 0; row + 1 < static_cast<int>(stored_rows.size()); ++row) {
+    const auto from = static_cast<std::size_t>(stored_rows[static_cast<std::size_t>(row)]);
+    const auto to = static_cast<std::size_t>(stored_rows[static_cast<std::size_t>(row) + 1]);
+    for (std::size_t i = from; i < to; ++i) {
+      const std::ptrdiff_t count = (stored[i].last - stored[i].first) * lanes;
+      for (int y = row * tile_height; y < (row + 1) * tile_height; ++y) {
+        for (int parity = 0; parity < 2; ++parity) {
+          for (AlignedFloats* values : {&right, &down, &inverse}) {
+            std::fill_n(values->data() + at(y, parity, stored[i].first), count, 0.F);
+          }
+        }
+      }
+    }
+  }
+  stored_rows.clear();
+}
+
+void MembraneLevel::spread(Tile from, Tile to) {
+  for (int row = 0; row < tile_rows; ++row) {
+    for (int column = 0; column < tile_columns; ++column) {
+      if (state(column, row) != Tile::smooth) continue;
+      bool beside = false;
+      for (int dy = -1; dy <= 1; ++dy) {
+        for (int dx = -1; dx <= 1; ++dx) beside |= state(column + dx, row + dy) == from;
+      }
+      if (beside) state(column, row) = to;
+    }
+  }
+}
+
+void MembraneLevel::choose_tiles() {
+  for (int row = 0; row < tile_rows; ++row) {
+    for (int column = 0; column < tile_columns; ++column) {
+      int plain = 0;
+      int empty = 0;
+      for (int y = row * tile_height; y < (row + 1) * tile_height; ++y) {
+        plain += block(y, column) == Block::plain ? 1 : 0;
+        empty += block(y, column) == Block::empty ? 1 : 0;
+      }
+      state(column, row) = empty == tile_height   ? Tile::empty
+                           : plain == tile_height ? Tile::smooth
+                                                  : Tile::active;
+    }
+  }
+  // Through `ghost`, so that a tile made active does not make its own neighbours active.
+  spread(Tile::active, Tile::ghost);
+  std::replace(tiles.begin(), tiles.end(), Tile::ghost, Tile::active);
+  spread(Tile::active, Tile::ghost);
+  has_smooth = std::any_of(tiles.begin(), tiles.end(), [](Tile state) {
+    return state == Tile::smooth || state == Tile::ghost;
+  });
+  collect(*this, [](Tile state) { return state == Tile::active; }, active, active_rows);
+  collect(*this, [](Tile state) { return state == Tile::active || state == Tile::ghost; }, stored,
+          stored_rows);
+}
+
+}  // namespace diminish

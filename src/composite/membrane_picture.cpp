@@ -1,0 +1,105 @@
+#include "composite/membrane_picture.h"
+
+#include <algorithm>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "composite/membrane_picture.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace diminish::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+constexpr int block = MembraneLevel::tile_width;
+using Floats = hn::CappedTag<float, block>;
+using Ints = hn::RebindToSigned<Floats>;
+using Bytes = hn::Rebind<std::uint8_t, Floats>;
+
+HWY_INLINE hn::Vec<Floats> ToFloats(hn::Vec<Bytes> bytes) {
+  return hn::ConvertTo(Floats(), hn::PromoteTo(Ints(), bytes));
+}
+/// Rounds to the nearest level, clamps.
+HWY_INLINE hn::Vec<Bytes> ToBytes(hn::Vec<Floats> values) {
+  return hn::DemoteTo(Bytes(), hn::NearestInt(values));
+}
+
+/// One block of pixels. solution: three channels of 32. base: null for none.
+void WriteBlock(const float* solution, const std::uint8_t* keys, const Bgra* base, Bgr* picture) {
+  const Bytes d;
+  const auto lanes = static_cast<int>(hn::Lanes(d));
+  for (int i = 0; i < block; i += lanes) {
+    const auto key = hn::LoadU(d, keys + i);
+    const auto skipped =
+        hn::Or(hn::Eq(key, hn::Zero(d)), hn::Eq(key, hn::Set(d, MembraneSolver::fixed)));
+    if (hn::AllTrue(d, skipped)) continue;
+    auto* pixels = reinterpret_cast<std::uint8_t*>(picture + i);
+    hn::Vec<Bytes> old[3], result[3];
+    hn::LoadInterleaved3(d, pixels, old[0], old[1], old[2]);
+    hn::Vec<Floats> sum[3];
+    for (int c = 0; c < 3; ++c) sum[c] = hn::LoadU(Floats(), solution + c * block + i);
+    if (base) {
+      hn::Vec<Bytes> color[4];
+      hn::LoadInterleaved4(d, reinterpret_cast<const std::uint8_t*>(base + i), color[0], color[1],
+                           color[2], color[3]);
+      for (int c = 0; c < 3; ++c) sum[c] = hn::Add(sum[c], ToFloats(color[c]));
+    }
+    for (int c = 0; c < 3; ++c) result[c] = hn::IfThenElse(skipped, old[c], ToBytes(sum[c]));
+    hn::StoreInterleaved3(result[0], result[1], result[2], d, pixels);
+  }
+}
+
+}  // namespace
+}  // namespace diminish::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace diminish {
+namespace {
+
+HWY_EXPORT(WriteBlock);
+
+constexpr int block = MembraneLevel::tile_width;
+
+void write(const MembraneSolver& solver, const Rect& window, const Image<Bgra>* base,
+           Image<Bgr>& picture) {
+  HWY_ALIGN float solution[3 * block];
+  HWY_ALIGN Bgra base_end[block] = {};
+  HWY_ALIGN Bgr picture_end[block];
+  for (int row = 0; row < window.height; ++row) {
+    for (int column = 0; column * block < window.width; ++column) {
+      if (!solver.any_in_block(row, column)) continue;
+      solver.read_block(row, column, solution);
+      const int x = window.x + column * block;
+      const int count = std::min(block, window.right() - x);
+      const std::uint8_t* keys = solver.keys(row) + column * block;
+      const Bgra* colors = base ? base->row(window.y + row) + x : nullptr;
+      Bgr* pixels = picture.row(window.y + row) + x;
+      if (count == block) {
+        HWY_DYNAMIC_DISPATCH(WriteBlock)(solution, keys, colors, pixels);
+        continue;
+      }
+      // The last block of a row reaches beyond the images.
+      if (base) std::copy_n(colors, count, base_end);
+      std::copy_n(pixels, count, picture_end);
+      HWY_DYNAMIC_DISPATCH(WriteBlock)(solution, keys, base ? static_cast<const Bgra*>(base_end) : nullptr,
+                                       picture_end);
+      std::copy_n(picture_end, count, pixels);
+    }
+  }
+}
+
+}  // namespace
+
+void write_solution(const MembraneSolver& solver, const Rect& window, Image<Bgr>& picture) {
+  write(solver, window, nullptr, picture);
+}
+void add_solution(const MembraneSolver& solver, const Rect& window, const Image<Bgra>& base,
+                  Image<Bgr>& picture) {
+  write(solver, window, &base, picture);
+}
+
+}  // namespace diminish
+#endif

@@ -1,0 +1,217 @@
+#include "composite/membrane_solver.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "composite/channels.h"
+#include "composite/membrane_kernels.h"
+
+namespace diminish {
+namespace {
+
+using Block = MembraneLevel::Block;
+constexpr int tile_width = MembraneLevel::tile_width;
+
+constexpr int coarsest_sweeps = 8;
+constexpr int max_cycles = 12;
+
+int half(int cells) {
+  return (cells + 1) / 2;
+}
+
+}  // namespace
+
+void MembraneSolver::begin(int width, int height) {
+  width_ = width;
+  height_ = height;
+  tile_columns_ = (width + tile_width - 1) / tile_width;
+  keys_per_row_ = (tile_columns_ + 2) * tile_width;
+  words_per_row_ = tile_columns_ + 2;
+  keys_.resize(static_cast<std::size_t>((height + 2) * keys_per_row_));
+  cells_.resize(static_cast<std::size_t>((height + 2 + MembraneLevel::tile_height) * words_per_row_));
+  fixed_.resize(cells_.size());
+  irregular_.resize(cells_.size());
+  sources_.clear();
+  fixed_values_.clear();
+  std::fill_n(keys_.begin(), keys_per_row_, std::uint8_t{0});
+  std::fill_n(keys_.end() - keys_per_row_, keys_per_row_, std::uint8_t{0});
+  for (int y = 0; y < height; ++y) {
+    keys(y)[-1] = 0;
+    std::fill(keys(y) + width, keys(y) + tile_columns_ * tile_width + 1, std::uint8_t{0});
+  }
+}
+
+void MembraneSolver::connect() {
+  size_ = 0;
+  for (auto* words : {&cells_, &fixed_, &irregular_}) {
+    std::fill_n(words->begin(), words_per_row_, std::uint32_t{0});
+    std::fill(words->begin() + (height_ + 1) * words_per_row_, words->end(), std::uint32_t{0});
+  }
+  for (int y = 0; y < height_; ++y) {
+    const std::ptrdiff_t row = word_index(y);
+    for (auto* words : {&cells_, &fixed_, &irregular_}) {
+      words->data()[row - 1] = words->data()[row + tile_columns_] = 0;
+    }
+    membrane::classify_row(keys(y), keys_per_row_, tile_columns_, cells_.data() + row,
+                           fixed_.data() + row, irregular_.data() + row);
+    for (int word = 0; word < tile_columns_; ++word) {
+      size_ += static_cast<std::size_t>(std::popcount(cells_.data()[row + word]));
+    }
+  }
+}
+
+void MembraneSolver::set_fixed(int x, int y, const Values& value) {
+  fixed_values_.push_back({x, y, {value[0], value[1], value[2]}});
+}
+void MembraneSolver::add_source(int x, int y, const Values& value) {
+  sources_.push_back({x, y, {value[0], value[1], value[2]}});
+}
+
+const std::vector<LooseRun>& MembraneSolver::take_out_loose_parts() {
+  parts_.find(cells_.data() + word_index(0), words_per_row_, tile_columns_, height_);
+  held_.assign(parts_.part_limit(), false);
+  for (int y = 0; y < height_; ++y) {
+    const std::uint32_t* row = fixed_.data() + word_index(y);
+    const std::uint32_t* above = row - words_per_row_;
+    const std::uint32_t* below = row + words_per_row_;
+    for (const ConnectedRuns::Run& run : parts_.row(y)) {
+      bool held = held_[run.part];
+      for (int word = run.first / 32; !held && word <= (run.last - 1) / 32; ++word) {
+        const std::uint32_t beside = row[word] << 1 | row[word] >> 1 | row[word - 1] >> 31 |
+                                     row[word + 1] << 31 | above[word] | below[word];
+        held = (beside & run.bits(word)) != 0;
+      }
+      held_[run.part] = held;
+    }
+  }
+  loose_.clear();
+  for (int y = 0; y < height_; ++y) {
+    for (const ConnectedRuns::Run& run : parts_.row(y)) {
+      if (held_[run.part]) continue;
+      loose_.push_back({y, run.first, run.last});
+      for (int word = run.first / 32; word <= (run.last - 1) / 32; ++word) {
+        const std::size_t at = static_cast<std::size_t>(word_index(y) + word);
+        size_ -= static_cast<std::size_t>(std::popcount(cells_[at] & run.bits(word)));
+        cells_[at] &= ~run.bits(word);
+        irregular_[at] &= ~run.bits(word);
+      }
+      std::fill(keys(y) + run.first, keys(y) + run.last, std::uint8_t{0});
+    }
+  }
+  return loose_;
+}
+
+void MembraneSolver::build() {
+  level_count_ = 1;
+  for (int w = width_, h = height_; w > 1 || h > 1; w = half(w), h = half(h)) ++level_count_;
+  if (levels_.size() < level_count_) levels_.resize(level_count_);
+
+  MembraneLevel& finest = levels_.front();
+  finest.begin(width_, height_);
+  for (int y = 0; y < height_; ++y) {
+    const std::uint32_t* cells = cells_.data() + word_index(y);
+    const std::uint32_t* fixed_pixels = fixed_.data() + word_index(y);
+    const std::uint32_t* irregular = irregular_.data() + word_index(y);
+    for (int column = 0; column < tile_columns_; ++column) {
+      if ((cells[column] | fixed_pixels[column]) == 0) continue;
+      finest.block(y, column) =
+          cells[column] == ~0U && irregular[column] == 0 ? Block::plain : Block::general;
+    }
+  }
+  finest.choose_tiles();
+  membrane::set_weights(cells_.data(), fixed_.data(), words_per_row_, finest);
+  const auto place = [&](const Boundary& boundary, int channel) {
+    return finest.at(boundary.y, channel, boundary.x % 2, boundary.x / tile_width) +
+           boundary.x % tile_width / 2;
+  };
+  for (const Boundary& boundary : sources_) {
+    for (int c = 0; c < channels; ++c) {
+      finest.right_side.data()[place(boundary, c)] += boundary.value[c];
+    }
+  }
+  for (const Boundary& boundary : fixed_values_) {
+    for (int c = 0; c < channels; ++c) {
+      finest.x.data()[place(boundary, c)] = boundary.value[c];
+    }
+  }
+  membrane::invert_diagonal(finest);
+
+  for (std::size_t l = 1; l < level_count_; ++l) {
+    const MembraneLevel& fine = levels_[l - 1];
+    MembraneLevel& coarse = levels_[l];
+    coarse.begin(half(fine.width), half(fine.height));
+    coarsen_blocks(fine, coarse);
+    coarse.choose_tiles();
+    membrane::coarsen(fine, coarse);
+    membrane::invert_diagonal(coarse);
+  }
+}
+
+void MembraneSolver::coarsen_blocks(const MembraneLevel& fine, MembraneLevel& coarse) const {
+  const auto fine_block = [&](int y, int column) {
+    return y < fine.rows() && column < fine.tile_columns ? fine.block(y, column) : Block::empty;
+  };
+  for (int y = 0; y < coarse.height; ++y) {
+    for (int column = 0; column < coarse.tile_columns; ++column) {
+      const Block children[] = {fine_block(2 * y, 2 * column), fine_block(2 * y, 2 * column + 1),
+                                fine_block(2 * y + 1, 2 * column),
+                                fine_block(2 * y + 1, 2 * column + 1)};
+      const bool same = std::all_of(std::begin(children), std::end(children),
+                                    [&](Block child) { return child == children[0]; });
+      coarse.block(y, column) = same ? children[0] : Block::general;
+    }
+  }
+}
+
+double MembraneSolver::cycle(std::size_t l, bool from_zero) {
+  MembraneLevel& level = levels_[l];
+  const float* right_side = from_zero ? level.residual.data() : level.right_side.data();
+  float* values = from_zero ? level.error.data() : level.x.data();
+  membrane::relax(level, right_side, values, from_zero);
+  if (l + 1 == level_count_) {
+    for (int sweep = 1; sweep < coarsest_sweeps; ++sweep) {
+      membrane::relax(level, right_side, values, false);
+    }
+    return 0;
+  }
+  MembraneLevel& coarse = levels_[l + 1];
+  const double residual = membrane::restrict_residual(level, right_side, values, coarse);
+  cycle(l + 1, true);
+  membrane::extend_over_fixed(coarse, coarse.error.data());
+  const double change = membrane::prolong(coarse, coarse.error.data(), true, level, values);
+  if (level.has_smooth) membrane::add_error(coarse);
+  membrane::relax(level, right_side, values, false);
+  // A residual is about four times the error that it stands for.
+  return change + residual / 16;
+}
+
+void MembraneSolver::solve(float tolerance) {
+  cycles_ = 0;
+  if (size_ == 0) return;
+  build();
+  cycle(level_count_ - 1, false);
+  const double limit = static_cast<double>(tolerance) * static_cast<double>(tolerance) *
+                       static_cast<double>(channels) * static_cast<double>(size_);
+  for (std::size_t l = level_count_ - 1; l-- > 0;) {
+    MembraneLevel& level = levels_[l];
+    membrane::extend_over_fixed(levels_[l + 1], levels_[l + 1].x.data());
+    membrane::prolong(levels_[l + 1], levels_[l + 1].x.data(), false, level, level.x.data());
+    const int most = l == 0 ? max_cycles : 1;
+    for (int i = 0; i < most; ++i) {
+      const double change = cycle(l, false);
+      if (l == 0) ++cycles_;
+      if (change < limit) break;
+    }
+  }
+  for (std::size_t l = level_count_ - 1; l-- > 1;) {
+    if (levels_[l].has_smooth) membrane::fill_smooth(levels_[l], levels_[l + 1]);
+  }
+}
+
+void MembraneSolver::read_block(int y, int column, float* result) const {
+  membrane::read_block(levels_[0], levels_[std::min<std::size_t>(1, level_count_ - 1)], y, column,
+                       result);
+}
+
+}  // namespace diminish
