@@ -8,12 +8,25 @@
 
 namespace diminish {
 
-/// Moves the corners of a dark square on a light ground to sub-pixel accuracy. Along each side the
-/// strongest dark-to-light step is located on short profiles across it; a line is fitted to these
-/// points in undistorted rays, where sides are straight, and neighbouring lines are intersected.
+/// How thoroughly `refine_corners` looks.
+struct RefinementPass {
+  int profiles;     ///< across each side
+  double reach_px;  ///< how far from the side, in and out
+};
+/// For corners that are some pixels off; then `fine_pass`.
+inline constexpr RefinementPass coarse_pass{14, 8};
+inline constexpr RefinementPass fine_pass{64, 4};
+
+/// Moves the corners of a dark square on a light ground, clockwise, to sub-pixel accuracy. Along
+/// each side the strongest dark-to-light step is located on short profiles across it; a line is
+/// fitted to these points in undistorted rays, where sides are straight, and neighbouring lines are
+/// intersected.
+/// gray: a part of the picture that begins at the pixel `origin`; corners are in the picture.
 /// modules: the number of cells along a side, with the border; a profile reaches no further than
-/// the border is wide. Corners whose sides cannot be found stay as they are.
-void refine_corners(const Image<std::uint8_t>& gray, const Lens& lens, int modules,
+/// the border is wide. Answers whether all four sides were found; else corners whose sides were
+/// not stay as they are.
+bool refine_corners(const Image<std::uint8_t>& gray, const Eigen::Vector2d& origin,
+                    const Lens& lens, int modules, const RefinementPass& pass,
                     std::array<Eigen::Vector2d, 4>& corners);
 
 }  // namespace diminish

@@ -132,7 +132,7 @@ TEST(RefineCorners, LeavesCornersAloneWhereThereIsNoEdge) {
   const std::array<Eigen::Vector2d, 4> corners = {
       Eigen::Vector2d(50, 50), {120, 52}, {118, 121}, {49, 119}};
   auto refined = corners;
-  refine_corners(flat, Lens(ideal), 6, refined);
+  EXPECT_FALSE(refine_corners(flat, {0, 0}, Lens(ideal), 6, fine_pass, refined));
   EXPECT_EQ(refined, corners);
 }
 

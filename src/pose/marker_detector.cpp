@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <opencv2/aruco.hpp>
-#include <opencv2/imgproc.hpp>
 #include <utility>
 
-#include "core/mat.h"
 #include "diminish/error.h"
 #include "pose/corner_refinement.h"
+#include "pose/dark_components.h"
+#include "pose/marker_code.h"
+#include "pose/quad_candidates.h"
 
 namespace diminish {
 namespace {
@@ -40,13 +41,51 @@ cv::Ptr<cv::aruco::Dictionary> find_dictionary(const std::string& name) {
   throw Error("marker_dictionary: expected one of " + known + ", got '" + name + "'");
 }
 
-/// Removes every marker whose id occurs more than once. `markers` is sorted by id.
+/// How a pixel must compare with its surroundings to be dark: in the small picture's pixels, the
+/// border of the markers wanted is 2 to 20 wide.
+constexpr int threshold_radius = 6;
+constexpr int threshold_contrast = 6;
+/// Of two finds of the same marker.
+constexpr double same_place_px = 6;
+
+/// The part of the picture that a quadrilateral lies in, with a margin for what surrounds it.
+Rect surroundings(const Quad& quad, const Rect& bounds) {
+  constexpr double margin = 12;
+  Eigen::Vector2d least = quad[0];
+  Eigen::Vector2d most = quad[0];
+  for (const Eigen::Vector2d& corner : quad) {
+    least = least.cwiseMin(corner);
+    most = most.cwiseMax(corner);
+  }
+  const int x = static_cast<int>(least.x() - margin);
+  const int y = static_cast<int>(least.y() - margin);
+  return intersect({x, y, static_cast<int>(most.x() + margin) - x,
+                    static_cast<int>(most.y() + margin) - y}, bounds);
+}
+
+void copy_brightness(const Image<Bgr>& image, const Rect& part, Image<std::uint8_t>& gray) {
+  gray.resize(part.width, part.height);
+  for (int y = 0; y < part.height; ++y) {
+    const Bgr* from = image.row(part.y + y) + part.x;
+    std::uint8_t* to = gray.row(y);
+    for (int x = 0; x < part.width; ++x) {
+      to[x] = static_cast<std::uint8_t>((from[x].b + 2 * from[x].g + from[x].r + 2) >> 2);
+    }
+  }
+}
+
+/// Removes every marker whose id occurs in more than one place. `markers` is sorted by id.
 void remove_ambiguous(std::vector<Marker>& markers) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < markers.size();) {
     std::size_t next = i + 1;
-    while (next < markers.size() && markers[next].id == markers[i].id) ++next;
-    if (next == i + 1) markers[kept++] = markers[i];
+    bool one_place = true;
+    while (next < markers.size() && markers[next].id == markers[i].id) {
+      one_place = one_place && (markers[next].corners[0] - markers[i].corners[0]).norm() <
+                                   same_place_px;
+      ++next;
+    }
+    if (one_place) markers[kept++] = markers[i];
     i = next;
   }
   markers.resize(kept);
@@ -55,18 +94,16 @@ void remove_ambiguous(std::vector<Marker>& markers) {
 }  // namespace
 
 struct MarkerDetector::Implementation {
-  cv::Ptr<cv::aruco::Dictionary> dictionary;
-  cv::Ptr<cv::aruco::DetectorParameters> parameters = cv::aruco::DetectorParameters::create();
-  Image<std::uint8_t> gray;
-  std::vector<std::vector<cv::Point2f>> corners;
-  std::vector<int> ids;
+  explicit Implementation(const std::string& dictionary) : code(*find_dictionary(dictionary)) {}
+
+  MarkerCode code;
+  Image<std::uint8_t> small, gray;
+  DarkComponents components;
+  QuadCandidates candidates;
 };
 
 MarkerDetector::MarkerDetector(const std::string& dictionary)
-    : implementation_(std::make_unique<Implementation>()) {
-  implementation_->dictionary = find_dictionary(dictionary);
-  implementation_->parameters->cornerRefinementMethod = cv::aruco::CORNER_REFINE_NONE;
-}
+    : implementation_(std::make_unique<Implementation>(dictionary)) {}
 MarkerDetector::~MarkerDetector() = default;
 MarkerDetector::MarkerDetector(MarkerDetector&&) noexcept = default;
 MarkerDetector& MarkerDetector::operator=(MarkerDetector&&) noexcept = default;
@@ -75,21 +112,24 @@ void MarkerDetector::detect(const Image<Bgr>& image, const Lens& lens,
                             std::vector<Marker>& markers) {
   Implementation& self = *implementation_;
   markers.clear();
-  self.gray.resize(image.width(), image.height());
-  cv::Mat gray = as_mat(self.gray);
-  cv::cvtColor(as_mat(image), gray, cv::COLOR_BGR2GRAY);
-  cv::aruco::detectMarkers(gray, self.dictionary, self.corners, self.ids, self.parameters);
-  const int modules = self.dictionary->markerSize + 2;
-  for (std::size_t i = 0; i < self.ids.size(); ++i) {
-    Marker marker{self.ids[i], {}};
-    for (std::size_t c = 0; c < 4; ++c) {
-      marker.corners[c] = {self.corners[i][c].x, self.corners[i][c].y};
-    }
-    refine_corners(self.gray, lens, modules, marker.corners);
-    markers.push_back(marker);
+  decimate(image, self.small);
+  self.components.find(self.small, threshold_radius, threshold_contrast);
+  for (Quad quad : self.candidates.find(self.components)) {
+    const Rect part = surroundings(quad, image.bounds());
+    copy_brightness(image, part, self.gray);
+    const Eigen::Vector2d origin(part.x, part.y);
+    const int modules = self.code.modules();
+    if (!refine_corners(self.gray, origin, lens, modules, coarse_pass, quad)) continue;
+    Quad local = quad;
+    for (Eigen::Vector2d& corner : local) corner -= origin;
+    const auto reading = self.code.read(self.gray, local);
+    if (!reading) continue;
+    refine_corners(self.gray, origin, lens, modules, fine_pass, quad);
+    std::rotate(quad.begin(), quad.begin() + reading->top_left, quad.end());
+    markers.push_back({reading->id, quad});
   }
-  std::sort(markers.begin(), markers.end(),
-            [](const Marker& a, const Marker& b) { return a.id < b.id; });
+  std::stable_sort(markers.begin(), markers.end(),
+                   [](const Marker& a, const Marker& b) { return a.id < b.id; });
   remove_ambiguous(markers);
 }
 

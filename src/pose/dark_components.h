@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "diminish/image.h"
+
+namespace diminish {
+
+/// The picture's brightness at a quarter of the resolution: each pixel the mean of 4x2 of the
+/// picture's. Enough to see a marker, and little memory to touch.
+inline constexpr int decimation = 4;
+void decimate(const Image<Bgr>& image, Image<std::uint8_t>& small);
+
+/// The connected parts of a picture that are darker than what is around them.
+class DarkComponents {
+ public:
+  /// Pixels [first, last) of row y.
+  struct Run {
+    int y, first, last;
+    int component;
+    int next;  ///< the component's next run, further down or to the right; -1: none
+  };
+  struct Component {
+    Rect box;
+    int first_run;
+    int pixels;
+  };
+
+  /// A pixel is dark if it is `contrast` levels below the mean of the square of 2 radius + 1 pixels
+  /// around it. Parts are 8-connected, so that a thin slanted line holds together.
+  void find(const Image<std::uint8_t>& small, int radius, int contrast);
+
+  const std::vector<Component>& components() const { return components_; }
+  const Run& run(int index) const { return runs_[static_cast<std::size_t>(index)]; }
+
+ private:
+  void threshold(const Image<std::uint8_t>& small, int radius, int contrast);
+  void connect();
+  int root(int run);
+
+  std::vector<std::uint16_t> column_sums_;
+  std::vector<std::uint32_t> prefix_;
+  std::vector<Run> runs_;
+  std::vector<int> row_begin_, last_run_;
+  std::vector<Component> components_;
+};
+
+}  // namespace diminish

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <bitset>
+#include <opencv2/aruco.hpp>
+#include <optional>
+#include <vector>
+
+#include "diminish/image.h"
+
+namespace diminish {
+
+/// Reads markers of one dictionary.
+class MarkerCode {
+ public:
+  explicit MarkerCode(const cv::aruco::Dictionary& dictionary);
+
+  /// Cells along a side, with the black border.
+  int modules() const { return bits_ + 2; }
+
+  struct Reading {
+    int id;
+    int top_left;  ///< which of the corners is the marker's own top left
+  };
+  /// The marker in a quadrilateral, clockwise, of the picture `gray`. Nothing if its cells do not
+  /// make a code of the dictionary, up to the errors that the dictionary can correct.
+  std::optional<Reading> read(const Image<std::uint8_t>& gray,
+                              const std::array<Eigen::Vector2d, 4>& corners) const;
+
+ private:
+  static constexpr int max_modules = 9;
+  using Bits = std::bitset<64>;
+
+  int bits_;
+  int max_errors_;
+  std::vector<Bits> codes_;  ///< by id, row by row
+};
+
+}  // namespace diminish
