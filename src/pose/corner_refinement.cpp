@@ -10,50 +10,67 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double profile_step_px = 0.5;
 constexpr int max_profile_samples = 64;
 constexpr std::size_t max_profiles = 64;
-constexpr double min_step_levels = 12;  ///< a weaker edge than this is not a marker's
+constexpr float min_step_levels = 12;  ///< a weaker edge than this is not a marker's
+constexpr double min_support = 0.4;     ///< of a side's profiles, those that see its edge
+constexpr double min_reach_px = 2.5;
+constexpr double near_px = 1;           ///< points that far apart are on the same edge
 
-double sample(const Image<std::uint8_t>& gray, const Vector2d& at) {
-  const double x = std::clamp(at.x(), 0.0, gray.width() - 1.001);
-  const double y = std::clamp(at.y(), 0.0, gray.height() - 1.001);
+/// Bilinear; the four pixels must be inside.
+float sample(const Image<std::uint8_t>& gray, float x, float y) {
   const int x0 = static_cast<int>(x);
   const int y0 = static_cast<int>(y);
-  const double fx = x - x0;
-  const double fy = y - y0;
-  return (1 - fy) * ((1 - fx) * gray(x0, y0) + fx * gray(x0 + 1, y0)) +
-         fy * ((1 - fx) * gray(x0, y0 + 1) + fx * gray(x0 + 1, y0 + 1));
+  const float fx = x - static_cast<float>(x0);
+  const float fy = y - static_cast<float>(y0);
+  const std::uint8_t* upper = gray.row(y0) + x0;
+  const std::uint8_t* lower = gray.row(y0 + 1) + x0;
+  const float top = static_cast<float>(upper[0]) + fx * static_cast<float>(upper[1] - upper[0]);
+  const float bottom = static_cast<float>(lower[0]) + fx * static_cast<float>(lower[1] - lower[0]);
+  return top + fy * (bottom - top);
 }
 
 /// The place of the dark-to-light step on the profile through `center` along `outward`: the
 /// centroid of the brightness's rise around its steepest point.
 std::optional<Vector2d> find_step(const Image<std::uint8_t>& gray, const Vector2d& center,
-                                  const Vector2d& outward, double reach_px) {
-  std::array<double, max_profile_samples> rise{};
-  const int half = std::min(static_cast<int>(reach_px / profile_step_px), max_profile_samples / 2);
-  const int count = 2 * half;
-  const auto position = [&](double i) { return (i - half + 0.5) * profile_step_px; };
-  double previous = sample(gray, center + (position(0) - 0.5 * profile_step_px) * outward);
+                                  const Vector2d& outward, double reach_px, double step_px) {
+  const auto inside = [&](const Vector2d& point) {
+    return point.x() >= 0 && point.y() >= 0 && point.x() < gray.width() - 1.001 &&
+           point.y() < gray.height() - 1.001;
+  };
+  int count = std::min(2 * static_cast<int>(reach_px / step_px), max_profile_samples);
+  double half_length = 0.5 * count * step_px;
+  // At the picture's edge, less will have to do.
+  while (!inside(center - half_length * outward) || !inside(center + half_length * outward)) {
+    count /= 2;
+    half_length = 0.5 * count * step_px;
+    if (half_length < min_reach_px) return std::nullopt;
+  }
+  const Vector2d first = center - half_length * outward;
+  const Eigen::Vector2f start = first.cast<float>();
+  const Eigen::Vector2f step = (step_px * outward).cast<float>();
+  std::array<float, max_profile_samples> rise;
+  float previous = sample(gray, start.x(), start.y());
   int steepest = 0;
   for (int i = 0; i < count; ++i) {
-    const double next = sample(gray, center + (position(i) + 0.5 * profile_step_px) * outward);
+    const auto t = static_cast<float>(i + 1);
+    const float next = sample(gray, start.x() + t * step.x(), start.y() + t * step.y());
     rise[static_cast<std::size_t>(i)] = next - previous;
     previous = next;
     if (rise[static_cast<std::size_t>(i)] > rise[static_cast<std::size_t>(steepest)]) steepest = i;
   }
   // The steepest point's neighbourhood must lie inside the profile, or the edge is elsewhere.
-  constexpr int window = 4;
+  const int window = static_cast<int>(2 / step_px);
   if (steepest < window || steepest >= count - window) return std::nullopt;
-  double weight = 0;
-  double moment = 0;
+  float weight = 0;
+  float moment = 0;
   for (int i = steepest - window; i <= steepest + window; ++i) {
-    const double positive = std::max(0.0, rise[static_cast<std::size_t>(i)]);
+    const float positive = std::max(0.F, rise[static_cast<std::size_t>(i)]);
     weight += positive;
-    moment += positive * position(i);
+    moment += positive * (static_cast<float>(i) + 0.5F);
   }
   if (weight < min_step_levels) return std::nullopt;
-  return center + (moment / weight) * outward;
+  return first + static_cast<double>(moment / weight) * step_px * outward;
 }
 
 /// The points found on one side.
@@ -73,6 +90,32 @@ class Points {
   std::array<Vector2d, max_profiles> points_;
   std::size_t size_ = 0;
 };
+
+/// Of all lines through two of the points, the one that most others are near: leaves out what lies
+/// on another edge. Keeps the points near it.
+void keep_largest_line(Points& points, double near) {
+  const Vector2d* best_a = nullptr;
+  const Vector2d* best_b = nullptr;
+  int most = 0;
+  for (const Vector2d* a = points.begin(); a != points.end(); ++a) {
+    for (const Vector2d* b = a + 1; b != points.end(); ++b) {
+      const Vector2d normal = Vector2d(b->y() - a->y(), a->x() - b->x()).normalized();
+      int count = 0;
+      for (const Vector2d& point : points) count += std::abs(normal.dot(point - *a)) < near ? 1 : 0;
+      if (count > most) {
+        most = count;
+        best_a = a;
+        best_b = b;
+      }
+    }
+  }
+  if (!best_a) return;
+  const Vector2d origin = *best_a;
+  const Vector2d normal =
+      Vector2d(best_b->y() - origin.y(), origin.x() - best_b->x()).normalized();
+  points.remove_if(
+      [&](const Vector2d& point) { return std::abs(normal.dot(point - origin)) >= near; });
+}
 
 /// A line {x : normal . x = offset} fitted to points by total least squares, twice: the second time
 /// without the points that are far from the first line.
@@ -112,7 +155,6 @@ std::optional<Eigen::Hyperplane<double, 2>> fit_line(Points& points) {
 bool refine_corners(const Image<std::uint8_t>& gray, const Vector2d& origin, const Lens& lens,
                     int modules, const RefinementPass& pass, std::array<Vector2d, 4>& corners) {
   std::array<std::optional<Eigen::Hyperplane<double, 2>>, 4> sides;
-  bool all_found = true;
   for (std::size_t side = 0; side < 4; ++side) {
     const Vector2d from = corners[side] - origin;
     const Vector2d along = corners[(side + 1) % 4] - corners[side];
@@ -127,26 +169,26 @@ bool refine_corners(const Image<std::uint8_t>& gray, const Vector2d& origin, con
     Points points;
     for (int i = 0; i < count; ++i) {
       const double t = end + (1 - 2 * end) * (i + 0.5) / count;
-      if (const auto step = find_step(gray, from + t * along, outward, reach_px)) {
+      if (const auto step = find_step(gray, from + t * along, outward, reach_px, pass.step_px)) {
         points.add(lens.undistort(*step + origin));
       }
     }
-    if (points.size() * 2 >= static_cast<std::size_t>(count)) sides[side] = fit_line(points);
-    all_found = all_found && sides[side];
-  }
-  for (std::size_t corner = 0; corner < 4; ++corner) {
-    const auto& before = sides[(corner + 3) % 4];
-    const auto& after = sides[corner];
-    if (!before || !after) continue;
-    const auto refined = lens.distort(before->intersection(*after));
-    // A corner that ran away is the neighbourhood's, not the marker's.
-    if (refined && (*refined - corners[corner]).norm() < 2 * pass.reach_px) {
-      corners[corner] = *refined;
-    } else {
-      all_found = false;
+    if (pass.expect_outliers) {
+      keep_largest_line(points, near_px / std::max(1.0, lens.intrinsics().fx));
     }
+    if (static_cast<double>(points.size()) >= min_support * count) sides[side] = fit_line(points);
+    if (!sides[side]) return false;
   }
-  return all_found;
+  std::array<Vector2d, 4> refined;
+  for (std::size_t corner = 0; corner < 4; ++corner) {
+    const auto meeting =
+        lens.distort(sides[(corner + 3) % 4]->intersection(*sides[corner]));
+    // A corner that ran away is the neighbourhood's, not the marker's.
+    if (!meeting || !((*meeting - corners[corner]).norm() < 2 * pass.reach_px)) return false;
+    refined[corner] = *meeting;
+  }
+  corners = refined;
+  return true;
 }
 
 }  // namespace diminish

@@ -8,14 +8,17 @@
 
 namespace diminish {
 
-/// How thoroughly `refine_corners` looks.
+/// How `refine_corners` looks.
 struct RefinementPass {
-  int profiles;     ///< across each side
-  double reach_px;  ///< how far from the side, in and out
+  int profiles;      ///< across each side
+  double reach_px;   ///< how far from the side, in and out
+  double step_px;    ///< between a profile's samples
+  bool expect_outliers;
 };
-/// For corners that are some pixels off; then `fine_pass`.
-inline constexpr RefinementPass coarse_pass{14, 8};
-inline constexpr RefinementPass fine_pass{64, 4};
+/// For corners that are some pixels off, then for what is left.
+inline constexpr RefinementPass coarse_pass{14, 12, 1, true};
+inline constexpr RefinementPass middle_pass{12, 6, 1, true};
+inline constexpr RefinementPass fine_pass{48, 4, 0.5, false};
 
 /// Moves the corners of a dark square on a light ground, clockwise, to sub-pixel accuracy. Along
 /// each side the strongest dark-to-light step is located on short profiles across it; a line is
@@ -23,8 +26,7 @@ inline constexpr RefinementPass fine_pass{64, 4};
 /// intersected.
 /// gray: a part of the picture that begins at the pixel `origin`; corners are in the picture.
 /// modules: the number of cells along a side, with the border; a profile reaches no further than
-/// the border is wide. Answers whether all four sides were found; else corners whose sides were
-/// not stay as they are.
+/// the border is wide. Answers whether all four sides were found; else the corners stay as they are.
 bool refine_corners(const Image<std::uint8_t>& gray, const Eigen::Vector2d& origin,
                     const Lens& lens, int modules, const RefinementPass& pass,
                     std::array<Eigen::Vector2d, 4>& corners);

@@ -27,20 +27,21 @@ class DarkComponents {
     int pixels;
   };
 
-  /// A pixel is dark if it is `contrast` levels below the mean of the square of 2 radius + 1 pixels
-  /// around it. Parts are 8-connected, so that a thin slanted line holds together.
-  void find(const Image<std::uint8_t>& small, int radius, int contrast);
+  /// A pixel is dark if it is 7 % (and two levels) below the mean of the 5x5 pixels around it. Parts
+  /// are 4-connected: a marker's corner often touches that of the shadow around its margin.
+  void find(const Image<std::uint8_t>& small);
 
   const std::vector<Component>& components() const { return components_; }
   const Run& run(int index) const { return runs_[static_cast<std::size_t>(index)]; }
 
  private:
-  void threshold(const Image<std::uint8_t>& small, int radius, int contrast);
+  void threshold(const Image<std::uint8_t>& small);
+  void collect_runs(int y, int width);
   void connect();
   int root(int run);
 
   std::vector<std::uint16_t> column_sums_;
-  std::vector<std::uint32_t> prefix_;
+  std::vector<std::uint8_t> dark_;
   std::vector<Run> runs_;
   std::vector<int> row_begin_, last_run_;
   std::vector<Component> components_;

@@ -41,16 +41,12 @@ cv::Ptr<cv::aruco::Dictionary> find_dictionary(const std::string& name) {
   throw Error("marker_dictionary: expected one of " + known + ", got '" + name + "'");
 }
 
-/// How a pixel must compare with its surroundings to be dark: in the small picture's pixels, the
-/// border of the markers wanted is 2 to 20 wide.
-constexpr int threshold_radius = 6;
-constexpr int threshold_contrast = 6;
 /// Of two finds of the same marker.
 constexpr double same_place_px = 6;
 
 /// The part of the picture that a quadrilateral lies in, with a margin for what surrounds it.
 Rect surroundings(const Quad& quad, const Rect& bounds) {
-  constexpr double margin = 12;
+  constexpr double margin = coarse_pass.reach_px + 8;
   Eigen::Vector2d least = quad[0];
   Eigen::Vector2d most = quad[0];
   for (const Eigen::Vector2d& corner : quad) {
@@ -113,13 +109,16 @@ void MarkerDetector::detect(const Image<Bgr>& image, const Lens& lens,
   Implementation& self = *implementation_;
   markers.clear();
   decimate(image, self.small);
-  self.components.find(self.small, threshold_radius, threshold_contrast);
+  self.components.find(self.small);
   for (Quad quad : self.candidates.find(self.components)) {
     const Rect part = surroundings(quad, image.bounds());
     copy_brightness(image, part, self.gray);
     const Eigen::Vector2d origin(part.x, part.y);
     const int modules = self.code.modules();
-    if (!refine_corners(self.gray, origin, lens, modules, coarse_pass, quad)) continue;
+    if (!refine_corners(self.gray, origin, lens, modules, coarse_pass, quad) ||
+        !refine_corners(self.gray, origin, lens, modules, middle_pass, quad)) {
+      continue;
+    }
     Quad local = quad;
     for (Eigen::Vector2d& corner : local) corner -= origin;
     const auto reading = self.code.read(self.gray, local);

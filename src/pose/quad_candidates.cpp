@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
+#include <limits>
 
 namespace diminish {
 namespace {
@@ -12,7 +12,7 @@ namespace {
 constexpr int min_box = 8;
 constexpr double min_side = 7;
 /// A quadrilateral's share of its hull: that of a disc is 0.64, that of a hexagon 0.67.
-constexpr double min_share = 0.85;
+constexpr double min_share = 0.75;
 
 /// Twice the signed area of a triangle; positive if clockwise with y down.
 long doubled_area(int ax, int ay, int bx, int by, int cx, int cy) {
@@ -25,7 +25,8 @@ const std::vector<Quad>& QuadCandidates::find(const DarkComponents& components) 
   quads_.clear();
   for (const DarkComponents::Component& component : components.components()) {
     if (std::max(component.box.width, component.box.height) < min_box ||
-        std::min(component.box.width, component.box.height) < min_box / 2) {
+        std::min(component.box.width, component.box.height) < min_box / 2 ||
+        component.pixels < component.box.width + component.box.height) {
       continue;
     }
     find_hull(components, component);
@@ -37,24 +38,25 @@ const std::vector<Quad>& QuadCandidates::find(const DarkComponents& components) 
 
 void QuadCandidates::find_hull(const DarkComponents& components,
                                const DarkComponents::Component& component) {
-  // The outer corners of each row's first and last pixel; row by row, so that they are sorted.
+  // The outline's ends on each line between two rows of pixels, from top to bottom: sorted.
   points_.clear();
+  int above_first = std::numeric_limits<int>::max();
+  int above_last = std::numeric_limits<int>::min();
   for (int i = component.first_run; i >= 0;) {
     const int y = components.run(i).y;
-    int first = components.run(i).first;
-    int last = components.run(i).last;
+    int first = std::numeric_limits<int>::max();
+    int last = std::numeric_limits<int>::min();
     for (; i >= 0 && components.run(i).y == y; i = components.run(i).next) {
       first = std::min(first, components.run(i).first);
       last = std::max(last, components.run(i).last);
     }
-    points_.push_back({first, y});
-    points_.push_back({last, y});
-    points_.push_back({first, y + 1});
-    points_.push_back({last, y + 1});
+    points_.push_back({std::min(first, above_first), y});
+    points_.push_back({std::max(last, above_last), y});
+    above_first = first;
+    above_last = last;
   }
-  std::sort(points_.begin(), points_.end(), [](const Point& a, const Point& b) {
-    return a.y != b.y ? a.y < b.y : a.x < b.x;
-  });
+  points_.push_back({above_first, component.box.bottom()});
+  points_.push_back({above_last, component.box.bottom()});
   // Andrew 1979, down the right side and up the left: clockwise.
   hull_.clear();
   const auto add = [this](const Point& point, std::size_t base) {
