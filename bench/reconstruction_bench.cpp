@@ -1,6 +1,7 @@
 #include <benchmark/benchmark.h>
 
 #include "analytic_scene.h"
+#include "beside_peer.h"
 #include "diminish/frame_source.h"
 #include "diminish/pipeline.h"
 #include "diminish/reconstructor.h"
@@ -18,17 +19,19 @@ void reconstruct(benchmark::State& state, const char* name, bool whole_view) {
   Pipeline(recording.rig, recording.scene, options).process(frame, result);
   const OcclusionMasks masks = testing::empty_masks(recording.rig);
   const Rect region = whole_view ? recording.rig.color.bounds() : result.reconstruction.region;
-  const auto reconstructor = Registry<Reconstructor>::get("reference")(recording.rig);
+  const auto fast = Registry<Reconstructor>::get("cpu")(recording.rig);
+  const auto plain = Registry<Reconstructor>::get("reference")(recording.rig);
   Reconstruction reconstruction;
-  for (auto _ : state) {
-    reconstructor->reconstruct(frame, result.report.poses, masks, region, options, reconstruction);
-  }
+  const auto run = [&](Reconstructor& reconstructor) {
+    reconstructor.reconstruct(frame, result.report.poses, masks, region, options, reconstruction);
+  };
+  run_beside_peer(state, [&] { run(*fast); }, [&] { run(*plain); });
 }
-BENCHMARK_CAPTURE(reconstruct, calendar_mask, "calendar", false)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(reconstruct, calendar_mask, "calendar", false)->UseManualTime()->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(reconstruct, calendar_whole_view, "calendar", true)
-    ->Unit(benchmark::kMillisecond);
+    ->UseManualTime()->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(reconstruct, workbench_two_cameras, "workbench", true)
-    ->Unit(benchmark::kMillisecond);
+    ->UseManualTime()->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace diminish

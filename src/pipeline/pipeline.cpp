@@ -44,7 +44,7 @@ struct Pipeline::Implementation {
         color_lens(rig.color),
         camera_poses(rig, scene),
         occluders(rig, scene),
-        reconstructor(Registry<Reconstructor>::get("reference")(rig)) {
+        reconstructor(Registry<Reconstructor>::get("cpu")(rig)) {
     for (const RgbdCamera& camera : rig.rgbd) rgbd_color_lenses.emplace_back(camera.color);
     if (camera_poses.needs_markers() || occluders.needs_markers()) {
       marker_detector.emplace(scene.marker_dictionary);

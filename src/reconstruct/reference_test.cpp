@@ -14,10 +14,14 @@ using testing::empty_masks;
 
 const Eigen::Vector3d rgbd_eye(-0.45, 0.3, 0.9);
 
+/// Every test is done with the plain and with the fast version.
+class AnyReconstructor : public ::testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Backends, AnyReconstructor, ::testing::Values("reference", "cpu"));
+
 Reconstruction reconstruct(const AnalyticFrame& scene, const OcclusionMasks& masks,
                            const Options& options = {}) {
   Reconstruction result;
-  Registry<Reconstructor>::get("reference")(scene.rig)->reconstruct(
+  Registry<Reconstructor>::get(AnyReconstructor::GetParam())(scene.rig)->reconstruct(
       scene.frame, scene.poses, masks, scene.rig.color.bounds(), options, result);
   return result;
 }
@@ -36,7 +40,7 @@ bool is_seen(const AnalyticScene& scene, const Lens& lens, const RigidTransform&
 
 // The whole chain (rays, transforms, two lens models, rasterisation, texture lookup) against a ray
 // caster that shares none of it.
-TEST(ReferenceReconstructor, ShowsAPlaneAndABoxWhereTheyAre) {
+TEST_P(AnyReconstructor, ShowsAPlaneAndABoxWhereTheyAre) {
   const AnalyticScene scene;
   const AnalyticFrame frame(scene, {rgbd_eye});
   const Reconstruction result = reconstruct(frame, empty_masks(frame.rig));
@@ -110,7 +114,7 @@ TEST(ReferenceReconstructor, ShowsAPlaneAndABoxWhereTheyAre) {
 }
 
 // Rule 1: depth pixels on the object are no vertices.
-TEST(ReferenceReconstructor, LeavesOutDepthPixelsOnTheObject) {
+TEST_P(AnyReconstructor, LeavesOutDepthPixelsOnTheObject) {
   const AnalyticScene scene;
   const AnalyticFrame frame(scene, {rgbd_eye});
   OcclusionMasks masks = empty_masks(frame.rig);
@@ -137,7 +141,7 @@ TEST(ReferenceReconstructor, LeavesOutDepthPixelsOnTheObject) {
 
 // Rule 1, second half: the sensors are 5 cm apart, so depth pixels of the wall beside the box look
 // up the box's colour. With the colour mask none of it is left; without it there is some.
-TEST(ReferenceReconstructor, LeavesOutDepthPixelsWhoseColorIsTheObjects) {
+TEST_P(AnyReconstructor, LeavesOutDepthPixelsWhoseColorIsTheObjects) {
   const AnalyticScene scene;
   const AnalyticFrame frame(scene, {rgbd_eye});
   OcclusionMasks masks = empty_masks(frame.rig);
@@ -169,11 +173,11 @@ TEST(ReferenceReconstructor, LeavesOutDepthPixelsWhoseColorIsTheObjects) {
   EXPECT_EQ(count_red(), 0);
 }
 
-TEST(ReferenceReconstructor, DrawsTheRegionAndNothingElse) {
+TEST_P(AnyReconstructor, DrawsTheRegionAndNothingElse) {
   const AnalyticScene scene;
   const AnalyticFrame frame(scene, {rgbd_eye});
   const Reconstruction whole = reconstruct(frame, empty_masks(frame.rig));
-  const auto reconstructor = Registry<Reconstructor>::get("reference")(frame.rig);
+  const auto reconstructor = Registry<Reconstructor>::get(GetParam())(frame.rig);
   const Rect region{40, 50, 100, 90};
   Reconstruction part;
   // Twice, so that what an earlier frame left behind would show.
@@ -188,7 +192,7 @@ TEST(ReferenceReconstructor, DrawsTheRegionAndNothingElse) {
   }
 }
 
-TEST(ReferenceReconstructor, GoesOnWithoutACameraThatHasNoImagesOrNoPose) {
+TEST_P(AnyReconstructor, GoesOnWithoutACameraThatHasNoImagesOrNoPose) {
   const AnalyticScene scene;
   AnalyticFrame frame(scene, {rgbd_eye, {0.5, 0.3, 0.9}});
   const OcclusionMasks masks = empty_masks(frame.rig);

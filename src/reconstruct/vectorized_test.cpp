@@ -1,0 +1,103 @@
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "analytic_scene.h"
+#include "diminish/frame_source.h"
+#include "diminish/pipeline.h"
+#include "diminish/reconstructor.h"
+
+namespace diminish {
+namespace {
+
+/// The fast version draws the same pixels of the same cameras in the same colours, but for one
+/// level of rounding.
+void expect_same(const Reconstruction& fast, const Reconstruction& plain) {
+  ASSERT_EQ(fast.region, plain.region);
+  std::size_t drawn = 0;
+  std::size_t other_source = 0;
+  int worst = 0;
+  double worst_depth = 0;
+  for (int y = 0; y < plain.color.height(); ++y) {
+    for (int x = 0; x < plain.color.width(); ++x) {
+      const Bgra& a = fast.color(x, y);
+      const Bgra& b = plain.color(x, y);
+      ASSERT_EQ(a.a, b.a) << x << ' ' << y;
+      if (a.a == 0) {
+        ASSERT_EQ(fast.source(x, y), 0);
+        ASSERT_EQ(fast.depth_m(x, y), 0);
+        continue;
+      }
+      ++drawn;
+      if (fast.source(x, y) != plain.source(x, y)) {
+        ++other_source;
+        continue;
+      }
+      worst = std::max({worst, std::abs(a.b - b.b), std::abs(a.g - b.g), std::abs(a.r - b.r)});
+      worst_depth = std::max(worst_depth, std::abs(double{fast.depth_m(x, y)} - plain.depth_m(x, y)));
+    }
+  }
+  EXPECT_GT(drawn, 1000U);
+  EXPECT_LE(worst, 1);
+  EXPECT_LT(worst_depth, 1e-4);
+  // Where two surfaces are as far apart as counts as one, rounding decides.
+  EXPECT_LE(other_source * 100000, drawn);
+}
+
+class VectorizedOnRecordings : public ::testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Recordings, VectorizedOnRecordings,
+                         ::testing::Values("calendar", "ball", "workbench"));
+
+TEST_P(VectorizedOnRecordings, DrawsWhatThePlainVersionDraws) {
+  const Recording recording =
+      load_recording(std::filesystem::path(DIMINISH_RECORDINGS_DIR) / GetParam());
+  Options options;
+  options.whole_view = true;
+  FrameSet frame;
+  DiminishedFrame result;
+  open_recording(recording, options)->next(frame);
+  Pipeline(recording.rig, recording.scene, options).process(frame, result);
+  OcclusionMasks masks = testing::empty_masks(recording.rig);
+  const auto fast = Registry<Reconstructor>::get("cpu")(recording.rig);
+  const auto plain = Registry<Reconstructor>::get("reference")(recording.rig);
+  Reconstruction a;
+  Reconstruction b;
+  for (const bool masked : {false, true}) {
+    if (masked) {
+      for (Mask& mask : masks.rgbd_depth) mask.fill({100, 50, 97, 61}, 255);
+      for (Mask& mask : masks.rgbd_color) mask.fill({500, 400, 333, 222}, 255);
+    }
+    for (const Rect& region :
+         {recording.rig.color.bounds(), Rect{300, 200, 421, 333}, Rect{0, 900, 1, 124}}) {
+      const bool empty = region.width == 1;
+      fast->reconstruct(frame, result.report.poses, masks, region, options, a);
+      plain->reconstruct(frame, result.report.poses, masks, region, options, b);
+      if (empty) {
+        EXPECT_EQ(a.color, b.color);
+      } else {
+        expect_same(a, b);
+      }
+    }
+  }
+}
+
+// A camera so near that each cell covers hundreds of pixels.
+TEST(VectorizedReconstructor, DrawsLargeCells) {
+  const testing::AnalyticScene scene;
+  testing::AnalyticFrame frame(scene, {Eigen::Vector3d(-0.45, 0.3, 0.9)});
+  frame.rig.color.fx *= 12;
+  frame.rig.color.fy *= 12;
+  const OcclusionMasks masks = testing::empty_masks(frame.rig);
+  Reconstruction a;
+  Reconstruction b;
+  const Rect region = frame.rig.color.bounds();
+  Registry<Reconstructor>::get("cpu")(frame.rig)->reconstruct(frame.frame, frame.poses, masks,
+                                                              region, {}, a);
+  Registry<Reconstructor>::get("reference")(frame.rig)->reconstruct(frame.frame, frame.poses, masks,
+                                                                    region, {}, b);
+  expect_same(a, b);
+}
+
+}  // namespace
+}  // namespace diminish
