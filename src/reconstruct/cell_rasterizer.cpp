@@ -23,6 +23,8 @@ using LaneMask = hn::Mask<Floats>;
 
 /// Cells of at most that many pixels a side are drawn together; coordinates in them fit 12 bits.
 constexpr int small_cell_px = 8;
+/// Larger triangles are drawn in 64 bits.
+constexpr int max_medium_px = 64;
 
 /// Vertices of 16 cells that have the same place in their cells.
 struct Corner {
@@ -96,58 +98,150 @@ struct Surface {
         v_over_z(ea, eb, ec, a.v_over_z, b.v_over_z, c.v_over_z, scale) {}
 };
 
-HWY_INLINE void Keep(SurfaceBuffer::Sample& nearest, float inverse_z, float u_over_z,
+HWY_INLINE void Keep(SurfaceBuffer& surface, std::ptrdiff_t place, float inverse_z, float u_over_z,
                      float v_over_z) {
-  if (inverse_z > nearest.inverse_z) nearest = {inverse_z, u_over_z, v_over_z};
+  float* nearest = surface.inverse_z.data() + place;
+  if (!(inverse_z > *nearest)) return;
+  *nearest = inverse_z;
+  surface.u_over_z[static_cast<std::size_t>(place)] = u_over_z;
+  surface.v_over_z[static_cast<std::size_t>(place)] = v_over_z;
 }
 
-/// One triangle of any size, as draw_triangle does.
-void DrawLarge(const VertexRow& ra, int ia, const VertexRow& rb, int ib, const VertexRow& rc, int ic,
-               SurfaceBuffer& surface) {
-  struct Point {
-    std::int64_t x, y;
-  };
-  const auto at = [](const VertexRow& row, int i) {
-    const auto k = static_cast<std::size_t>(i);
-    return Point{row.x[k], row.y[k]};
-  };
-  const Point p[3] = {at(ra, ia), at(rb, ib), at(rc, ic)};
-  const std::int64_t area = sdct::doubled_area(p[0].x, p[0].y, p[1].x, p[1].y, p[2].x, p[2].y);
-  if (!sdct::faces_forward(area)) return;
-  const auto [left, right] = std::minmax({p[0].x, p[1].x, p[2].x});
-  const auto [top, bottom] = std::minmax({p[0].y, p[1].y, p[2].y});
-  const Rect& region = surface.region;
-  constexpr int bits = sdct::subpixel_bits;
-  const auto x0 = std::max<std::int64_t>(region.x, (left + sdct::subpixels - 1) >> bits);
-  const auto x1 = std::min<std::int64_t>(region.right() - 1, right >> bits);
-  const auto y0 = std::max<std::int64_t>(region.y, (top + sdct::subpixels - 1) >> bits);
-  const auto y1 = std::min<std::int64_t>(region.bottom() - 1, bottom >> bits);
+/// A vertex in a row, by its index.
+struct VertexAt {
+  const VertexRow& row;
+  std::size_t index;
+
+  VertexAt(const VertexRow& row_, int i) : row(row_), index(static_cast<std::size_t>(i)) {}
+  std::int64_t x() const { return row.x[index]; }
+  std::int64_t y() const { return row.y[index]; }
+};
+
+/// A triangle's pixels are looked for inside its bounding box and the region.
+struct Box {
+  int x0, x1, y0, y1;
+
+  Box(const VertexAt (&p)[3], const Rect& region) {
+    constexpr int bits = sdct::subpixel_bits;
+    const auto [left, right] = std::minmax({p[0].x(), p[1].x(), p[2].x()});
+    const auto [top, bottom] = std::minmax({p[0].y(), p[1].y(), p[2].y()});
+    x0 = std::max(region.x, static_cast<int>((left + sdct::subpixels - 1) >> bits));
+    x1 = std::min(region.right() - 1, static_cast<int>(right >> bits));
+    y0 = std::max(region.y, static_cast<int>((top + sdct::subpixels - 1) >> bits));
+    y1 = std::min(region.bottom() - 1, static_cast<int>(bottom >> bits));
+    fits_32_bits = std::max(right - left, bottom - top) < max_medium_px * sdct::subpixels;
+  }
+  bool fits_32_bits;
+};
+
+/// A triangle of any size, pixel by pixel in 64 bits, as draw_triangle does.
+void DrawLarge(const VertexAt (&p)[3], std::int64_t area, const Box& box, SurfaceBuffer& surface) {
   const float scale = 1.F / static_cast<float>(area);
-  const VertexRow* rows[3] = {&ra, &rb, &rc};
-  const std::size_t index[3] = {static_cast<std::size_t>(ia), static_cast<std::size_t>(ib),
-                                static_cast<std::size_t>(ic)};
-  for (std::int64_t y = y0; y <= y1; ++y) {
-    for (std::int64_t x = x0; x <= x1; ++x) {
-      SurfaceBuffer::Sample sum{0, 0, 0};
+  for (int y = box.y0; y <= box.y1; ++y) {
+    for (int x = box.x0; x <= box.x1; ++x) {
+      float inverse_z = 0;
+      float u_over_z = 0;
+      float v_over_z = 0;
       bool inside = true;
-      for (int k = 0; k < 3 && inside; ++k) {
-        const Point& from = p[(k + 1) % 3];
-        const Point& to = p[(k + 2) % 3];
-        const std::int64_t step_x = from.y - to.y;
-        const std::int64_t step_y = to.x - from.x;
-        const std::int64_t value =
-            step_x * (x * sdct::subpixels - from.x) + step_y * (y * sdct::subpixels - from.y);
+      for (std::size_t k = 0; k < 3 && inside; ++k) {
+        const VertexAt& from = p[(k + 1) % 3];
+        const VertexAt& to = p[(k + 2) % 3];
+        const std::int64_t step_x = from.y() - to.y();
+        const std::int64_t step_y = to.x() - from.x();
+        const std::int64_t value = step_x * (std::int64_t{x} * sdct::subpixels - from.x()) +
+                                   step_y * (std::int64_t{y} * sdct::subpixels - from.y());
         const bool top_or_left = step_x > 0 || (step_x == 0 && step_y > 0);
         inside = value > 0 || (value == 0 && top_or_left);
         const float weight = static_cast<float>(value) * scale;
-        sum.inverse_z += weight * rows[k]->inverse_z[index[k]];
-        sum.u_over_z += weight * rows[k]->u_over_z[index[k]];
-        sum.v_over_z += weight * rows[k]->v_over_z[index[k]];
+        inverse_z += weight * p[k].row.inverse_z[p[k].index];
+        u_over_z += weight * p[k].row.u_over_z[p[k].index];
+        v_over_z += weight * p[k].row.v_over_z[p[k].index];
       }
-      if (!inside) continue;
-      Keep(surface.samples[static_cast<std::size_t>((y - region.y) * region.width + x - region.x)],
-           sum.inverse_z, sum.u_over_z, sum.v_over_z);
+      if (inside) Keep(surface, surface.row(y) + x - surface.region.x, inverse_z, u_over_z, v_over_z);
     }
+  }
+}
+
+/// A triangle whose bounding box has less than max_medium_px a side, a vector of pixels at a time.
+void DrawMedium(const VertexAt (&p)[3], std::int64_t area, const Box& box, SurfaceBuffer& surface) {
+  const Floats d;
+  const Ints di;
+  const auto lanes = static_cast<int>(hn::Lanes(d));
+  const float scale = 1.F / static_cast<float>(area);
+  // Edge functions at the box's first pixel, with the bias of edges that do not own their pixels.
+  std::int32_t value[3], step_x[3], step_y[3];
+  float z = 0, u = 0, v = 0, z_x = 0, u_x = 0, v_x = 0, z_y = 0, u_y = 0, v_y = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const VertexAt& from = p[(k + 1) % 3];
+    const VertexAt& to = p[(k + 2) % 3];
+    const auto dx = static_cast<std::int32_t>(from.y() - to.y());
+    const auto dy = static_cast<std::int32_t>(to.x() - from.x());
+    const auto at_box =
+        dx * static_cast<std::int32_t>(box.x0 * sdct::subpixels - from.x()) +
+        dy * static_cast<std::int32_t>(box.y0 * sdct::subpixels - from.y());
+    value[k] = at_box - (dx > 0 || (dx == 0 && dy > 0) ? 0 : 1);
+    step_x[k] = dx * sdct::subpixels;
+    step_y[k] = dy * sdct::subpixels;
+    const float weight = static_cast<float>(at_box) * scale;
+    const float weight_x = static_cast<float>(step_x[k]) * scale;
+    const float weight_y = static_cast<float>(step_y[k]) * scale;
+    const float vertex_z = p[k].row.inverse_z[p[k].index];
+    const float vertex_u = p[k].row.u_over_z[p[k].index];
+    const float vertex_v = p[k].row.v_over_z[p[k].index];
+    z += weight * vertex_z;
+    u += weight * vertex_u;
+    v += weight * vertex_v;
+    z_x += weight_x * vertex_z;
+    u_x += weight_x * vertex_u;
+    v_x += weight_x * vertex_v;
+    z_y += weight_y * vertex_z;
+    u_y += weight_y * vertex_u;
+    v_y += weight_y * vertex_v;
+  }
+  const IntVector iota = hn::Iota(di, 0);
+  const Vector float_iota = hn::Iota(d, 0);
+  const int width = box.x1 - box.x0 + 1;
+  const IntVector minus_one = hn::Set(di, -1);
+  for (int y = 0; y <= box.y1 - box.y0; ++y) {
+    const std::ptrdiff_t row = surface.row(box.y0 + y) + box.x0 - surface.region.x;
+    for (int x = 0; x < width; x += lanes) {
+      const auto edge = [&](int k) HWY_ATTR {
+        return hn::Add(hn::Set(di, value[k] + y * step_y[k] + x * step_x[k]),
+                       hn::Mul(iota, hn::Set(di, step_x[k])));
+      };
+      const auto in_box = hn::Lt(iota, hn::Set(di, width - x));
+      const auto in_triangle = hn::Gt(hn::Or(hn::Or(edge(0), edge(1)), edge(2)), minus_one);
+      const LaneMask inside = hn::RebindMask(d, hn::And(in_box, in_triangle));
+      if (hn::AllFalse(d, inside)) continue;
+      const auto plane = [&](float base, float along_x, float along_y) HWY_ATTR {
+        return hn::MulAdd(
+            float_iota, hn::Set(d, along_x),
+            hn::Set(d, base + static_cast<float>(x) * along_x + static_cast<float>(y) * along_y));
+      };
+      float* nearest = surface.inverse_z.data() + row + x;
+      const Vector old = hn::LoadU(d, nearest);
+      const Vector inverse_z = plane(z, z_x, z_y);
+      const LaneMask kept = hn::And(inside, hn::Gt(inverse_z, old));
+      if (hn::AllFalse(d, kept)) continue;
+      hn::StoreU(hn::IfThenElse(kept, inverse_z, old), d, nearest);
+      float* const us = surface.u_over_z.data() + row + x;
+      float* const vs = surface.v_over_z.data() + row + x;
+      hn::StoreU(hn::IfThenElse(kept, plane(u, u_x, u_y), hn::LoadU(d, us)), d, us);
+      hn::StoreU(hn::IfThenElse(kept, plane(v, v_x, v_y), hn::LoadU(d, vs)), d, vs);
+    }
+  }
+}
+
+void DrawOne(const VertexAt (&p)[3], SurfaceBuffer& surface) {
+  const std::int64_t area =
+      sdct::doubled_area(p[0].x(), p[0].y(), p[1].x(), p[1].y(), p[2].x(), p[2].y());
+  if (!sdct::faces_forward(area)) return;
+  const Box box(p, surface.region);
+  if (box.x0 > box.x1 || box.y0 > box.y1) return;
+  if (box.fits_32_bits) {
+    DrawMedium(p, area, box, surface);
+  } else {
+    DrawLarge(p, area, box, surface);
   }
 }
 
@@ -157,6 +251,7 @@ void DrawCells(const VertexRow& upper, const VertexRow& lower, int block, float 
   const Ints di;
   const auto lanes = static_cast<int>(hn::Lanes(d));
   const Rect region = surface.region;
+  const auto pitch = static_cast<std::int32_t>(surface.pitch);
   constexpr int max_fragments = small_cell_px * small_cell_px * VertexRow::block + VertexRow::block;
   HWY_ALIGN std::int32_t places[max_fragments];
   HWY_ALIGN float values[3][max_fragments];
@@ -208,8 +303,8 @@ void DrawCells(const VertexRow& upper, const VertexRow& lower, int block, float 
       for (int k = 0; k < lanes; ++k) {
         const auto has = [&](int mask) { return (which[mask][k / 8] >> (k % 8) & 1) != 0; };
         if (!has(0)) continue;
-        if (has(1)) DrawLarge(upper, i + k, upper, i + k + 1, lower, i + k, surface);
-        if (has(2)) DrawLarge(upper, i + k + 1, lower, i + k + 1, lower, i + k, surface);
+        if (has(1)) DrawOne({{upper, i + k}, {upper, i + k + 1}, {lower, i + k}}, surface);
+        if (has(2)) DrawOne({{upper, i + k + 1}, {lower, i + k + 1}, {lower, i + k}}, surface);
       }
     }
     const LaneMask drawn = hn::And(covers, small);
@@ -262,7 +357,7 @@ void DrawCells(const VertexRow& upper, const VertexRow& lower, int block, float 
     const int columns = hn::GetLane(hn::MaxOfLanes(di, columns_of_cell));
     const int rows = hn::GetLane(hn::MaxOfLanes(di, rows_of_cell));
     const IntVector first_place =
-        hn::Add(hn::Mul(hn::Sub(y0, hn::Set(di, region.y)), hn::Set(di, region.width)),
+        hn::Add(hn::Mul(hn::Sub(y0, hn::Set(di, region.y)), hn::Set(di, pitch)),
                 hn::Sub(x0, hn::Set(di, region.x)));
     // The bias belongs to the comparison only: once the planes are set up it can be in the value.
     Edge* const edges[] = {&bc, &ca, &ab, &ec, &cb, &be};
@@ -291,7 +386,7 @@ void DrawCells(const VertexRow& upper, const VertexRow& lower, int block, float 
                                   hn::MulAdd(fx, p.step_x, p.value));
           };
           const IntVector place =
-              hn::Add(first_place, hn::Set(di, dy * region.width + dx));
+              hn::Add(first_place, hn::Set(di, dy * pitch + dx));
           hn::CompressStore(value(s1.inverse_z, s2.inverse_z), inside, d, values[0] + count);
           hn::CompressStore(value(s1.u_over_z, s2.u_over_z), inside, d, values[1] + count);
           hn::CompressStore(value(s1.v_over_z, s2.v_over_z), inside, d, values[2] + count);
@@ -312,8 +407,7 @@ void DrawCells(const VertexRow& upper, const VertexRow& lower, int block, float 
       }
     }
     for (std::size_t k = 0; k < count; ++k) {
-      Keep(surface.samples[static_cast<std::size_t>(places[k])], values[0][k], values[1][k],
-           values[2][k]);
+      Keep(surface, places[k], values[0][k], values[1][k], values[2][k]);
     }
   }
 }
@@ -329,8 +423,12 @@ HWY_EXPORT(DrawCells);
 
 void SurfaceBuffer::clear(const Rect& region_) {
   region = region_;
-  samples.assign(static_cast<std::size_t>(region.width) * static_cast<std::size_t>(region.height),
-                 {});
+  pitch = region.width + VertexRow::block;
+  const auto size = static_cast<std::size_t>(pitch) * static_cast<std::size_t>(region.height);
+  inverse_z.assign(size, 0.F);
+  // Undefined where inverse_z is 0.
+  u_over_z.resize(size);
+  v_over_z.resize(size);
 }
 
 void draw_cells(const VertexRow& upper, const VertexRow& lower, int block, float threshold_m,

@@ -1,6 +1,7 @@
 #include "reconstruct/texture_lookup.h"
 
 #include <algorithm>
+#include <cstring>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "reconstruct/texture_lookup.cpp"
@@ -25,43 +26,45 @@ HWY_INLINE Vector Channel(IntVector pixels) {
       Floats(), hn::And(hn::ShiftRight<8 * channel>(pixels), hn::Set(Ints(), 255)));
 }
 
-/// Blue, green and red of a pixel in the lower three bytes. Four bytes are read: `at` is not the
-/// texture's last pixel, or `shift` is 8 and `at` one byte lower.
-HWY_INLINE IntVector Gather(const std::uint8_t* texture, IntVector at, IntVector last) {
+/// Blue, green and red of pixels in the lower three bytes. Four bytes are read at once, but not
+/// beyond `last`. (On many processors the gather instruction is slower.)
+HWY_INLINE IntVector Gather(const std::uint8_t* texture, IntVector at, std::int32_t last) {
   const Ints d;
-  const auto is_last = hn::Gt(at, last);
-  const IntVector safe = hn::Min(at, last);
-  const IntVector pixels =
-      hn::GatherOffset(d, reinterpret_cast<const std::int32_t*>(texture), safe);
-  return hn::IfThenElse(is_last, hn::ShiftRight<8>(pixels), pixels);
+  HWY_ALIGN std::int32_t places[block];
+  HWY_ALIGN std::int32_t pixels[block];
+  hn::Store(at, d, places);
+  for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
+    const std::int32_t place = std::min(places[i], last);
+    std::uint32_t pixel;
+    std::memcpy(&pixel, texture + place, sizeof(pixel));
+    pixels[i] = static_cast<std::int32_t>(pixel >> (8 * (places[i] - place)));
+  }
+  return hn::Load(d, pixels);
 }
 
-void LookUp(const SurfaceBuffer::Sample* samples, const std::uint8_t* wanted, int count,
-            const Image<Bgr>& texture, Bgra* colors, float* depth_m) {
+void LookUpRow(const SurfaceBuffer& surface, int y, const std::uint8_t* wanted,
+               const Image<Bgr>& texture, Bgra* colors, float* depth_m) {
   const Floats d;
   const Ints di;
   const hn::Rebind<std::uint8_t, Floats> d8;
   const auto lanes = static_cast<int>(hn::Lanes(d));
   const auto* bytes = reinterpret_cast<const std::uint8_t*>(texture.data());
   // The last place that four bytes can be read from.
-  const IntVector last = hn::Set(di, static_cast<std::int32_t>(3 * texture.size()) - 4);
+  const auto last = static_cast<std::int32_t>(3 * texture.size()) - 4;
   const IntVector last_column = hn::Set(di, texture.width() - 1);
   const IntVector last_row = hn::Set(di, texture.height() - 1);
-  HWY_ALIGN SurfaceBuffer::Sample padded[block];
   HWY_ALIGN std::uint8_t padded_wanted[block];
   HWY_ALIGN Bgra padded_colors[block];
   HWY_ALIGN float padded_depth[block];
+  const int count = surface.region.width;
   for (int i = 0; i < count; i += lanes) {
     const int here = std::min(lanes, count - i);
     const bool partial = here < lanes;
-    const SurfaceBuffer::Sample* from = samples + i;
+    const std::ptrdiff_t from = surface.row(y) + i;
     const std::uint8_t* wanted_here = wanted ? wanted + i : nullptr;
     Bgra* to = colors + i;
     float* to_depth = depth_m + i;
     if (partial) {
-      std::fill_n(padded, lanes, SurfaceBuffer::Sample{});
-      std::copy_n(from, here, padded);
-      from = padded;
       if (wanted) {
         std::copy_n(wanted_here, here, padded_wanted);
         wanted_here = padded_wanted;
@@ -69,8 +72,9 @@ void LookUp(const SurfaceBuffer::Sample* samples, const std::uint8_t* wanted, in
       to = padded_colors;
       to_depth = padded_depth;
     }
-    Vector inverse_z, u_over_z, v_over_z;
-    hn::LoadInterleaved3(d, &from->inverse_z, inverse_z, u_over_z, v_over_z);
+    const Vector inverse_z = hn::LoadU(d, surface.inverse_z.data() + from);
+    const Vector u_over_z = hn::LoadU(d, surface.u_over_z.data() + from);
+    const Vector v_over_z = hn::LoadU(d, surface.v_over_z.data() + from);
     auto seen = hn::Gt(inverse_z, hn::Zero(d));
     if (wanted) {
       const IntVector flags = hn::PromoteTo(di, hn::LoadU(d8, wanted_here));
@@ -90,8 +94,8 @@ void LookUp(const SurfaceBuffer::Sample* samples, const std::uint8_t* wanted, in
       const Vector fx = hn::Sub(u, hn::ConvertTo(d, x0));
       const Vector fy = hn::Sub(v, hn::ConvertTo(d, y0));
       const IntVector row_bytes = hn::Set(di, 3 * texture.width());
-      const auto offset = [&](IntVector x, IntVector y) HWY_ATTR {
-        return hn::Add(hn::Mul(y, row_bytes), hn::Mul(x, hn::Set(di, 3)));
+      const auto offset = [&](IntVector column, IntVector line) HWY_ATTR {
+        return hn::Add(hn::Mul(line, row_bytes), hn::Mul(column, hn::Set(di, 3)));
       };
       const IntVector p00 = Gather(bytes, offset(x0, y0), last);
       const IntVector p10 = Gather(bytes, offset(x1, y0), last);
@@ -129,11 +133,11 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace diminish {
 
-HWY_EXPORT(LookUp);
+HWY_EXPORT(LookUpRow);
 
-void look_up(const SurfaceBuffer::Sample* samples, const std::uint8_t* wanted, int count,
-             const Image<Bgr>& texture, Bgra* colors, float* depth_m) {
-  HWY_DYNAMIC_DISPATCH(LookUp)(samples, wanted, count, texture, colors, depth_m);
+void look_up_row(const SurfaceBuffer& surface, int y, const std::uint8_t* wanted,
+                 const Image<Bgr>& texture, Bgra* colors, float* depth_m) {
+  HWY_DYNAMIC_DISPATCH(LookUpRow)(surface, y, wanted, texture, colors, depth_m);
 }
 
 }  // namespace diminish

@@ -71,7 +71,7 @@ class VectorizedReconstructor : public Reconstructor {
     const auto agreement_m = static_cast<float>(options.depth_agreement_m);
     for (int y = region.y; y < region.bottom(); ++y) {
       choose(y, agreement_m, reconstruction);
-      for (const Drawn& drawn : drawn_) look_up_row(frame, drawn.camera, y, reconstruction);
+      for (const Drawn& drawn : drawn_) color_row(frame, drawn.camera, y, reconstruction);
     }
   }
 
@@ -100,10 +100,9 @@ class VectorizedReconstructor : public Reconstructor {
   /// The camera that sees most of the region first, as merge_layers does.
   void sort_by_coverage() {
     for (Drawn& drawn : drawn_) {
-      const auto& samples = meshes_[drawn.camera].surface().samples;
-      drawn.pixels = static_cast<std::size_t>(
-          std::count_if(samples.begin(), samples.end(),
-                        [](const SurfaceBuffer::Sample& sample) { return sample.inverse_z > 0; }));
+      const std::vector<float>& inverse_z = meshes_[drawn.camera].surface().inverse_z;
+      drawn.pixels = static_cast<std::size_t>(std::count_if(
+          inverse_z.begin(), inverse_z.end(), [](float value) { return value > 0; }));
     }
     std::stable_sort(drawn_.begin(), drawn_.end(),
                      [](const Drawn& a, const Drawn& b) { return a.pixels > b.pixels; });
@@ -114,19 +113,19 @@ class VectorizedReconstructor : public Reconstructor {
     const Rect& region = reconstruction.region;
     std::uint8_t* source = reconstruction.source.row(y) + region.x;
     if (drawn_.size() == 1) {
-      const SurfaceBuffer::Sample* samples = meshes_[drawn_[0].camera].surface().row(y);
+      const float* inverse_z = inverse_z_row(drawn_[0].camera, y);
       const auto name = static_cast<std::uint8_t>(1 + drawn_[0].camera);
-      for (int i = 0; i < region.width; ++i) source[i] = samples[i].inverse_z > 0 ? name : 0;
+      for (int i = 0; i < region.width; ++i) source[i] = inverse_z[i] > 0 ? name : 0;
       return;
     }
     nearest_.assign(static_cast<std::size_t>(region.width), 0.F);
     std::fill_n(source, region.width, std::uint8_t{0});
     for (const Drawn& drawn : drawn_) {
-      const SurfaceBuffer::Sample* samples = meshes_[drawn.camera].surface().row(y);
+      const float* inverse_z = inverse_z_row(drawn.camera, y);
       const auto name = static_cast<std::uint8_t>(1 + drawn.camera);
       for (int i = 0; i < region.width; ++i) {
-        if (!(samples[i].inverse_z > 0)) continue;
-        const float z = 1.F / samples[i].inverse_z;
+        if (!(inverse_z[i] > 0)) continue;
+        const float z = 1.F / inverse_z[i];
         float& nearest = nearest_[static_cast<std::size_t>(i)];
         if (nearest == 0 || z < nearest - agreement_m) {
           nearest = z;
@@ -136,14 +135,18 @@ class VectorizedReconstructor : public Reconstructor {
     }
   }
 
-  void look_up_row(const FrameSet& frame, std::size_t camera, int y,
-                   Reconstruction& reconstruction) {
+  const float* inverse_z_row(std::size_t camera, int y) {
+    const SurfaceBuffer& surface = meshes_[camera].surface();
+    return surface.inverse_z.data() + surface.row(y);
+  }
+
+  void color_row(const FrameSet& frame, std::size_t camera, int y, Reconstruction& reconstruction) {
     const Rect& region = reconstruction.region;
-    const SurfaceBuffer::Sample* samples = meshes_[camera].surface().row(y);
+    const SurfaceBuffer& surface = meshes_[camera].surface();
     Bgra* color = reconstruction.color.row(y) + region.x;
     float* depth = reconstruction.depth_m.row(y) + region.x;
     if (drawn_.size() == 1) {
-      look_up(samples, nullptr, region.width, frame.rgbd[camera].color, color, depth);
+      look_up_row(surface, y, nullptr, frame.rgbd[camera].color, color, depth);
       return;
     }
     const std::uint8_t* source = reconstruction.source.row(y) + region.x;
@@ -153,8 +156,8 @@ class VectorizedReconstructor : public Reconstructor {
     depth_row_.resize(width);
     const auto name = static_cast<std::uint8_t>(1 + camera);
     for (std::size_t i = 0; i < width; ++i) wanted_[i] = source[i] == name ? 255 : 0;
-    look_up(samples, wanted_.data(), region.width, frame.rgbd[camera].color, color_row_.data(),
-            depth_row_.data());
+    look_up_row(surface, y, wanted_.data(), frame.rgbd[camera].color, color_row_.data(),
+                depth_row_.data());
     for (std::size_t i = 0; i < width; ++i) {
       if (wanted_[i] == 0) continue;
       color[i] = color_row_[i];
