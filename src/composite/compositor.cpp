@@ -15,23 +15,33 @@ void sort_pixels(const Image<Bgr>& camera, const OcclusionMasks& masks, Diminish
   result.provenance.resize(camera.width(), camera.height(), provenance::camera);
   missing.resize(camera.width(), camera.height(), 0);
   FrameReport& report = result.report;
-  const Rect& drawn = result.reconstruction.region;
-  for (int y = 0; y < camera.height(); ++y) {
+  const Rect objects = bounding_box(masks.color);
+  const Rect drawn = intersect(objects, result.reconstruction.region);
+  for (int y = objects.y; y < objects.bottom(); ++y) {
     const std::uint8_t* mask = masks.color.row(y);
-    for (int x = 0; x < camera.width(); ++x) {
-      if (mask[x] == 0) continue;
-      ++report.mask_pixels;
-      const std::uint8_t source = drawn.contains(x, y) ? result.reconstruction.source(x, y) : 0;
-      if (source != 0) {
-        ++report.valid_pixels;
-        result.provenance(x, y) = source;
-      } else {
-        ++report.missing_pixels;
-        result.provenance(x, y) = provenance::inpainted;
-        missing(x, y) = 255;
+    std::uint8_t* origin = result.provenance.row(y);
+    for (int x = objects.x; x < objects.right(); ++x) {
+      origin[x] = mask[x] != 0 ? provenance::inpainted : provenance::camera;
+    }
+    if (y >= drawn.y && y < drawn.bottom()) {
+      const std::uint8_t* source = result.reconstruction.source.row(y);
+      for (int x = drawn.x; x < drawn.right(); ++x) {
+        origin[x] = mask[x] != 0 && source[x] != 0 ? source[x] : origin[x];
       }
     }
+    std::uint8_t* unseen = missing.row(y);
+    int mask_pixels = 0;
+    int missing_pixels = 0;
+    for (int x = objects.x; x < objects.right(); ++x) {
+      const bool is_missing = origin[x] == provenance::inpainted;
+      unseen[x] = is_missing ? 255 : 0;
+      missing_pixels += is_missing ? 1 : 0;
+      mask_pixels += mask[x] != 0 ? 1 : 0;
+    }
+    report.mask_pixels += static_cast<std::size_t>(mask_pixels);
+    report.missing_pixels += static_cast<std::size_t>(missing_pixels);
   }
+  report.valid_pixels = report.mask_pixels - report.missing_pixels;
 }
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace diminish {
 namespace {
 
 /// Of the last multigrid correction; what is left of the error is smaller.
-constexpr float tolerance_levels = 0.1F;
+constexpr float tolerance_levels = 0.2F;
 struct Difference {
   float value[MembraneSolver::channels];
 

@@ -1,6 +1,25 @@
 #include "diminish/image.h"
 
 namespace diminish {
+namespace {
+
+bool any_set(const std::uint8_t* row, int count) {
+  // Without a branch inside, so that the compiler takes many pixels at a time.
+  std::uint8_t all = 0;
+  for (int x = 0; x < count; ++x) all |= row[x];
+  return all != 0;
+}
+
+/// The first non-zero of `count` pixels; `count` if there is none.
+int first_set(const std::uint8_t* row, int count) {
+  constexpr int step = 32;
+  int x = 0;
+  while (x + step <= count && !any_set(row + x, step)) x += step;
+  while (x < count && row[x] == 0) ++x;
+  return x;
+}
+
+}  // namespace
 
 Rect bounding_box(const Mask& mask) {
   int left = mask.width();
@@ -9,15 +28,14 @@ Rect bounding_box(const Mask& mask) {
   int bottom = -1;
   for (int y = 0; y < mask.height(); ++y) {
     const std::uint8_t* row = mask.row(y);
-    const std::uint8_t* end = row + mask.width();
-    const auto* first = std::find_if(row, end, [](std::uint8_t value) { return value != 0; });
-    if (first == end) continue;
-    const std::uint8_t* last = end - 1;
-    while (*last == 0) --last;
-    left = std::min(left, static_cast<int>(first - row));
-    right = std::max(right, static_cast<int>(last - row));
+    if (!any_set(row, mask.width())) continue;
     if (top < 0) top = y;
     bottom = y;
+    left = std::min(left, first_set(row, left));
+    // From the right end to the rightmost so far.
+    int last = mask.width() - 1;
+    while (last > right && row[last] == 0) --last;
+    right = last;
   }
   if (top < 0) return {};
   return {left, top, right - left + 1, bottom - top + 1};

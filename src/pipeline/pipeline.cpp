@@ -1,8 +1,9 @@
 #include "diminish/pipeline.h"
 
 #include <fmt/format.h>
+#include <oneapi/tbb/parallel_for.h>
 
-#include <optional>
+#include <vector>
 
 #include "composite/compositor.h"
 #include "core/stopwatch.h"
@@ -47,7 +48,9 @@ struct Pipeline::Implementation {
         reconstructor(Registry<Reconstructor>::get("cpu")(rig)) {
     for (const RgbdCamera& camera : rig.rgbd) rgbd_color_lenses.emplace_back(camera.color);
     if (camera_poses.needs_markers() || occluders.needs_markers()) {
-      marker_detector.emplace(scene.marker_dictionary);
+      for (std::size_t i = 0; i <= rig.rgbd.size(); ++i) {
+        marker_detectors.emplace_back(scene.marker_dictionary);
+      }
     }
   }
 
@@ -55,12 +58,16 @@ struct Pipeline::Implementation {
     markers.color.clear();
     markers.rgbd.resize(rig.rgbd.size());
     for (auto& list : markers.rgbd) list.clear();
-    if (!marker_detector) return;
-    marker_detector->detect(frame.color, color_lens, markers.color);
-    for (std::size_t k = 0; k < rig.rgbd.size(); ++k) {
-      if (!frame.rgbd[k].available()) continue;
-      marker_detector->detect(frame.rgbd[k].color, rgbd_color_lenses[k], markers.rgbd[k]);
-    }
+    if (marker_detectors.empty()) return;
+    // One image a core.
+    oneapi::tbb::parallel_for(std::size_t{0}, rig.rgbd.size() + 1, [&](std::size_t i) {
+      if (i == 0) {
+        marker_detectors[i].detect(frame.color, color_lens, markers.color);
+      } else if (frame.rgbd[i - 1].available()) {
+        marker_detectors[i].detect(frame.rgbd[i - 1].color, rgbd_color_lenses[i - 1],
+                                   markers.rgbd[i - 1]);
+      }
+    });
   }
 
   /// What compositing needs: the objects and their surroundings.
@@ -88,7 +95,7 @@ struct Pipeline::Implementation {
   Options options;
   Lens color_lens;
   std::vector<Lens> rgbd_color_lenses;
-  std::optional<MarkerDetector> marker_detector;
+  std::vector<MarkerDetector> marker_detectors;  ///< of the colour camera and each RGB-D camera
   CameraPoses camera_poses;
   OccluderStage occluders;
   std::unique_ptr<Reconstructor> reconstructor;

@@ -17,26 +17,28 @@ constexpr double min_support = 0.4;     ///< of a side's profiles, those that se
 constexpr double min_reach_px = 2.5;
 constexpr double near_px = 1;           ///< points that far apart are on the same edge
 
-/// Bilinear; the four pixels must be inside.
-float sample(const Image<std::uint8_t>& gray, float x, float y) {
+/// The green channel, bilinear; the four pixels must be inside.
+float sample(const Image<Bgr>& image, float x, float y) {
   const int x0 = static_cast<int>(x);
   const int y0 = static_cast<int>(y);
   const float fx = x - static_cast<float>(x0);
   const float fy = y - static_cast<float>(y0);
-  const std::uint8_t* upper = gray.row(y0) + x0;
-  const std::uint8_t* lower = gray.row(y0 + 1) + x0;
-  const float top = static_cast<float>(upper[0]) + fx * static_cast<float>(upper[1] - upper[0]);
-  const float bottom = static_cast<float>(lower[0]) + fx * static_cast<float>(lower[1] - lower[0]);
+  const Bgr* upper = image.row(y0) + x0;
+  const Bgr* lower = image.row(y0 + 1) + x0;
+  const float top =
+      static_cast<float>(upper[0].g) + fx * static_cast<float>(upper[1].g - upper[0].g);
+  const float bottom =
+      static_cast<float>(lower[0].g) + fx * static_cast<float>(lower[1].g - lower[0].g);
   return top + fy * (bottom - top);
 }
 
 /// The place of the dark-to-light step on the profile through `center` along `outward`: the
 /// centroid of the brightness's rise around its steepest point.
-std::optional<Vector2d> find_step(const Image<std::uint8_t>& gray, const Vector2d& center,
+std::optional<Vector2d> find_step(const Image<Bgr>& image, const Vector2d& center,
                                   const Vector2d& outward, double reach_px, double step_px) {
   const auto inside = [&](const Vector2d& point) {
-    return point.x() >= 0 && point.y() >= 0 && point.x() < gray.width() - 1.001 &&
-           point.y() < gray.height() - 1.001;
+    return point.x() >= 0 && point.y() >= 0 && point.x() < image.width() - 1.001 &&
+           point.y() < image.height() - 1.001;
   };
   int count = std::min(2 * static_cast<int>(reach_px / step_px), max_profile_samples);
   double half_length = 0.5 * count * step_px;
@@ -50,11 +52,11 @@ std::optional<Vector2d> find_step(const Image<std::uint8_t>& gray, const Vector2
   const Eigen::Vector2f start = first.cast<float>();
   const Eigen::Vector2f step = (step_px * outward).cast<float>();
   std::array<float, max_profile_samples> rise;
-  float previous = sample(gray, start.x(), start.y());
+  float previous = sample(image, start.x(), start.y());
   int steepest = 0;
   for (int i = 0; i < count; ++i) {
     const auto t = static_cast<float>(i + 1);
-    const float next = sample(gray, start.x() + t * step.x(), start.y() + t * step.y());
+    const float next = sample(image, start.x() + t * step.x(), start.y() + t * step.y());
     rise[static_cast<std::size_t>(i)] = next - previous;
     previous = next;
     if (rise[static_cast<std::size_t>(i)] > rise[static_cast<std::size_t>(steepest)]) steepest = i;
@@ -152,12 +154,12 @@ std::optional<Eigen::Hyperplane<double, 2>> fit_line(Points& points) {
 
 }  // namespace
 
-bool refine_corners(const Image<std::uint8_t>& gray, const Vector2d& origin, const Lens& lens,
-                    int modules, const RefinementPass& pass, std::array<Vector2d, 4>& corners) {
+bool refine_corners(const Image<Bgr>& image, const Lens& lens, int modules,
+                    const RefinementPass& pass, std::array<Vector2d, 4>& corners) {
   std::array<std::optional<Eigen::Hyperplane<double, 2>>, 4> sides;
   for (std::size_t side = 0; side < 4; ++side) {
-    const Vector2d from = corners[side] - origin;
-    const Vector2d along = corners[(side + 1) % 4] - corners[side];
+    const Vector2d& from = corners[side];
+    const Vector2d along = corners[(side + 1) % 4] - from;
     const double length = along.norm();
     if (length < 8) return false;
     // Clockwise corners with y down: the outside is to the left of the direction of travel.
@@ -169,8 +171,8 @@ bool refine_corners(const Image<std::uint8_t>& gray, const Vector2d& origin, con
     Points points;
     for (int i = 0; i < count; ++i) {
       const double t = end + (1 - 2 * end) * (i + 0.5) / count;
-      if (const auto step = find_step(gray, from + t * along, outward, reach_px, pass.step_px)) {
-        points.add(lens.undistort(*step + origin));
+      if (const auto step = find_step(image, from + t * along, outward, reach_px, pass.step_px)) {
+        points.add(lens.undistort(*step));
       }
     }
     if (pass.expect_outliers) {

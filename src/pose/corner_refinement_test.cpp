@@ -128,11 +128,11 @@ TEST(MarkerDetector, AnUnknownDictionaryIsAnError) {
 
 // Nothing to hold on to: the corners stay where they are.
 TEST(RefineCorners, LeavesCornersAloneWhereThereIsNoEdge) {
-  const Image<std::uint8_t> flat(200, 200, 128);
+  const Image<Bgr> flat(200, 200, {128, 128, 128});
   const std::array<Eigen::Vector2d, 4> corners = {
       Eigen::Vector2d(50, 50), {120, 52}, {118, 121}, {49, 119}};
   auto refined = corners;
-  EXPECT_FALSE(refine_corners(flat, {0, 0}, Lens(ideal), 6, fine_pass, refined));
+  EXPECT_FALSE(refine_corners(flat, Lens(ideal), 6, fine_pass, refined));
   EXPECT_EQ(refined, corners);
 }
 

@@ -45,7 +45,7 @@ MarkerCode::MarkerCode(const cv::aruco::Dictionary& dictionary)
 }
 
 std::optional<MarkerCode::Reading> MarkerCode::read(
-    const Image<std::uint8_t>& gray, const std::array<Eigen::Vector2d, 4>& corners) const {
+    const Image<Bgr>& image, const std::array<Eigen::Vector2d, 4>& corners) const {
   const Eigen::Matrix3d image_from_unit = homography(corners);
   const int n = modules();
   std::array<float, max_modules * max_modules> cells{};
@@ -61,8 +61,8 @@ std::optional<MarkerCode::Reading> MarkerCode::read(
         const Eigen::Vector3d at = image_from_unit * Eigen::Vector3d(u, v, 1);
         const int x = static_cast<int>(std::lrint(at.x() / at.z()));
         const int y = static_cast<int>(std::lrint(at.y() / at.z()));
-        if (!gray.bounds().contains(x, y)) return std::nullopt;
-        sum += gray(x, y);
+        if (!image.bounds().contains(x, y)) return std::nullopt;
+        sum += image(x, y).g;
       }
       const float mean = static_cast<float>(sum) / 9;
       cells[static_cast<std::size_t>(row * n + column)] = mean;

@@ -23,9 +23,9 @@ class MarkerCode {
     int id;
     int top_left;  ///< which of the corners is the marker's own top left
   };
-  /// The marker in a quadrilateral, clockwise, of the picture `gray`. Nothing if its cells do not
+  /// The marker in a quadrilateral, clockwise, of the picture. Nothing if its cells do not
   /// make a code of the dictionary, up to the errors that the dictionary can correct.
-  std::optional<Reading> read(const Image<std::uint8_t>& gray,
+  std::optional<Reading> read(const Image<Bgr>& image,
                               const std::array<Eigen::Vector2d, 4>& corners) const;
 
  private:

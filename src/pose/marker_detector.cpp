@@ -44,32 +44,6 @@ cv::Ptr<cv::aruco::Dictionary> find_dictionary(const std::string& name) {
 /// Of two finds of the same marker.
 constexpr double same_place_px = 6;
 
-/// The part of the picture that a quadrilateral lies in, with a margin for what surrounds it.
-Rect surroundings(const Quad& quad, const Rect& bounds) {
-  constexpr double margin = coarse_pass.reach_px + 8;
-  Eigen::Vector2d least = quad[0];
-  Eigen::Vector2d most = quad[0];
-  for (const Eigen::Vector2d& corner : quad) {
-    least = least.cwiseMin(corner);
-    most = most.cwiseMax(corner);
-  }
-  const int x = static_cast<int>(least.x() - margin);
-  const int y = static_cast<int>(least.y() - margin);
-  return intersect({x, y, static_cast<int>(most.x() + margin) - x,
-                    static_cast<int>(most.y() + margin) - y}, bounds);
-}
-
-void copy_brightness(const Image<Bgr>& image, const Rect& part, Image<std::uint8_t>& gray) {
-  gray.resize(part.width, part.height);
-  for (int y = 0; y < part.height; ++y) {
-    const Bgr* from = image.row(part.y + y) + part.x;
-    std::uint8_t* to = gray.row(y);
-    for (int x = 0; x < part.width; ++x) {
-      to[x] = static_cast<std::uint8_t>((from[x].b + 2 * from[x].g + from[x].r + 2) >> 2);
-    }
-  }
-}
-
 /// Removes every marker whose id occurs in more than one place. `markers` is sorted by id.
 void remove_ambiguous(std::vector<Marker>& markers) {
   std::size_t kept = 0;
@@ -93,7 +67,7 @@ struct MarkerDetector::Implementation {
   explicit Implementation(const std::string& dictionary) : code(*find_dictionary(dictionary)) {}
 
   MarkerCode code;
-  Image<std::uint8_t> small, gray;
+  Image<std::uint8_t> small;
   DarkComponents components;
   QuadCandidates candidates;
 };
@@ -111,19 +85,14 @@ void MarkerDetector::detect(const Image<Bgr>& image, const Lens& lens,
   decimate(image, self.small);
   self.components.find(self.small);
   for (Quad quad : self.candidates.find(self.components)) {
-    const Rect part = surroundings(quad, image.bounds());
-    copy_brightness(image, part, self.gray);
-    const Eigen::Vector2d origin(part.x, part.y);
     const int modules = self.code.modules();
-    if (!refine_corners(self.gray, origin, lens, modules, coarse_pass, quad) ||
-        !refine_corners(self.gray, origin, lens, modules, middle_pass, quad)) {
+    if (!refine_corners(image, lens, modules, coarse_pass, quad) ||
+        !refine_corners(image, lens, modules, middle_pass, quad)) {
       continue;
     }
-    Quad local = quad;
-    for (Eigen::Vector2d& corner : local) corner -= origin;
-    const auto reading = self.code.read(self.gray, local);
+    const auto reading = self.code.read(image, quad);
     if (!reading) continue;
-    refine_corners(self.gray, origin, lens, modules, fine_pass, quad);
+    refine_corners(image, lens, modules, fine_pass, quad);
     std::rotate(quad.begin(), quad.begin() + reading->top_left, quad.end());
     markers.push_back({reading->id, quad});
   }
