@@ -28,6 +28,7 @@ int main(int argc, char** argv) {
     diminish::add_run(program, exit_code);
     diminish::add_score(program, exit_code);
     diminish::add_train_color(program, exit_code);
+    diminish::add_bench(program, exit_code);
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return program.exit(error) == 0 ? 0 : wrong_usage;

@@ -8,18 +8,17 @@
 namespace diminish {
 namespace {
 
-struct Row {
-  const char* operation;
-  std::size_t stage;
-  const char* paper_ms;
-};
 // The paper measures poses and detection as one.
-constexpr Row rows[] = {{"Camera poses", 0, "8.2"},        {"Object detection", 1, "(with poses)"},
-                        {"Reconstruction", 2, "12.8"},     {"Compositing", 3, "1.1"},
-                        {"Colour correction", 4, "13256"}, {"Inpainting", 5, "1871"},
-                        {"Total", stage_count, "15149"}};
+constexpr PaperRow rows[] = {{"Camera poses", 0, "8.2"},        {"Object detection", 1, "(with poses)"},
+                             {"Reconstruction", 2, "12.8"},     {"Compositing", 3, "1.1"},
+                             {"Colour correction", 4, "13256"}, {"Inpainting", 5, "1871"},
+                             {"Total", stage_count, "15149"}};
 
 }  // namespace
+
+std::span<const PaperRow> paper_table() {
+  return rows;
+}
 
 void RunStatistics::add(const FrameReport& report) {
   if (!report.faults.empty() || report.skipped) ++faulty_;
@@ -49,7 +48,7 @@ double RunStatistics::average_ms(std::size_t stage) const {
 std::string RunStatistics::table() const {
   std::string text = fmt::format("{:<20}{:>10}{:>10}{:>10}{:>16}\n", "Operation, ms", "avg", "min",
                                  "max", "paper");
-  for (const Row& row : rows) {
+  for (const PaperRow& row : rows) {
     const Times& times = times_[row.stage];
     text += fmt::format("{:<20}{:>10.1f}{:>10.1f}{:>10.1f}{:>16}\n", row.operation,
                         average_ms(row.stage), times.min_ms, times.max_ms, row.paper_ms);

@@ -3,11 +3,20 @@
 #include <array>
 #include <cstddef>
 #include <map>
+#include <span>
 #include <string>
 
 #include "diminish/diminished_frame.h"
 
 namespace diminish {
+
+/// A row of the paper's Table 2 (Meerits & Saito 2015, on an i7-4770K and a GTX 780).
+struct PaperRow {
+  const char* operation;
+  std::size_t stage;  ///< stage_count: the whole frame
+  const char* paper_ms;
+};
+std::span<const PaperRow> paper_table();
 
 /// What a run's frames add up to.
 class RunStatistics {
@@ -31,8 +40,7 @@ class RunStatistics {
   /// What was not found or could not be done, with the number of frames.
   const std::map<std::string, std::size_t>& messages() const { return messages_; }
 
-  /// The paper's Table 2 for this run, beside the paper's own figures (Meerits & Saito 2015, on an
-  /// i7-4770K and a GTX 780), then what was not found in how many frames.
+  /// The paper's Table 2 for this run, beside the paper's own figures, then what was not found in how many frames.
   std::string table() const;
 
  private:

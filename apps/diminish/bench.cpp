@@ -1,0 +1,234 @@
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+
+#include "allocation_counter.h"
+#include "commands.h"
+#include "diminish/diminish.h"
+#include "diminish/runner.h"
+#include "option_flags.h"
+#include "preloaded_source.h"
+#include "sink/distribution.h"
+#include "sink/partial_file.h"
+#include "sink/run_statistics.h"
+
+namespace diminish {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// What was measured.
+struct Figures {
+  std::size_t frames = 0, left_out = 0, measured = 0;
+  std::array<Distribution, stage_count + 1> times_ms;  ///< per stage, and last the whole frame
+  double throughput_fps = 0;
+  Distribution allocated_bytes, allocations;  ///< a frame
+  std::size_t peak_memory_bytes = 0;
+};
+
+struct BenchCommand {
+  std::filesystem::path recording;
+  std::filesystem::path json;
+  int threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  std::size_t frames = 0;
+  double seconds = 3;
+  Options options;
+
+  int execute() const;
+
+ private:
+  std::vector<FrameSet> load(const Recording& input, Figures& figures) const;
+  void measure_latency(const Recording& input, const std::vector<FrameSet>& frames,
+                       Figures& figures) const;
+  void measure_throughput(const Recording& input, std::vector<FrameSet> frames,
+                          Figures& figures) const;
+};
+
+class NoSink : public FrameSink {
+ public:
+  void write_images(const FrameSet&, const DiminishedFrame&) override {}
+  void append(const FrameSet&, const DiminishedFrame&) override {}
+};
+
+std::vector<FrameSet> BenchCommand::load(const Recording& input, Figures& figures) const {
+  const auto source = open_recording(input, options);
+  std::vector<FrameSet> loaded;
+  FrameSet frame;
+  while ((frames == 0 || loaded.size() < frames) && source->next(frame)) {
+    if (frame.color.empty()) {
+      ++figures.left_out;
+    } else {
+      loaded.push_back(frame);
+    }
+  }
+  if (loaded.empty()) {
+    throw Error(recording.string() + ": expected at least one frame with a colour image");
+  }
+  figures.frames = loaded.size();
+  return loaded;
+}
+
+void BenchCommand::measure_latency(const Recording& input, const std::vector<FrameSet>& loaded,
+                                   Figures& figures) const {
+  Pipeline pipeline(input.rig, input.scene, options);
+  DiminishedFrame result;
+  for (const FrameSet& frame : loaded) pipeline.process(frame, result);  // memory grows to its size
+
+  constexpr std::size_t fewest_frames = 20;
+  std::array<std::vector<double>, stage_count + 1> times;
+  std::vector<double> bytes;
+  std::vector<double> counts;
+  const Clock::time_point start = Clock::now();
+  for (std::size_t i = 0; i < fewest_frames || seconds_since(start) < seconds; ++i) {
+    const Allocations before = allocations();
+    const Clock::time_point frame_start = Clock::now();
+    pipeline.process(loaded[i % loaded.size()], result);
+    const double ms = 1000 * seconds_since(frame_start);
+    const Allocations after = allocations();
+    bytes.push_back(static_cast<double>(after.bytes - before.bytes));
+    counts.push_back(static_cast<double>(after.count - before.count));
+    for (std::size_t stage = 0; stage < stage_count; ++stage) {
+      times[stage].push_back(result.report.milliseconds[stage]);
+    }
+    times[stage_count].push_back(ms);
+  }
+  figures.measured = bytes.size();
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    figures.times_ms[i] = distribution_of(std::move(times[i]));
+  }
+  figures.allocated_bytes = distribution_of(std::move(bytes));
+  figures.allocations = distribution_of(std::move(counts));
+}
+
+void BenchCommand::measure_throughput(const Recording& input, std::vector<FrameSet> loaded,
+                                      Figures& figures) const {
+  const double frame_s = figures.times_ms[stage_count].average / 1000;
+  const auto count = std::max<std::size_t>(
+      20, static_cast<std::size_t>(seconds / std::max(frame_s, 1e-6) * threads));
+  NoSink sink;
+  RunnerOptions runner;
+  runner.threads = threads;
+  Clock::time_point start;
+  std::size_t timed = 0;
+  // The first frames make each thread's memory.
+  const std::size_t warm_up = static_cast<std::size_t>(2 * threads);
+  runner.progress = [&](std::size_t done) {
+    if (done == warm_up) start = Clock::now();
+    timed = done - std::min(done, warm_up);
+  };
+  PreloadedSource source(std::move(loaded), count + warm_up);
+  run(source, input.rig, input.scene, options, sink, runner);
+  figures.throughput_fps = static_cast<double>(timed) / seconds_since(start);
+}
+
+void print(const Figures& figures, int threads) {
+  fmt::print("{:<20}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>16}\n", "Operation, ms", "avg", "min", "max",
+             "p50", "p95", "p99", "paper");
+  for (const PaperRow& row : paper_table()) {
+    const Distribution& d = figures.times_ms[row.stage];
+    fmt::print("{:<20}{:>9.2f}{:>9.2f}{:>9.2f}{:>9.2f}{:>9.2f}{:>9.2f}{:>16}\n", row.operation,
+               d.average, d.least, d.most, d.p50, d.p95, d.p99, row.paper_ms);
+  }
+  const Distribution& total = figures.times_ms[stage_count];
+  fmt::print("{} frames, {} times in all; {} left out without a colour image\n", figures.frames,
+             figures.measured, figures.left_out);
+  fmt::print("One at a time: p50 {:.2f}, p95 {:.2f}, p99 {:.2f} ms; {:.1f} frames/s\n", total.p50,
+             total.p95, total.p99, 1000 / total.average);
+  fmt::print("Pipelined, {} threads: {:.1f} frames/s\n", threads, figures.throughput_fps);
+  fmt::print("Peak memory: {:.0f} MB\n", static_cast<double>(figures.peak_memory_bytes) / 1e6);
+  if (allocations_are_counted()) {
+    fmt::print("Allocated in a frame: {:.0f} bytes (at most {:.0f}) in {:.0f} pieces\n",
+               figures.allocated_bytes.p50, figures.allocated_bytes.most, figures.allocations.p50);
+  } else {
+    fmt::print("Allocated in a frame: not measured in this build\n");
+  }
+}
+
+nlohmann::ordered_json to_json(const Distribution& d) {
+  return {{"avg", d.average}, {"min", d.least}, {"max", d.most},
+          {"p50", d.p50},     {"p95", d.p95},   {"p99", d.p99}};
+}
+
+std::string processor() {
+  std::ifstream info("/proc/cpuinfo");
+  const std::string key = "model name";
+  for (std::string line; std::getline(info, line);) {
+    const std::size_t colon = line.find(": ");
+    if (line.starts_with(key) && colon != std::string::npos) return line.substr(colon + 2);
+  }
+  return "unknown";
+}
+
+void write_json(const BenchCommand& command, const Figures& figures) {
+  const Distribution& total = figures.times_ms[stage_count];
+  nlohmann::ordered_json json;
+  json["recording"] = command.recording.string();
+  json["frames"] = figures.frames;
+  json["threads"] = command.threads;
+  json["machine"] = {{"processor", processor()}, {"cores", std::thread::hardware_concurrency()}};
+  json["latency_ms"] = to_json(total);
+  json["latency_fps"] = 1000 / total.average;
+  json["throughput_fps"] = figures.throughput_fps;
+  for (std::size_t stage = 0; stage < stage_count; ++stage) {
+    json["stages"][stage_names[stage]] = to_json(figures.times_ms[stage]);
+  }
+  json["peak_memory_bytes"] = figures.peak_memory_bytes;
+  if (allocations_are_counted()) {
+    json["allocated_bytes_per_frame"] = figures.allocated_bytes.p50;
+  }
+  write_file(command.json, json.dump(2) + "\n");
+}
+
+int BenchCommand::execute() const {
+  check(options);
+  const Recording input = load_recording(recording);
+  Figures figures;
+  std::vector<FrameSet> loaded = load(input, figures);
+  measure_latency(input, loaded, figures);
+  measure_throughput(input, std::move(loaded), figures);
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  figures.peak_memory_bytes = static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+  print(figures, threads);
+  if (!json.empty()) write_json(*this, figures);
+  return 0;
+}
+
+}  // namespace
+
+void add_bench(CLI::App& program, int& exit_code) {
+  auto command = std::make_shared<BenchCommand>();
+  CLI::App* sub = program.add_subcommand(
+      "bench", "Measures the pipeline on a recording's frames, decoded beforehand");
+  sub->add_option("recording", command->recording, "The recording's folder (rig.yaml, scene.yaml)")
+      ->required();
+  sub->add_option("--threads", command->threads, "Frames in work at a time for the throughput")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1024))
+      ->type_name("N");
+  sub->add_option("--frames", command->frames, "How many of the recording's frames; default: all")
+      ->check(CLI::Range(1, 1000000))
+      ->type_name("N");
+  sub->add_option("--seconds", command->seconds, "How long each of the two measurements takes")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 3600.0))
+      ->type_name("S");
+  sub->add_option("--json", command->json, "Write the figures to this file, too")
+      ->type_name("FILE");
+  add_option_flags(*sub, command->options);
+  sub->callback([command, &exit_code] { exit_code = command->execute(); });
+}
+
+}  // namespace diminish
