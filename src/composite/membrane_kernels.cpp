@@ -125,6 +125,7 @@ HWY_INLINE void Fill(float value, float* even, std::ptrdiff_t pitch) {
 
 void SetWeights(const std::uint32_t* cells, const std::uint32_t* fixed,
                 std::ptrdiff_t words_per_row, MembraneLevel& level) {
+  level.edges.resize(level.blocks.size() * 8);
   const std::ptrdiff_t pitch = level.pitch;
   for (int y = 0; y < level.rows(); ++y) {
     ForEachBlock(level.stored, level.stored_rows, y, [&](int column) {
@@ -147,9 +148,23 @@ void SetWeights(const std::uint32_t* cells, const std::uint32_t* fixed,
       const std::uint32_t right_member = (member >> 1) | (next_member << 31);
       const std::uint32_t lower_cell = cells[word + words_per_row];
       const std::uint32_t lower_member = lower_cell | fixed[word + words_per_row];
-      StoreBits(member & right_member & (cell | right_cell), 1.F, level.right.data() + at, pitch);
-      StoreBits(member & lower_member & (cell | lower_cell), 1.F, level.down.data() + at, pitch);
+      const std::uint32_t to_right = member & right_member & (cell | right_cell);
+      const std::uint32_t down = member & lower_member & (cell | lower_cell);
+      StoreBits(to_right, 1.F, level.right.data() + at, pitch);
+      StoreBits(down, 1.F, level.down.data() + at, pitch);
       StoreBits(fixed[word], -1.F, level.inverse.data() + at, pitch);
+      const std::uint32_t left_cell = (cell << 1) | (cells[word - 1] >> 31);
+      const std::uint32_t left_member = (member << 1) | ((cells[word - 1] | fixed[word - 1]) >> 31);
+      const std::uint32_t upper_cell = cells[word - words_per_row];
+      const std::uint32_t upper_member = upper_cell | fixed[word - words_per_row];
+      const std::uint32_t directions[] = {member & left_member & (cell | left_cell), to_right,
+                                          member & upper_member & (cell | upper_cell), down};
+      for (int parity = 0; parity < 2; ++parity) {
+        std::uint16_t* edges = level.edges_at(y, parity, column);
+        for (int k = 0; k < 4; ++k) {
+          edges[k] = static_cast<std::uint16_t>(EvenBits(directions[k] >> parity));
+        }
+      }
     });
   }
 }
@@ -359,6 +374,32 @@ struct Neighbours {
   }
 };
 
+/// Which edges a vector of cells of the finest level has.
+struct EdgeMasks {
+  Mask left, right, up, down;
+
+  HWY_INLINE EdgeMasks(const std::uint16_t* edges, std::ptrdiff_t i) {
+    const auto mask = [i](std::uint16_t bits) HWY_ATTR {
+      alignas(8) std::uint8_t bytes[8] = {};
+      bytes[0] = static_cast<std::uint8_t>(bits >> i);
+      bytes[1] = static_cast<std::uint8_t>(bits >> (i + 8));
+      return hn::LoadMaskBits(Floats(), bytes);
+    };
+    left = mask(edges[0]);
+    right = mask(edges[1]);
+    up = mask(edges[2]);
+    down = mask(edges[3]);
+  }
+  HWY_INLINE Vector Sum(const Neighbours& n) const {
+    return hn::Add(hn::Add(hn::IfThenElseZero(left, n.left), hn::IfThenElseZero(right, n.right)),
+                   hn::Add(hn::IfThenElseZero(up, n.up), hn::IfThenElseZero(down, n.down)));
+  }
+  HWY_INLINE Vector Count() const {
+    const auto one_if = [](Mask mask) HWY_ATTR { return hn::IfThenElseZero(mask, Set(1.F)); };
+    return hn::Add(hn::Add(one_if(left), one_if(right)), hn::Add(one_if(up), one_if(down)));
+  }
+};
+
 void InvertDiagonal(MembraneLevel& level) {
   for (int y = 0; y < level.rows(); ++y) {
     ForEachBlock(level.stored, level.stored_rows, y, [&](int column) {
@@ -407,6 +448,16 @@ HWY_INLINE void RelaxParity(const MembraneLevel& level, const float* HWY_RESTRIC
       }
       const Vector inverse = Load(level.inverse.data() + level.at(y, parity, column) + i);
       const Mask cell = hn::Gt(inverse, Zero());
+      if (start == Start::x && !level.edges.empty()) {
+        const EdgeMasks edges(level.edges_at(y, parity, column), i);
+        for (int c = 0; c < channels; ++c) {
+          const std::ptrdiff_t at = planes + c * level.channel_step();
+          Vector sum = edges.Sum(Neighbours(level, values, at, parity));
+          if (level.has_sources) sum = hn::Add(sum, Load(right_side + at));
+          Store(hn::IfThenElse(cell, hn::Mul(sum, inverse), Load(values + at)), values + at);
+        }
+        continue;
+      }
       const Weights weights(level, y, parity, column, i);
       for (int c = 0; c < channels; ++c) {
         const std::ptrdiff_t at = planes + c * level.channel_step();
@@ -501,13 +552,25 @@ HWY_INLINE void Residual(const MembraneLevel& level, const float* right_side, co
   if (level.block(y, column) == Block::plain) {
     for (int c = 0; c < channels; ++c) {
       const std::ptrdiff_t at = planes + c * level.channel_step();
-      const Vector sum =
-          hn::Add(Load(right_side + at), Neighbours(level, values, at, parity).Total());
+      Vector sum = Neighbours(level, values, at, parity).Total();
+      // In plain blocks of the finest level there are no sources.
+      if (level.edges.empty()) sum = hn::Add(sum, Load(right_side + at));
       result[c] = hn::NegMulAdd(Set(4.F), Load(values + at), sum);
     }
     return;
   }
   const Mask cell = hn::Gt(Load(level.inverse.data() + single), Zero());
+  if (!level.edges.empty()) {
+    const EdgeMasks edges(level.edges_at(y, parity, column), i);
+    const Vector count = edges.Count();
+    for (int c = 0; c < channels; ++c) {
+      const std::ptrdiff_t at = planes + c * level.channel_step();
+      Vector sum = edges.Sum(Neighbours(level, values, at, parity));
+      if (level.has_sources) sum = hn::Add(sum, Load(right_side + at));
+      result[c] = hn::IfThenElseZero(cell, hn::NegMulAdd(count, Load(values + at), sum));
+    }
+    return;
+  }
   const Weights weights(level, y, parity, column, i);
   const Vector diagonal = weights.Total();
   for (int c = 0; c < channels; ++c) {

@@ -56,6 +56,11 @@ struct MembraneLevel {
   AlignedFloats x, right_side;    ///< three channels: the solution, and what it solves for
   AlignedFloats error, residual;  ///< likewise, of a correction cycle
 
+  /// Only on the finest level, where all weights are 0 or 1: a bit for each cell of one parity of a
+  /// block, for its left, right, upper and lower edge. A sixteenth of what the weights take.
+  std::vector<std::uint16_t> edges;
+  bool has_sources = true;  ///< right_side is not 0 everywhere
+
   std::vector<Block> blocks;                  ///< of each row, tile_columns of them
   std::vector<Tile> tiles;                    ///< with a margin of one empty tile all around
   std::vector<Span> active, stored;           ///< stored: active or ghost
@@ -78,6 +83,12 @@ struct MembraneLevel {
   std::ptrdiff_t channel_step() const { return 2 * pitch; }
   std::ptrdiff_t channel_row_step() const { return 2 * channels * pitch; }
 
+  std::uint16_t* edges_at(int y, int parity, int column) {
+    return edges.data() + 4 * (2 * block_index(y, column) + static_cast<std::size_t>(parity));
+  }
+  const std::uint16_t* edges_at(int y, int parity, int column) const {
+    return edges.data() + 4 * (2 * block_index(y, column) + static_cast<std::size_t>(parity));
+  }
   int rows() const { return tile_rows * tile_height; }
   Block& block(int y, int column) { return blocks[block_index(y, column)]; }
   Block block(int y, int column) const { return blocks[block_index(y, column)]; }

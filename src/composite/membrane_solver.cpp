@@ -120,6 +120,7 @@ void MembraneSolver::build() {
     }
   }
   finest.choose_tiles();
+  finest.has_sources = !sources_.empty();
   membrane::set_weights(cells_.data(), fixed_.data(), words_per_row_, finest);
   const auto place = [&](const Boundary& boundary, int channel) {
     return finest.at(boundary.y, channel, boundary.x % 2, boundary.x / tile_width) +
