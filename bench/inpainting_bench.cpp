@@ -1,5 +1,9 @@
+#include <cmath>
+#include <cstdlib>
+#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/photo.hpp>
+#include <string>
 
 #include "beside_peer.h"
 #include "core/mat.h"
@@ -21,25 +25,88 @@ Mask make_pipes(int percent) {
   return mask;
 }
 
-void harmonic_beside_telea(benchmark::State& state) {
-  Image<Bgr> picture(1280, 1024);
-  cv::RNG(3).fill(as_mat(picture), cv::RNG::UNIFORM, 0, 256);
-  const Mask missing = make_pipes(static_cast<int>(state.range(0)));
+double psnr(const Image<Bgr>& picture, const Image<Bgr>& truth, const Mask& mask) {
+  double squares = 0;
+  double count = 0;
+  for (int y = 0; y < mask.height(); ++y) {
+    for (int x = 0; x < mask.width(); ++x) {
+      if (mask(x, y) == 0) continue;
+      squares += std::pow(picture(x, y).b - truth(x, y).b, 2) +
+                 std::pow(picture(x, y).g - truth(x, y).g, 2) +
+                 std::pow(picture(x, y).r - truth(x, y).r, 2);
+      count += 3;
+    }
+  }
+  return 10 * std::log10(255 * 255 * count / squares);
+}
+
+void harmonic_beside_telea(benchmark::State& state, const Image<Bgr>& truth, const Mask& missing) {
+  Image<Bgr> picture = truth;
+  picture.fill({});
+  for (int y = 0; y < truth.height(); ++y) {
+    for (int x = 0; x < truth.width(); ++x) {
+      if (missing(x, y) == 0) picture(x, y) = truth(x, y);
+    }
+  }
+  Image<Bgr> ours = picture;
+  Image<Bgr> exact = picture;
+  Image<Bgr> teleas;
   const auto inpainter = Registry<Inpainter>::get("harmonic")();
   const Options options;
+  cv::Mat filled;
   run_beside_peer(
-      state, [&] { inpainter->inpaint(missing, options, picture); },
-      [&] {
-        cv::Mat filled;
-        cv::inpaint(as_mat(picture), as_mat(missing), filled, 5, cv::INPAINT_TELEA);
-      });
+      state, [&] { inpainter->inpaint(missing, options, ours); },
+      [&] { cv::inpaint(as_mat(picture), as_mat(missing), filled, 5, cv::INPAINT_TELEA); });
+  copy_from(filled, teleas);
+  Registry<Inpainter>::get("harmonic_reference")()->inpaint(missing, options, exact);
+  state.counters["missing"] = static_cast<double>(count_nonzero(missing, missing.bounds()));
+  state.counters["psnr"] = psnr(ours, truth, missing);
+  state.counters["exact_psnr"] = psnr(exact, truth, missing);
+  state.counters["peer_psnr"] = psnr(teleas, truth, missing);
 }
-BENCHMARK(harmonic_beside_telea)
+
+void harmonic_in_pipes(benchmark::State& state) {
+  Image<Bgr> truth(1280, 1024);
+  cv::Mat picture = as_mat(truth);
+  cv::RNG(3).fill(picture, cv::RNG::UNIFORM, 0, 256);
+  cv::GaussianBlur(picture, picture, {}, 6);
+  harmonic_beside_telea(state, truth, make_pipes(static_cast<int>(state.range(0))));
+}
+BENCHMARK(harmonic_in_pipes)
     ->ArgName("percent_missing")
     ->Arg(1)
     ->Arg(5)
     ->UseManualTime()
     ->Unit(benchmark::kMillisecond);
+
+/// DIMINISH_STAGE_DATA may name a folder with photographs photo_*.png and holes hole_*.png.
+void harmonic_in_photograph(benchmark::State& state, const char* photo, const char* hole) {
+  const char* folder = std::getenv("DIMINISH_STAGE_DATA");
+  const auto path = [&](const std::string& name) {
+    return std::string(folder ? folder : "") + "/" + name + ".png";
+  };
+  const cv::Mat picture = cv::imread(path(std::string("photo_") + photo));
+  const cv::Mat mask = cv::imread(path(std::string("hole_") + hole), cv::IMREAD_GRAYSCALE);
+  if (picture.empty() || mask.size() != picture.size()) {
+    state.SkipWithError("no pictures");
+    return;
+  }
+  Image<Bgr> truth;
+  copy_from(picture, truth);
+  Mask missing;
+  copy_from(mask, missing);
+  harmonic_beside_telea(state, truth, missing);
+}
+#define DIMINISH_PHOTOGRAPH_BENCHMARK(photo, hole)                         \
+  BENCHMARK_CAPTURE(harmonic_in_photograph, photo##_##hole, #photo, #hole) \
+      ->UseManualTime()                                                    \
+      ->Unit(benchmark::kMillisecond)
+DIMINISH_PHOTOGRAPH_BENCHMARK(aloe, pipes3);
+DIMINISH_PHOTOGRAPH_BENCHMARK(garden, pipes3);
+DIMINISH_PHOTOGRAPH_BENCHMARK(wood, pipes3);
+DIMINISH_PHOTOGRAPH_BENCHMARK(building, pipes3);
+DIMINISH_PHOTOGRAPH_BENCHMARK(aloe, pipes8);
+DIMINISH_PHOTOGRAPH_BENCHMARK(aloe, blob200);
 
 }  // namespace
 }  // namespace diminish

@@ -89,9 +89,7 @@ void beside_opencv(benchmark::State& state, const std::vector<Picture>& pictures
         const Image<Bgr>& image = pictures[next++ % pictures.size()].image;
         detector.detect(image, Lens(Intrinsics{0, 0, 1000, 1000, 0, 0, {}}), markers);
       },
-      [&] {
-        detect_with_opencv(pictures[peers_next++ % pictures.size()].image, dictionary);
-      });
+      [&] { detect_with_opencv(pictures[peers_next++ % pictures.size()].image, dictionary); });
   state.counters["found"] = static_cast<double>(ours.found);
   state.counters["wrong"] = static_cast<double>(ours.wrong);
   state.counters["peer_found"] = static_cast<double>(opencvs.found);
@@ -141,9 +139,9 @@ void markers_with_truth(benchmark::State& state, const char* kind, const char* n
   }
   beside_opencv(state, pictures, name, id);
 }
-#define DIMINISH_MARKERS_BENCHMARK(kind, dictionary)                                \
+#define DIMINISH_MARKERS_BENCHMARK(kind, dictionary)                                          \
   BENCHMARK_CAPTURE(markers_with_truth, of_##kind, #kind, #dictionary, cv::aruco::dictionary) \
-      ->UseManualTime()                                                             \
+      ->UseManualTime()                                                                       \
       ->Unit(benchmark::kMillisecond)
 DIMINISH_MARKERS_BENCHMARK(1280_aro, DICT_ARUCO_ORIGINAL);
 DIMINISH_MARKERS_BENCHMARK(1280_t36, DICT_APRILTAG_36h11);

@@ -25,13 +25,18 @@ void reconstruct(benchmark::State& state, const char* name, bool whole_view) {
   const auto run = [&](Reconstructor& reconstructor) {
     reconstructor.reconstruct(frame, result.report.poses, masks, region, options, reconstruction);
   };
-  run_beside_peer(state, [&] { run(*fast); }, [&] { run(*plain); });
+  run_beside_peer(
+      state, [&] { run(*fast); }, [&] { run(*plain); });
 }
-BENCHMARK_CAPTURE(reconstruct, calendar_mask, "calendar", false)->UseManualTime()->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(reconstruct, calendar_mask, "calendar", false)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(reconstruct, calendar_whole_view, "calendar", true)
-    ->UseManualTime()->Unit(benchmark::kMillisecond);
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(reconstruct, workbench_two_cameras, "workbench", true)
-    ->UseManualTime()->Unit(benchmark::kMillisecond);
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace diminish

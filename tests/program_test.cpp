@@ -147,5 +147,43 @@ TEST_F(ProgramTest, ExplainsItself) {
   EXPECT_EQ(Program::run({"run", "--nonsense"}).exit_code, 2);
 }
 
+TEST_F(ProgramTest, BenchMeasuresEveryStage) {
+  const fs::path file = recording.path("bench.json");
+  const auto outcome = Program::run({"bench", recording.folder(), "--seconds", "0.01", "--threads",
+                                     "2", "--json", file.string()});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("Colour correction"));
+  EXPECT_THAT(outcome.out, HasSubstr("13256"));
+  const auto json = nlohmann::json::parse(read_text_file(file, 1 << 20));
+  EXPECT_EQ(json.at("frames"), 3);
+  EXPECT_EQ(json.at("threads"), 2);
+  const auto& latency = json.at("latency_ms");
+  EXPECT_GT(latency.at("min"), 0);
+  for (const auto& [lower, upper] : {std::pair("min", "p50"), std::pair("p50", "p95"),
+                                     std::pair("p95", "p99"), std::pair("p99", "max")}) {
+    EXPECT_LE(latency.at(lower).get<double>(), latency.at(upper).get<double>()) << lower;
+  }
+  double stages = 0;
+  for (const char* stage :
+       {"poses", "detection", "reconstruction", "compositing", "color_correction", "inpainting"}) {
+    stages += json.at("stages").at(stage).at("avg").get<double>();
+  }
+  EXPECT_GT(stages, 0);
+  EXPECT_LE(stages, latency.at("avg").get<double>());
+  EXPECT_GT(json.at("throughput_fps"), 0);
+  EXPECT_GT(json.at("peak_memory_bytes"), 1000000);
+}
+
+TEST_F(ProgramTest, BenchSaysWhatIsWrong) {
+  const auto missing = Program::run({"bench", "/nowhere"});
+  EXPECT_EQ(missing.exit_code, 1);
+  EXPECT_THAT(missing.err, HasSubstr("/nowhere"));
+  EXPECT_EQ(Program::run({"bench", recording.folder(), "--frames", "0"}).exit_code, 2);
+  const auto unwritable = Program::run(
+      {"bench", recording.folder(), "--seconds", "0", "--json", "/nowhere/figures.json"});
+  EXPECT_EQ(unwritable.exit_code, 1);
+  EXPECT_THAT(unwritable.err, HasSubstr("/nowhere/figures.json"));
+}
+
 }  // namespace
 }  // namespace diminish

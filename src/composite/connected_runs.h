@@ -19,7 +19,7 @@ class ConnectedRuns {
     int first, last;
     std::size_t part;  ///< below `part_limit`, with gaps
 
-    /// Those of the word's 32 pixels that lie in the run.
+    /// Those of a word's 32 pixels that lie in the run; the run must reach into the word.
     std::uint32_t bits(int word) const {
       const int from = std::max(first - 32 * word, 0);
       const int to = std::min(last - 32 * word, 32);

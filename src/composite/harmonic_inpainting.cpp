@@ -26,9 +26,9 @@ class HarmonicInpainting : public Inpainter {
     bool anything_known = false;
     solver_.for_each_fixed([&](int x, int y) {
       const Bgr& color = picture(window.x + x, window.y + y);
-      solver_.set_fixed(x, y,
-                        {static_cast<float>(color.b), static_cast<float>(color.g),
-                         static_cast<float>(color.r)});
+      solver_.set_fixed(
+          x, y,
+          {static_cast<float>(color.b), static_cast<float>(color.g), static_cast<float>(color.r)});
       anything_known = true;
     });
     if (!anything_known) {

@@ -66,8 +66,8 @@ TEST(HarmonicInpainting, EqualsADirectSolve) {
   const Eigen::VectorXd exact =
       Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(matrix).solve(right);
   // Half a level for rounding and what the solver may leave of neighbours that differ by 255.
-  for (const auto& [method, tolerance] : {std::pair("harmonic_reference", 0.65),
-                                          std::pair("harmonic", 1.3)}) {
+  for (const auto& [method, tolerance] :
+       {std::pair("harmonic_reference", 0.65), std::pair("harmonic", 1.3)}) {
     const Image<Bgr> filled = inpaint(picture, missing, method);
     for (int y = 0; y < 45; ++y) {
       for (int x = 0; x < 60; ++x) {

@@ -50,9 +50,8 @@ class HarmonicReference : public Inpainter {
   LaplaceSolver solver_;
 };
 
-const bool registered =
-    Registry<Inpainter>::add("harmonic_reference",
-                             [] { return std::make_unique<HarmonicReference>(); });
+const bool registered = Registry<Inpainter>::add(
+    "harmonic_reference", [] { return std::make_unique<HarmonicReference>(); });
 
 }  // namespace
 }  // namespace diminish

@@ -136,7 +136,7 @@ void SetWeights(const std::uint32_t* cells, const std::uint32_t* fixed,
       if (level.block(y, column) == Block::plain) {
         Fill(1.F, level.right.data() + at, pitch);
         Fill(1.F, level.down.data() + at, pitch);
-          Fill(0.F, level.inverse.data() + at, pitch);
+        Fill(0.F, level.inverse.data() + at, pitch);
         return;
       }
       const std::ptrdiff_t word = (y + 1) * words_per_row + column + 1;
@@ -245,23 +245,22 @@ HWY_INLINE void CoarsenHalf(const MembraneLevel& fine, int y, int column, int of
     const Mask fixed = own.AnyFixed();
     const Four horizontal(right, pitch, row);
     const Four vertical(down, pitch, row);
-    Store(CoarseWeight({own.a, own.b, beside.a, beside.b, horizontal.a, horizontal.b,
-                        Load(right + 1)},
-                       {own.c, own.d, beside.c, beside.d, horizontal.c, horizontal.d,
-                        Load(right + row + 1)},
-                       fixed, beside.AnyFixed()),
+    Store(CoarseWeight(
+              {own.a, own.b, beside.a, beside.b, horizontal.a, horizontal.b, Load(right + 1)},
+              {own.c, own.d, beside.c, beside.d, horizontal.c, horizontal.d, Load(right + row + 1)},
+              fixed, beside.AnyFixed()),
           cells.right + to);
-    Store(CoarseWeight({own.a, own.c, below.a, below.c, vertical.a, vertical.c,
-                        Load(down + 2 * row)},
-                       {own.b, own.d, below.b, below.d, vertical.b, vertical.d,
-                        Load(down + 2 * row + pitch)},
-                       fixed, below.AnyFixed()),
-          cells.down + to);
+    Store(
+        CoarseWeight(
+            {own.a, own.c, below.a, below.c, vertical.a, vertical.c, Load(down + 2 * row)},
+            {own.b, own.d, below.b, below.d, vertical.b, vertical.d, Load(down + 2 * row + pitch)},
+            fixed, below.AnyFixed()),
+        cells.down + to);
     Store(hn::IfThenElseZero(fixed, Set(-1.F)), cells.inverse + to);
     const auto one_if = [](Mask mask) { return hn::IfThenElseZero(mask, Set(1.F)); };
-    const Vector count = hn::Max(
-        Set(1.F), hn::Add(hn::Add(one_if(IsFixed(own.a)), one_if(IsFixed(own.b))),
-                          hn::Add(one_if(IsFixed(own.c)), one_if(IsFixed(own.d)))));
+    const Vector count =
+        hn::Max(Set(1.F), hn::Add(hn::Add(one_if(IsFixed(own.a)), one_if(IsFixed(own.b))),
+                                  hn::Add(one_if(IsFixed(own.c)), one_if(IsFixed(own.d)))));
     for (int c = 0; c < channels; ++c) {
       const std::ptrdiff_t from = fine.at(y, c, 0, column) + i;
       Store(Four(fine.right_side.data() + from, pitch, fine.channel_row_step()).Sum(),
@@ -367,10 +366,10 @@ struct Neighbours {
   }
   HWY_INLINE Vector Total() const { return hn::Add(hn::Add(left, right), hn::Add(up, down)); }
   HWY_INLINE Vector Weighted(const Weights& weights, Vector right_side) const {
-    return hn::MulAdd(weights.left, left,
-                      hn::MulAdd(weights.right, right,
-                                 hn::MulAdd(weights.up, up,
-                                            hn::MulAdd(weights.down, down, right_side))));
+    return hn::MulAdd(
+        weights.left, left,
+        hn::MulAdd(weights.right, right,
+                   hn::MulAdd(weights.up, up, hn::MulAdd(weights.down, down, right_side))));
   }
 };
 
@@ -412,8 +411,7 @@ void InvertDiagonal(MembraneLevel& level) {
           const std::ptrdiff_t at = level.at(y, parity, column) + i;
           const Vector sum = Weights(level, y, parity, column, i).Total();
           const Vector old = Load(level.inverse.data() + at);
-          const Vector reciprocal =
-              hn::IfThenElseZero(hn::Gt(sum, Zero()), hn::Div(Set(1.F), sum));
+          const Vector reciprocal = hn::IfThenElseZero(hn::Gt(sum, Zero()), hn::Div(Set(1.F), sum));
           Store(hn::IfThenElse(IsFixed(old), old, reciprocal), level.inverse.data() + at);
         }
       }
@@ -421,8 +419,8 @@ void InvertDiagonal(MembraneLevel& level) {
   }
 }
 
-/// What is known of a sweep: it begins with values, as for x, whose plain blocks have no right side;
-/// or it goes on with an error; or the error is zero yet.
+/// What is known of a sweep: it begins with values, as for x, whose plain blocks have no right
+/// side; or it goes on with an error; or the error is zero yet.
 enum class Start { x, error, zero };
 
 /// Relaxes the cells of one parity of a row. first: nothing has been relaxed yet, so that with
@@ -507,8 +505,8 @@ void Relax(const MembraneLevel& level, const float* right_side, float* values, b
 /// A fixed cell stands for a value somewhere between its centre and the next cell's. Gives it the
 /// value that continues the line through both.
 HWY_INLINE Vector Continued(Vector weight, Vector neighbour, Vector fixed_value) {
-  const Vector line = hn::MulAdd(hn::Sub(Set(1.F), weight), hn::Sub(neighbour, fixed_value),
-                                 fixed_value);
+  const Vector line =
+      hn::MulAdd(hn::Sub(Set(1.F), weight), hn::Sub(neighbour, fixed_value), fixed_value);
   return hn::IfThenElseZero(hn::Gt(weight, Zero()), line);
 }
 
@@ -521,8 +519,7 @@ void ExtendOverFixed(const MembraneLevel& level, float* values) {
       if (level.block(y, column) != Block::general) return;
       for (int parity = 0; parity < 2; ++parity) {
         for (std::ptrdiff_t i = 0; i < lanes; i += VectorSize()) {
-          const Mask fixed =
-              IsFixed(Load(level.inverse.data() + level.at(y, parity, column) + i));
+          const Mask fixed = IsFixed(Load(level.inverse.data() + level.at(y, parity, column) + i));
           if (hn::AllFalse(Floats(), fixed)) continue;
           const Weights w(level, y, parity, column, i);
           const Vector count = hn::Add(hn::Add(present(w.left), present(w.right)),
@@ -533,9 +530,9 @@ void ExtendOverFixed(const MembraneLevel& level, float* values) {
             const std::ptrdiff_t at = level.at(y, c, parity, column) + i;
             const Neighbours n(level, values, at, parity);
             const Vector own = Load(values + at);
-            const Vector sum = hn::Add(
-                hn::Add(Continued(w.left, n.left, own), Continued(w.right, n.right, own)),
-                hn::Add(Continued(w.up, n.up, own), Continued(w.down, n.down, own)));
+            const Vector sum =
+                hn::Add(hn::Add(Continued(w.left, n.left, own), Continued(w.right, n.right, own)),
+                        hn::Add(Continued(w.up, n.up, own), Continued(w.down, n.down, own)));
             Store(hn::IfThenElse(changed, hn::Mul(sum, scale), own), values + at);
           }
         }
@@ -661,7 +658,7 @@ class FluxCorrection {
 };
 
 double RestrictResidual(const MembraneLevel& fine, const float* right_side, const float* values,
-                      MembraneLevel& coarse) {
+                        MembraneLevel& coarse) {
   HWY_ALIGN float sums[channels][2 * lanes];
   Vector squares = Zero();
   for (int y = 0; y < coarse.rows(); ++y) {
@@ -722,8 +719,8 @@ struct BlendedRow {
               Load(coarse_values + coarse.at(near_y, c, parity, fine_column / 2) + offset + i);
           const Vector far =
               Load(coarse_values + coarse.at(far_y, c, parity, fine_column / 2) + offset + i);
-          blended[parity] = hn::MulAdd(hn::Set(Floats(), 0.75F), near,
-                                       hn::Mul(hn::Set(Floats(), 0.25F), far));
+          blended[parity] =
+              hn::MulAdd(hn::Set(Floats(), 0.75F), near, hn::Mul(hn::Set(Floats(), 0.25F), far));
         }
         hn::StoreInterleaved2(blended[0], blended[1], Floats(), values[c] + 2 * i);
       }
@@ -756,10 +753,10 @@ struct BlendedRow {
       for (int c = 0; c < channels; ++c) {
         Vector blended[2];
         for (int parity = 0; parity < 2; ++parity) {
-          const Vector near = Load(coarse_values + coarse.at(near_y, c, parity, column) + offset + i);
+          const Vector near =
+              Load(coarse_values + coarse.at(near_y, c, parity, column) + offset + i);
           const Vector far = Load(coarse_values + coarse.at(far_y, c, parity, column) + offset + i);
-          blended[parity] =
-              hn::MulAdd(near_weight[parity], near, hn::Mul(far_weight[parity], far));
+          blended[parity] = hn::MulAdd(near_weight[parity], near, hn::Mul(far_weight[parity], far));
         }
         hn::StoreInterleaved2(blended[0], blended[1], d, values[c] + 2 * i);
       }
@@ -795,8 +792,8 @@ HWY_INLINE double ProlongAll(const MembraneLevel& coarse, const float* coarse_va
         for (int c = 0; c < channels; ++c) {
           float* target = values + fine.at(y, c, parity, column) + i;
           const Vector old = Load(target);
-          const Vector step = hn::IfThenElseZero(
-              cell, hn::Mul(BlendColumns(row.values[c], i, parity), scale));
+          const Vector step =
+              hn::IfThenElseZero(cell, hn::Mul(BlendColumns(row.values[c], i, parity), scale));
           Store(add ? hn::Add(old, step) : hn::IfThenElse(cell, step, old), target);
           if (add) squares = hn::MulAdd(step, step, squares);
         }

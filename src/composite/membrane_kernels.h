@@ -40,8 +40,8 @@ void relax(const MembraneLevel& level, const float* right_side, float* values, b
 double restrict_residual(const MembraneLevel& fine, const float* right_side, const float* values,
                          MembraneLevel& coarse);
 
-/// Continues `values` over fixed cells, so that they interpolate well. To be called once `values` are
-/// relaxed for the last time.
+/// Continues `values` over fixed cells, so that they interpolate well. To be called once `values`
+/// are relaxed for the last time.
 void extend_over_fixed(const MembraneLevel& level, float* values);
 
 /// Bilinear interpolation from the coarse level's cells that exist to the fine level's stored

@@ -39,15 +39,15 @@ void MembraneLevel::begin(int width_, int height_) {
   tile_columns = (width + tile_width - 1) / tile_width;
   tile_rows = (height + tile_height - 1) / tile_height;
   pitch = (tile_columns + 2) * lanes;
-  const std::size_t size = static_cast<std::size_t>(rows() + 2) * 2 * static_cast<std::size_t>(pitch);
+  const std::size_t size =
+      static_cast<std::size_t>(rows() + 2) * 2 * static_cast<std::size_t>(pitch);
   for (AlignedFloats* values : {&right, &down, &inverse}) values->require(size);
   for (AlignedFloats* values : {&x, &right_side, &error, &residual}) {
     values->require(size * channels);
   }
   blocks.assign(static_cast<std::size_t>(rows()) * static_cast<std::size_t>(tile_columns),
                 Block::empty);
-  tiles.assign(static_cast<std::size_t>(tile_rows + 2) *
-                   static_cast<std::size_t>(tile_columns + 2),
+  tiles.assign(static_cast<std::size_t>(tile_rows + 2) * static_cast<std::size_t>(tile_columns + 2),
                Tile::empty);
 }
 
@@ -103,9 +103,11 @@ void MembraneLevel::choose_tiles() {
   has_smooth = std::any_of(tiles.begin(), tiles.end(), [](Tile state) {
     return state == Tile::smooth || state == Tile::ghost;
   });
-  collect(*this, [](Tile state) { return state == Tile::active; }, active, active_rows);
-  collect(*this, [](Tile state) { return state == Tile::active || state == Tile::ghost; }, stored,
-          stored_rows);
+  collect(
+      *this, [](Tile state) { return state == Tile::active; }, active, active_rows);
+  collect(
+      *this, [](Tile state) { return state == Tile::active || state == Tile::ghost; }, stored,
+      stored_rows);
 }
 
 }  // namespace diminish

@@ -84,8 +84,8 @@ void write(const MembraneSolver& solver, const Rect& window, const Image<Bgra>* 
       // The last block of a row reaches beyond the images.
       if (base) std::copy_n(colors, count, base_end);
       std::copy_n(pixels, count, picture_end);
-      HWY_DYNAMIC_DISPATCH(WriteBlock)(solution, keys, base ? static_cast<const Bgra*>(base_end) : nullptr,
-                                       picture_end);
+      HWY_DYNAMIC_DISPATCH(WriteBlock)
+      (solution, keys, base ? static_cast<const Bgra*>(base_end) : nullptr, picture_end);
       std::copy_n(picture_end, count, pixels);
     }
   }

@@ -29,7 +29,8 @@ void MembraneSolver::begin(int width, int height) {
   keys_per_row_ = (tile_columns_ + 2) * tile_width;
   words_per_row_ = tile_columns_ + 2;
   keys_.resize(static_cast<std::size_t>((height + 2) * keys_per_row_));
-  cells_.resize(static_cast<std::size_t>((height + 2 + MembraneLevel::tile_height) * words_per_row_));
+  cells_.resize(
+      static_cast<std::size_t>((height + 2 + MembraneLevel::tile_height) * words_per_row_));
   fixed_.resize(cells_.size());
   irregular_.resize(cells_.size());
   sources_.clear();

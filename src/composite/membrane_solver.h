@@ -21,8 +21,8 @@ struct LooseRun {
 ///
 /// where a neighbour is another pixel of the set or one of given value (Dirichlet); any other does
 /// not count (Neumann).
-/// Solved by full multigrid (Brandt 1977) on cell-centred grids with red-black relaxation. Away from
-/// boundaries, where the solution is smooth, the finer grids are left out and their values
+/// Solved by full multigrid (Brandt 1977) on cell-centred grids with red-black relaxation. Away
+/// from boundaries, where the solution is smooth, the finer grids are left out and their values
 /// interpolated (the idea of Agarwala 2007), so that the cost of large regions follows their
 /// outline.
 ///
@@ -57,8 +57,8 @@ class MembraneSolver {
   /// Adds to the right side of an irregular pixel.
   void add_source(int x, int y, const Values& value);
 
-  /// Takes the connected parts that touch no fixed pixel out of the problem, which leaves them open,
-  /// and returns them; to be called before sources are added.
+  /// Takes the connected parts that touch no fixed pixel out of the problem, which leaves them
+  /// open, and returns them; to be called before sources are added.
   const std::vector<LooseRun>& take_out_loose_parts();
 
   /// Solves until the last correction's root mean square is below `tolerance`.
@@ -100,7 +100,9 @@ class MembraneSolver {
   /// from_zero: of the error, else of x. Returns the squared change.
   double cycle(std::size_t level, bool from_zero);
 
-  std::ptrdiff_t key_index(int y) const { return (y + 1) * keys_per_row_ + MembraneLevel::tile_width; }
+  std::ptrdiff_t key_index(int y) const {
+    return (y + 1) * keys_per_row_ + MembraneLevel::tile_width;
+  }
   std::ptrdiff_t word_index(int y) const { return (y + 1) * words_per_row_ + 1; }
 
   int width_ = 0, height_ = 0, tile_columns_ = 0;

@@ -102,8 +102,7 @@ class PoissonReference : public ColorCorrector {
   std::vector<int> part_;
 };
 
-const bool registered =
-    Registry<ColorCorrector>::add(
+const bool registered = Registry<ColorCorrector>::add(
     "poisson_reference", [] { return std::make_unique<PoissonReference>(); });
 
 }  // namespace

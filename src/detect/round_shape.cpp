@@ -29,6 +29,13 @@ class RelativeRadius {
     return std::sqrt(first * first + second * second);
   }
 
+  /// Where a row comes nearest to the centre.
+  double nearest_column(double y) const {
+    const double squares = first_axis_.x * first_axis_.x + second_axis_.x * second_axis_.x;
+    const double mixed = first_axis_.x * first_axis_.y + second_axis_.x * second_axis_.y;
+    return center_.x - mixed / squares * (y - center_.y);
+  }
+
  private:
   cv::Point2d center_, first_axis_, second_axis_;
 };
@@ -80,6 +87,13 @@ double intersection_over_union(const RoundShape& shape, const cv::Mat& region) {
   return either > 0 ? static_cast<double>(both) / either : 0;
 }
 
+/// How fast the squared relative radius grows with the squared distance along a row, as a root.
+double relative_slope(const RelativeRadius& relative_radius, double middle, double y) {
+  const double there = relative_radius(middle, y);
+  const double beside = relative_radius(middle + 1, y);
+  return std::sqrt(std::max(beside * beside - there * there, 0.0));
+}
+
 bool usable(const RoundShape& shape) {
   const double smaller = std::min(shape.half_axes.width, shape.half_axes.height);
   return std::isfinite(shape.center.x + shape.center.y + shape.diameter()) && smaller > 0.5;
@@ -90,13 +104,24 @@ bool usable(const RoundShape& shape) {
 void RoundShape::draw(cv::Mat& mask) const {
   const RelativeRadius relative_radius(*this);
   const double reach = std::max(half_axes.width, half_axes.height);
-  const auto first = [](double from) { return static_cast<int>(std::ceil(std::max(from, 0.0))); };
-  const auto last = [](double to, int size) {
-    return static_cast<int>(std::floor(std::min(to, size - 1.0)));
-  };
-  for (int y = first(center.y - reach); y <= last(center.y + reach, mask.rows); ++y) {
-    for (int x = first(center.x - reach); x <= last(center.x + reach, mask.cols); ++x) {
-      if (relative_radius(x, y) <= 1) mask.at<std::uint8_t>(y, x) = 255;
+  const int top = static_cast<int>(std::ceil(std::max(center.y - reach, 0.0)));
+  const int bottom = static_cast<int>(std::floor(std::min(center.y + reach, mask.rows - 1.0)));
+  for (int y = top; y <= bottom; ++y) {
+    const double middle = relative_radius.nearest_column(y);
+    const double radius = relative_radius(middle, y);
+    if (radius > 1) continue;
+    // The row's half width, then the last pixel on each side whose centre is inside.
+    const double half_width = std::sqrt(1 - radius * radius) /
+                              std::max(relative_slope(relative_radius, middle, y), 1e-12);
+    int first = static_cast<int>(std::ceil(std::max(middle - half_width, 0.0)));
+    int last = static_cast<int>(std::floor(std::min(middle + half_width, mask.cols - 1.0)));
+    while (first > 0 && relative_radius(first - 1, y) <= 1) --first;
+    while (first <= last && relative_radius(first, y) > 1) ++first;
+    while (last + 1 < mask.cols && relative_radius(last + 1, y) <= 1) ++last;
+    while (last >= first && relative_radius(last, y) > 1) --last;
+    if (first <= last) {
+      std::fill(mask.ptr<std::uint8_t>(y) + first, mask.ptr<std::uint8_t>(y) + last + 1,
+                std::uint8_t{255});
     }
   }
 }

@@ -13,9 +13,9 @@ using Eigen::Vector2d;
 constexpr int max_profile_samples = 64;
 constexpr std::size_t max_profiles = 64;
 constexpr float min_step_levels = 12;  ///< a weaker edge than this is not a marker's
-constexpr double min_support = 0.4;     ///< of a side's profiles, those that see its edge
+constexpr double min_support = 0.4;    ///< of a side's profiles, those that see its edge
 constexpr double min_reach_px = 2.5;
-constexpr double near_px = 1;           ///< points that far apart are on the same edge
+constexpr double near_px = 1;  ///< points that far apart are on the same edge
 
 /// The green channel, bilinear; the four pixels must be inside.
 float sample(const Image<Bgr>& image, float x, float y) {
@@ -113,8 +113,7 @@ void keep_largest_line(Points& points, double near) {
   }
   if (!best_a) return;
   const Vector2d origin = *best_a;
-  const Vector2d normal =
-      Vector2d(best_b->y() - origin.y(), origin.x() - best_b->x()).normalized();
+  const Vector2d normal = Vector2d(best_b->y() - origin.y(), origin.x() - best_b->x()).normalized();
   points.remove_if(
       [&](const Vector2d& point) { return std::abs(normal.dot(point - origin)) >= near; });
 }
@@ -183,8 +182,7 @@ bool refine_corners(const Image<Bgr>& image, const Lens& lens, int modules,
   }
   std::array<Vector2d, 4> refined;
   for (std::size_t corner = 0; corner < 4; ++corner) {
-    const auto meeting =
-        lens.distort(sides[(corner + 3) % 4]->intersection(*sides[corner]));
+    const auto meeting = lens.distort(sides[(corner + 3) % 4]->intersection(*sides[corner]));
     // A corner that ran away is the neighbourhood's, not the marker's.
     if (!meeting || !((*meeting - corners[corner]).norm() < 2 * pass.reach_px)) return false;
     refined[corner] = *meeting;

@@ -10,9 +10,9 @@ namespace diminish {
 
 /// How `refine_corners` looks.
 struct RefinementPass {
-  int profiles;      ///< across each side
-  double reach_px;   ///< how far from the side, in and out
-  double step_px;    ///< between a profile's samples
+  int profiles;     ///< across each side
+  double reach_px;  ///< how far from the side, in and out
+  double step_px;   ///< between a profile's samples
   bool expect_outliers;
 };
 /// For corners that are some pixels off, then for what is left.
@@ -26,7 +26,8 @@ inline constexpr RefinementPass fine_pass{48, 4, 0.5, false};
 /// intersected.
 /// Only the green channel is looked at, the sharpest and least noisy one of most cameras.
 /// modules: the number of cells along a side, with the border; a profile reaches no further than
-/// the border is wide. Answers whether all four sides were found; else the corners stay as they are.
+/// the border is wide. Answers whether all four sides were found; else the corners stay as they
+/// are.
 bool refine_corners(const Image<Bgr>& image, const Lens& lens, int modules,
                     const RefinementPass& pass, std::array<Eigen::Vector2d, 4>& corners);
 

@@ -27,8 +27,8 @@ class DarkComponents {
     int pixels;
   };
 
-  /// A pixel is dark if it is 7 % (and two levels) below the mean of the 5x5 pixels around it. Parts
-  /// are 4-connected: a marker's corner often touches that of the shadow around its margin.
+  /// A pixel is dark if it is 7 % (and two levels) below the mean of the 5x5 pixels around it.
+  /// Parts are 4-connected: a marker's corner often touches that of the shadow around its margin.
   void find(const Image<std::uint8_t>& small);
 
   const std::vector<Component>& components() const { return components_; }

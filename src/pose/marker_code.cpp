@@ -83,8 +83,9 @@ std::optional<MarkerCode::Reading> MarkerCode::read(
       light_count += value > limit ? 1 : 0;
     }
     if (light_count == 0 || light_count == n * n) return std::nullopt;
-    limit = (dark / static_cast<float>(n * n - light_count) +
-             light / static_cast<float>(light_count)) / 2;
+    limit =
+        (dark / static_cast<float>(n * n - light_count) + light / static_cast<float>(light_count)) /
+        2;
   }
 
   const auto is_light = [&](int row, int column) {
@@ -92,8 +93,8 @@ std::optional<MarkerCode::Reading> MarkerCode::read(
   };
   int light_border = 0;
   for (int i = 0; i + 1 < n; ++i) {
-    light_border += is_light(0, i) + is_light(i, n - 1) + is_light(n - 1, n - 1 - i) +
-                    is_light(n - 1 - i, 0);
+    light_border +=
+        is_light(0, i) + is_light(i, n - 1) + is_light(n - 1, n - 1 - i) + is_light(n - 1 - i, 0);
   }
   if (light_border > border_errors * 4 * (n - 1)) return std::nullopt;
 

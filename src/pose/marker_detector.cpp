@@ -51,8 +51,8 @@ void remove_ambiguous(std::vector<Marker>& markers) {
     std::size_t next = i + 1;
     bool one_place = true;
     while (next < markers.size() && markers[next].id == markers[i].id) {
-      one_place = one_place && (markers[next].corners[0] - markers[i].corners[0]).norm() <
-                                   same_place_px;
+      one_place =
+          one_place && (markers[next].corners[0] - markers[i].corners[0]).norm() < same_place_px;
       ++next;
     }
     if (one_place) markers[kept++] = markers[i];

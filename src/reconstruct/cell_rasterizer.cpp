@@ -157,7 +157,8 @@ void DrawLarge(const VertexAt (&p)[3], std::int64_t area, const Box& box, Surfac
         u_over_z += weight * p[k].row.u_over_z[p[k].index];
         v_over_z += weight * p[k].row.v_over_z[p[k].index];
       }
-      if (inside) Keep(surface, surface.row(y) + x - surface.region.x, inverse_z, u_over_z, v_over_z);
+      if (inside)
+        Keep(surface, surface.row(y) + x - surface.region.x, inverse_z, u_over_z, v_over_z);
     }
   }
 }
@@ -176,9 +177,8 @@ void DrawMedium(const VertexAt (&p)[3], std::int64_t area, const Box& box, Surfa
     const VertexAt& to = p[(k + 2) % 3];
     const auto dx = static_cast<std::int32_t>(from.y() - to.y());
     const auto dy = static_cast<std::int32_t>(to.x() - from.x());
-    const auto at_box =
-        dx * static_cast<std::int32_t>(box.x0 * sdct::subpixels - from.x()) +
-        dy * static_cast<std::int32_t>(box.y0 * sdct::subpixels - from.y());
+    const auto at_box = dx * static_cast<std::int32_t>(box.x0 * sdct::subpixels - from.x()) +
+                        dy * static_cast<std::int32_t>(box.y0 * sdct::subpixels - from.y());
     value[k] = at_box - (dx > 0 || (dx == 0 && dy > 0) ? 0 : 1);
     step_x[k] = dx * sdct::subpixels;
     step_y[k] = dy * sdct::subpixels;
@@ -282,14 +282,14 @@ void DrawCells(const VertexRow& upper, const VertexRow& lower, int block, float 
     const IntVector bottom = hn::Max(hn::Max(a.y, b.y), hn::Max(c.y, e.y));
     constexpr int bits = sdct::subpixel_bits;
     const IntVector round_up = hn::Set(di, sdct::subpixels - 1);
-    const IntVector x0 = hn::Max(hn::ShiftRight<bits>(hn::Add(left, round_up)),
-                                 hn::Set(di, region.x));
+    const IntVector x0 =
+        hn::Max(hn::ShiftRight<bits>(hn::Add(left, round_up)), hn::Set(di, region.x));
     const IntVector x1 = hn::Min(hn::ShiftRight<bits>(right), hn::Set(di, region.right() - 1));
-    const IntVector y0 = hn::Max(hn::ShiftRight<bits>(hn::Add(top, round_up)),
-                                 hn::Set(di, region.y));
+    const IntVector y0 =
+        hn::Max(hn::ShiftRight<bits>(hn::Add(top, round_up)), hn::Set(di, region.y));
     const IntVector y1 = hn::Min(hn::ShiftRight<bits>(bottom), hn::Set(di, region.bottom() - 1));
-    const LaneMask covers = hn::And(
-        any, hn::RebindMask(d, hn::Not(hn::Or(hn::Gt(x0, x1), hn::Gt(y0, y1)))));
+    const LaneMask covers =
+        hn::And(any, hn::RebindMask(d, hn::Not(hn::Or(hn::Gt(x0, x1), hn::Gt(y0, y1)))));
     if (hn::AllFalse(d, covers)) continue;
     const IntVector limit = hn::Set(di, small_cell_px * sdct::subpixels);
     const LaneMask small = hn::RebindMask(
@@ -335,8 +335,7 @@ void DrawCells(const VertexRow& upper, const VertexRow& lower, int block, float 
     const LaneMask forward = hn::Or(first, second);
     if (hn::AllFalse(d, forward)) continue;
     const auto reciprocal = [&](IntVector value) HWY_ATTR {
-      return hn::Div(hn::Set(d, 1.F),
-                     hn::ConvertTo(d, hn::Max(value, hn::Set(di, 1))));
+      return hn::Div(hn::Set(d, 1.F), hn::ConvertTo(d, hn::Max(value, hn::Set(di, 1))));
     };
     Edge bc(bx, by, cx, cy);
     Edge ca(cx, cy, ax, ay);
@@ -375,9 +374,11 @@ void DrawCells(const VertexRow& upper, const VertexRow& lower, int block, float 
         const IntVector minus_one = hn::Set(di, -1);
         const auto in_cell = hn::And(in_row, hn::Lt(hn::Set(di, dx), columns_of_cell));
         const LaneMask in_first = hn::And(
-            first, hn::RebindMask(d, hn::And(in_cell, hn::Gt(hn::Or(hn::Or(e0, e1), e2), minus_one))));
+            first,
+            hn::RebindMask(d, hn::And(in_cell, hn::Gt(hn::Or(hn::Or(e0, e1), e2), minus_one))));
         const LaneMask in_second = hn::And(
-            second, hn::RebindMask(d, hn::And(in_cell, hn::Gt(hn::Or(hn::Or(e3, e4), e5), minus_one))));
+            second,
+            hn::RebindMask(d, hn::And(in_cell, hn::Gt(hn::Or(hn::Or(e3, e4), e5), minus_one))));
         const LaneMask inside = hn::Or(in_first, in_second);
         if (!hn::AllFalse(d, inside)) {
           const Vector fx = hn::Set(d, static_cast<float>(dx));
@@ -385,8 +386,7 @@ void DrawCells(const VertexRow& upper, const VertexRow& lower, int block, float 
             return hn::IfThenElse(in_second, hn::MulAdd(fx, q.step_x, q.value),
                                   hn::MulAdd(fx, p.step_x, p.value));
           };
-          const IntVector place =
-              hn::Add(first_place, hn::Set(di, dy * pitch + dx));
+          const IntVector place = hn::Add(first_place, hn::Set(di, dy * pitch + dx));
           hn::CompressStore(value(s1.inverse_z, s2.inverse_z), inside, d, values[0] + count);
           hn::CompressStore(value(s1.u_over_z, s2.u_over_z), inside, d, values[1] + count);
           hn::CompressStore(value(s1.v_over_z, s2.v_over_z), inside, d, values[2] + count);

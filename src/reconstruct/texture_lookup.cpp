@@ -22,8 +22,8 @@ using IntVector = hn::Vec<Ints>;
 
 template <int channel>
 HWY_INLINE Vector Channel(IntVector pixels) {
-  return hn::ConvertTo(
-      Floats(), hn::And(hn::ShiftRight<8 * channel>(pixels), hn::Set(Ints(), 255)));
+  return hn::ConvertTo(Floats(),
+                       hn::And(hn::ShiftRight<8 * channel>(pixels), hn::Set(Ints(), 255)));
 }
 
 /// Blue, green and red of pixels in the lower three bytes. Four bytes are read at once, but not

@@ -101,8 +101,8 @@ class VectorizedReconstructor : public Reconstructor {
   void sort_by_coverage() {
     for (Drawn& drawn : drawn_) {
       const std::vector<float>& inverse_z = meshes_[drawn.camera].surface().inverse_z;
-      drawn.pixels = static_cast<std::size_t>(std::count_if(
-          inverse_z.begin(), inverse_z.end(), [](float value) { return value > 0; }));
+      drawn.pixels = static_cast<std::size_t>(
+          std::count_if(inverse_z.begin(), inverse_z.end(), [](float value) { return value > 0; }));
     }
     std::stable_sort(drawn_.begin(), drawn_.end(),
                      [](const Drawn& a, const Drawn& b) { return a.pixels > b.pixels; });

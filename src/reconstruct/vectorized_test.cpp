@@ -35,7 +35,8 @@ void expect_same(const Reconstruction& fast, const Reconstruction& plain) {
         continue;
       }
       worst = std::max({worst, std::abs(a.b - b.b), std::abs(a.g - b.g), std::abs(a.r - b.r)});
-      worst_depth = std::max(worst_depth, std::abs(double{fast.depth_m(x, y)} - plain.depth_m(x, y)));
+      worst_depth =
+          std::max(worst_depth, std::abs(double{fast.depth_m(x, y)} - plain.depth_m(x, y)));
     }
   }
   EXPECT_GT(drawn, 1000U);

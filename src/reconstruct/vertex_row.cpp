@@ -41,12 +41,12 @@ HWY_INLINE LaneMask Distort(const Projection& p, Vector x, Vector y, Vector& u, 
   const Vector radial = hn::Add(
       Set(1.F),
       hn::Mul(r2, hn::Add(Set(p.k1), hn::Mul(r2, hn::Add(Set(p.k2), hn::Mul(r2, Set(p.k3)))))));
-  const Vector xd =
-      hn::Add(hn::Mul(x, radial), hn::Add(hn::Mul(Set(2.F * p.p1), xy),
-                                          hn::Mul(Set(p.p2), hn::Add(r2, hn::Mul(two, xx)))));
-  const Vector yd =
-      hn::Add(hn::Mul(y, radial), hn::Add(hn::Mul(Set(p.p1), hn::Add(r2, hn::Mul(two, yy))),
-                                          hn::Mul(Set(2.F * p.p2), xy)));
+  const Vector xd = hn::Add(
+      hn::Mul(x, radial),
+      hn::Add(hn::Mul(Set(2.F * p.p1), xy), hn::Mul(Set(p.p2), hn::Add(r2, hn::Mul(two, xx)))));
+  const Vector yd = hn::Add(
+      hn::Mul(y, radial),
+      hn::Add(hn::Mul(Set(p.p1), hn::Add(r2, hn::Mul(two, yy))), hn::Mul(Set(2.F * p.p2), xy)));
   u = hn::Add(hn::Mul(Set(p.fx), xd), Set(p.cx));
   v = hn::Add(hn::Mul(Set(p.fy), yd), Set(p.cy));
   return hn::Lt(r2, Set(p.max_radius_squared));
@@ -99,8 +99,7 @@ void ProjectRow(const VertexRows::Constants& constants, const FloatTransform& to
       const Vector color_z = Apply(to_color, 2, x, y, z);
       valid = hn::And(valid, hn::Gt(color_z, Set(sdct::near_plane_m)));
       Vector px, py;
-      valid = hn::And(valid, Distort(constants.color,
-                                     hn::Div(Apply(to_color, 0, x, y, z), color_z),
+      valid = hn::And(valid, Distort(constants.color, hn::Div(Apply(to_color, 0, x, y, z), color_z),
                                      hn::Div(Apply(to_color, 1, x, y, z), color_z), px, py));
       const Vector limit = Set(sdct::max_coordinate_px);
       valid = hn::And(valid, hn::And(hn::Lt(hn::Abs(px), limit), hn::Lt(hn::Abs(py), limit)));
@@ -118,9 +117,8 @@ void ProjectRow(const VertexRows::Constants& constants, const FloatTransform& to
       not_above = hn::Or(not_above, hn::And(valid, hn::Ge(py, top)));
       not_below = hn::Or(not_below, hn::And(valid, hn::Lt(py, bottom)));
     }
-    const auto bit = [&](LaneMask mask_, int value) HWY_ATTR {
-      return hn::AllFalse(d, mask_) ? value : 0;
-    };
+    const auto bit = [&](LaneMask mask_, int value)
+                         HWY_ATTR { return hn::AllFalse(d, mask_) ? value : 0; };
     const auto index = static_cast<std::size_t>(start / VertexRow::block);
     row.beyond[index] = static_cast<std::uint8_t>(bit(not_left, 1) | bit(not_right, 2) |
                                                   bit(not_above, 4) | bit(not_below, 8));
@@ -144,10 +142,10 @@ void FindColors(const VertexRows::Constants& constants, const float* ray_x, cons
     const Vector rgbd_z = Apply(constants.to_rgbd_color, 2, x, y, z);
     valid = hn::And(valid, hn::Gt(rgbd_z, Set(sdct::near_plane_m)));
     Vector u, v;
-    valid = hn::And(valid, Distort(constants.rgbd_color,
-                                   hn::Div(Apply(constants.to_rgbd_color, 0, x, y, z), rgbd_z),
-                                   hn::Div(Apply(constants.to_rgbd_color, 1, x, y, z), rgbd_z), u,
-                                   v));
+    valid =
+        hn::And(valid, Distort(constants.rgbd_color,
+                               hn::Div(Apply(constants.to_rgbd_color, 0, x, y, z), rgbd_z),
+                               hn::Div(Apply(constants.to_rgbd_color, 1, x, y, z), rgbd_z), u, v));
     const Vector zero = hn::Zero(d);
     valid = hn::And(valid, hn::And(hn::And(hn::Ge(u, zero), hn::Le(u, Set(constants.last_column))),
                                    hn::And(hn::Ge(v, zero), hn::Le(v, Set(constants.last_row)))));
@@ -204,7 +202,8 @@ VertexRows::VertexRows(const RgbdCamera& camera, const Intrinsics& color)
                  static_cast<float>(camera.color.height - 1),
                  width_} {
   const Image<Eigen::Vector2f> rays = Lens(camera.depth).rays();
-  const std::size_t size = static_cast<std::size_t>(padded_width_) * static_cast<std::size_t>(height_);
+  const std::size_t size =
+      static_cast<std::size_t>(padded_width_) * static_cast<std::size_t>(height_);
   ray_x_.assign(size, 0.F);
   ray_y_.assign(size, 0.F);
   for (int row = 0; row < height_; ++row) {
@@ -219,8 +218,8 @@ VertexRows::VertexRows(const RgbdCamera& camera, const Intrinsics& color)
 void VertexRows::project(const Frame& frame, int row, VertexRow& vertices) const {
   const std::ptrdiff_t rays = static_cast<std::ptrdiff_t>(row) * padded_width_;
   HWY_DYNAMIC_DISPATCH(ProjectRow)
-  (constants_, frame.to_color, frame.region, frame.images.depth.row(row),
-   frame.depth_mask.row(row), ray_x_.data() + rays, ray_y_.data() + rays, vertices);
+  (constants_, frame.to_color, frame.region, frame.images.depth.row(row), frame.depth_mask.row(row),
+   ray_x_.data() + rays, ray_y_.data() + rays, vertices);
 }
 
 void VertexRows::find_colors(const Frame& frame, int row, int block, VertexRow& vertices) const {

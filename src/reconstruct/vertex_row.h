@@ -15,11 +15,12 @@ namespace diminish {
 struct VertexRow {
   static constexpr int block = 16;
 
-  std::vector<std::int32_t> x, y;  ///< in the colour camera's image, in 1/256 pixels
-  std::vector<float> depth_m;      ///< z in the depth sensor's frame
-  std::vector<float> inverse_z;    ///< 1 / z in the colour camera's frame; 0: not a vertex
+  std::vector<std::int32_t> x, y;         ///< in the colour camera's image, in 1/256 pixels
+  std::vector<float> depth_m;             ///< z in the depth sensor's frame
+  std::vector<float> inverse_z;           ///< 1 / z in the colour camera's frame; 0: not a vertex
   std::vector<float> u_over_z, v_over_z;  ///< place in the RGB-D camera's colour image, over z
-  /// A block's valid vertices lie all: 1 left of the region to draw, 2 right of it, 4 above, 8 below.
+  /// A block's valid vertices lie all: 1 left of the region to draw, 2 right of it, 4 above, 8
+  /// below.
   std::vector<std::uint8_t> beyond;
   std::vector<std::uint8_t> has_colors;  ///< u and v are known, and the vertices that have none out
 

@@ -9,10 +9,11 @@ namespace diminish {
 namespace {
 
 // The paper measures poses and detection as one.
-constexpr PaperRow rows[] = {{"Camera poses", 0, "8.2"},        {"Object detection", 1, "(with poses)"},
-                             {"Reconstruction", 2, "12.8"},     {"Compositing", 3, "1.1"},
-                             {"Colour correction", 4, "13256"}, {"Inpainting", 5, "1871"},
-                             {"Total", stage_count, "15149"}};
+constexpr PaperRow rows[] = {
+    {"Camera poses", 0, "8.2"},        {"Object detection", 1, "(with poses)"},
+    {"Reconstruction", 2, "12.8"},     {"Compositing", 3, "1.1"},
+    {"Colour correction", 4, "13256"}, {"Inpainting", 5, "1871"},
+    {"Total", stage_count, "15149"}};
 
 }  // namespace
 

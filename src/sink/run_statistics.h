@@ -40,7 +40,8 @@ class RunStatistics {
   /// What was not found or could not be done, with the number of frames.
   const std::map<std::string, std::size_t>& messages() const { return messages_; }
 
-  /// The paper's Table 2 for this run, beside the paper's own figures, then what was not found in how many frames.
+  /// The paper's Table 2 for this run, beside the paper's own figures, then what was not found in
+  /// how many frames.
   std::string table() const;
 
  private:
