@@ -6,7 +6,7 @@ namespace diminish {
 namespace {
 
 /// Of the last multigrid correction; what is left of the error is smaller.
-constexpr float tolerance_levels = 0.25F;
+constexpr float tolerance_levels = 1.F;
 
 /// The smoothest filling: Laplace's equation with the known neighbours as Dirichlet boundary. It
 /// has the least squared gradient of all fillings; it invents no edges.

@@ -130,13 +130,10 @@ void SetWeights(const std::uint32_t* cells, const std::uint32_t* fixed,
   for (int y = 0; y < level.rows(); ++y) {
     ForEachBlock(level.stored, level.stored_rows, y, [&](int column) {
       const std::ptrdiff_t at = level.at(y, 0, column);
-      for (int c = 0; c < channels; ++c) {
-        Fill(0.F, level.right_side.data() + level.at(y, c, 0, column), pitch);
-      }
+      if (level.block(y, column) == Block::empty) return;
       if (level.block(y, column) == Block::plain) {
         Fill(1.F, level.right.data() + at, pitch);
         Fill(1.F, level.down.data() + at, pitch);
-        Fill(0.F, level.inverse.data() + at, pitch);
         return;
       }
       const std::ptrdiff_t word = (y + 1) * words_per_row + column + 1;
@@ -297,14 +294,10 @@ void Coarsen(const MembraneLevel& fine, MembraneLevel& coarse) {
     ForEachBlock(coarse.stored, coarse.stored_rows, y, [&](int column) {
       const std::ptrdiff_t at = coarse.at(y, 0, column);
       const Block kind = coarse.block(y, column);
-      if (kind != Block::general) {
-        const float weight = kind == Block::plain ? 1.F : 0.F;
-        Fill(weight, coarse.right.data() + at, pitch);
-        Fill(weight, coarse.down.data() + at, pitch);
-        Fill(0.F, coarse.inverse.data() + at, pitch);
-        for (int c = 0; c < channels; ++c) {
-          Fill(0.F, coarse.right_side.data() + coarse.at(y, c, 0, column), pitch);
-        }
+      if (kind == Block::empty) return;
+      if (kind == Block::plain) {
+        Fill(1.F, coarse.right.data() + at, pitch);
+        Fill(1.F, coarse.down.data() + at, pitch);
         return;
       }
       for (int half = 0; half < 2; ++half) {
@@ -402,6 +395,7 @@ struct EdgeMasks {
 void InvertDiagonal(MembraneLevel& level) {
   for (int y = 0; y < level.rows(); ++y) {
     ForEachBlock(level.stored, level.stored_rows, y, [&](int column) {
+      if (level.block(y, column) == Block::empty) return;
       if (level.block(y, column) == Block::plain) {
         Fill(0.25F, level.inverse.data() + level.at(y, 0, column), level.pitch);
         return;
@@ -534,6 +528,48 @@ void ExtendOverFixed(const MembraneLevel& level, float* values) {
                 hn::Add(hn::Add(Continued(w.left, n.left, own), Continued(w.right, n.right, own)),
                         hn::Add(Continued(w.up, n.up, own), Continued(w.down, n.down, own)));
             Store(hn::IfThenElse(changed, hn::Mul(sum, scale), own), values + at);
+          }
+        }
+      }
+    });
+  }
+}
+
+/// What fine cells inside fixed coarse cells have left over is passed on to the coarse cells beside
+/// them, as much as these will change them.
+void CollectFromFixed(MembraneLevel& level) {
+  float* residual = level.residual.data();
+  const auto share = [](Vector weight, Vector inverse) {
+    const Mask from = hn::And(IsFixed(inverse), hn::Gt(weight, Zero()));
+    return hn::IfThenElseZero(
+        from, hn::Max(hn::NegMulAdd(Set(0.75F), weight, Set(1.F)), Zero()));
+  };
+  for (int y = 0; y < level.height; ++y) {
+    ForEachBlock(level.active, level.active_rows, y, [&](int column) HWY_ATTR {
+      if (level.block(y, column) != Block::general) return;
+      for (int parity = 0; parity < 2; ++parity) {
+        for (std::ptrdiff_t i = 0; i < lanes; i += VectorSize()) {
+          const std::ptrdiff_t at = level.at(y, parity, column) + i;
+          const float* inverse = level.inverse.data();
+          const float* beside = inverse + level.at(y, 1 - parity, column) + i;
+          const Weights w(level, y, parity, column, i);
+          const Vector left = share(w.left, Load(beside - 1 + parity));
+          const Vector right = share(w.right, Load(beside + parity));
+          const Vector up = share(w.up, Load(inverse + at - level.row_step()));
+          const Vector down = share(w.down, Load(inverse + at + level.row_step()));
+          const Mask cell = hn::Gt(Load(inverse + at), Zero());
+          const Mask any = hn::And(
+              cell, hn::Gt(hn::Add(hn::Add(left, right), hn::Add(up, down)), Zero()));
+          if (hn::AllFalse(Floats(), any)) continue;
+          for (int c = 0; c < channels; ++c) {
+            const std::ptrdiff_t own = level.at(y, c, parity, column) + i;
+            const Neighbours n(level, residual, own, parity);
+            const Vector old = Load(residual + own);
+            const Vector more =
+                hn::MulAdd(left, n.left,
+                           hn::MulAdd(right, n.right,
+                                      hn::MulAdd(up, n.up, hn::Mul(down, n.down))));
+            Store(hn::IfThenElse(any, hn::Add(old, more), old), residual + own);
           }
         }
       }
@@ -696,6 +732,7 @@ double RestrictResidual(const MembraneLevel& fine, const float* right_side, cons
     });
   }
   if (fine.has_smooth) FluxCorrection(fine, values, coarse).Apply();
+  CollectFromFixed(coarse);
   return static_cast<double>(hn::GetLane(hn::SumOfLanes(Floats(), squares)));
 }
 
@@ -824,6 +861,7 @@ double Prolong(const MembraneLevel& coarse, const float* coarse_values, bool add
 void AddError(MembraneLevel& level) {
   for (int y = 0; y < level.rows(); ++y) {
     ForEachBlock(level.stored, level.stored_rows, y, [&](int column) {
+      if (level.block(y, column) == Block::empty) return;
       for (int c = 0; c < channels; ++c) {
         for (int parity = 0; parity < 2; ++parity) {
           const std::ptrdiff_t at = level.at(y, c, parity, column);

@@ -56,17 +56,25 @@ void MembraneLevel::clear_stored() {
     const auto from = static_cast<std::size_t>(stored_rows[static_cast<std::size_t>(row)]);
     const auto to = static_cast<std::size_t>(stored_rows[static_cast<std::size_t>(row) + 1]);
     for (std::size_t i = from; i < to; ++i) {
-      const std::ptrdiff_t count = (stored[i].last - stored[i].first) * lanes;
       for (int y = row * tile_height; y < (row + 1) * tile_height; ++y) {
-        for (int parity = 0; parity < 2; ++parity) {
-          for (AlignedFloats* values : {&right, &down, &inverse}) {
-            std::fill_n(values->data() + at(y, parity, stored[i].first), count, 0.F);
-          }
+        for (int column = stored[i].first; column < stored[i].last; ++column) {
+          if (block(y, column) != Block::empty) clear_block(y, column);
         }
       }
     }
   }
   stored_rows.clear();
+}
+
+void MembraneLevel::clear_block(int y, int column) {
+  for (int parity = 0; parity < 2; ++parity) {
+    for (AlignedFloats* values : {&right, &down, &inverse}) {
+      std::fill_n(values->data() + at(y, parity, column), lanes, 0.F);
+    }
+    for (int channel = 0; channel < channels; ++channel) {
+      std::fill_n(right_side.data() + at(y, channel, parity, column), lanes, 0.F);
+    }
+  }
 }
 
 void MembraneLevel::spread(Tile from, Tile to) {

@@ -26,7 +26,7 @@ class AlignedFloats {
 /// odd columns of a row are stored apart (`parity` 0 and 1), so that relaxing every second cell,
 /// summing 2x2 cells and interpolating them are plain vector operations. Every array has a margin
 /// of one block and one row around it, and weights are zero wherever there is no cell, so that no
-/// kernel looks at borders.
+/// kernel looks at borders, and empty blocks are not touched at all.
 ///
 /// Far from irregular cells the solution is smooth: such tiles are not relaxed here, but take their
 /// values from the next coarser level. Those that touch an active tile (`ghost`) are stored.
@@ -106,6 +106,7 @@ struct MembraneLevel {
   }
   void spread(Tile from, Tile to);
   void clear_stored();
+  void clear_block(int y, int column);
 };
 
 }  // namespace diminish

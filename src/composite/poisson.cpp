@@ -9,7 +9,7 @@ namespace diminish {
 namespace {
 
 /// Of the last multigrid correction; what is left of the error is smaller.
-constexpr float tolerance_levels = 0.2F;
+constexpr float tolerance_levels = 0.5F;
 struct Difference {
   float value[MembraneSolver::channels];
 
@@ -30,7 +30,7 @@ class PoissonCorrection : public ColorCorrector {
  public:
   void correct(const Image<Bgr>& camera, const Mask& occlusion,
                const Reconstruction& reconstruction, Image<Bgr>& picture) override {
-    const Rect& region = reconstruction.region;
+    const Rect region = intersect(grow(bounding_box(occlusion), 1), reconstruction.region);
     if (region.empty()) return;
     solver_.begin(region.width, region.height);
     unsigned sources = 0;
@@ -70,14 +70,13 @@ class PoissonCorrection : public ColorCorrector {
       }
     }
     // One camera has no seams.
-    if ((sources & (sources - 1)) != 0) even_out_seams(reconstruction);
+    if ((sources & (sources - 1)) != 0) even_out_seams(reconstruction, region);
     solver_.solve(tolerance_levels);
     add_solution(solver_, region, reconstruction.color, picture);
   }
 
  private:
-  void even_out_seams(const Reconstruction& reconstruction) {
-    const Rect& region = reconstruction.region;
+  void even_out_seams(const Reconstruction& reconstruction, const Rect& region) {
     solver_.for_each_irregular([&](int column, int row) {
       const int x = region.x + column;
       const int y = region.y + row;
