@@ -541,8 +541,7 @@ void CollectFromFixed(MembraneLevel& level) {
   float* residual = level.residual.data();
   const auto share = [](Vector weight, Vector inverse) {
     const Mask from = hn::And(IsFixed(inverse), hn::Gt(weight, Zero()));
-    return hn::IfThenElseZero(
-        from, hn::Max(hn::NegMulAdd(Set(0.75F), weight, Set(1.F)), Zero()));
+    return hn::IfThenElseZero(from, hn::Max(hn::NegMulAdd(Set(0.75F), weight, Set(1.F)), Zero()));
   };
   for (int y = 0; y < level.height; ++y) {
     ForEachBlock(level.active, level.active_rows, y, [&](int column) HWY_ATTR {
@@ -558,8 +557,8 @@ void CollectFromFixed(MembraneLevel& level) {
           const Vector up = share(w.up, Load(inverse + at - level.row_step()));
           const Vector down = share(w.down, Load(inverse + at + level.row_step()));
           const Mask cell = hn::Gt(Load(inverse + at), Zero());
-          const Mask any = hn::And(
-              cell, hn::Gt(hn::Add(hn::Add(left, right), hn::Add(up, down)), Zero()));
+          const Mask any =
+              hn::And(cell, hn::Gt(hn::Add(hn::Add(left, right), hn::Add(up, down)), Zero()));
           if (hn::AllFalse(Floats(), any)) continue;
           for (int c = 0; c < channels; ++c) {
             const std::ptrdiff_t own = level.at(y, c, parity, column) + i;
@@ -567,8 +566,7 @@ void CollectFromFixed(MembraneLevel& level) {
             const Vector old = Load(residual + own);
             const Vector more =
                 hn::MulAdd(left, n.left,
-                           hn::MulAdd(right, n.right,
-                                      hn::MulAdd(up, n.up, hn::Mul(down, n.down))));
+                           hn::MulAdd(right, n.right, hn::MulAdd(up, n.up, hn::Mul(down, n.down))));
             Store(hn::IfThenElse(any, hn::Add(old, more), old), residual + own);
           }
         }
