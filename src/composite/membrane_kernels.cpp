@@ -51,25 +51,28 @@ HWY_INLINE void ForEachBlock(const std::vector<MembraneLevel::Span>& spans,
   }
 }
 
-HWY_INLINE unsigned Bits(hn::CappedTag<std::uint8_t, 16> d,
-                         hn::Mask<hn::CappedTag<std::uint8_t, 16>> mask) {
+using Bytes = hn::CappedTag<std::uint8_t, 16>;
+
+HWY_INLINE unsigned Bits(hn::Mask<Bytes> mask) {
   alignas(8) std::uint8_t bits[8] = {};
-  hn::StoreMaskBits(d, mask, bits);
-  return static_cast<unsigned>(bits[0] | (bits[1] << 8));
+  hn::StoreMaskBits(Bytes(), mask, bits);
+  const unsigned unused = 32 - static_cast<unsigned>(hn::Lanes(Bytes()));
+  return static_cast<unsigned>(bits[0] | (bits[1] << 8)) << unused >> unused;
 }
 
 void ClassifyRow(const std::uint8_t* keys, std::ptrdiff_t keys_per_row, int words,
                  std::uint32_t* cells, std::uint32_t* fixed, std::uint32_t* irregular) {
-  const hn::CappedTag<std::uint8_t, 16> d;
+  const Bytes d;
+  const auto count = static_cast<int>(hn::Lanes(d));
   const auto zero = hn::Zero(d);
   const auto fixed_key = hn::Set(d, fixed_value_key);
   std::fill_n(cells, words, 0U);
   std::fill_n(fixed, words, 0U);
   std::fill_n(irregular, words, 0U);
-  for (int i = 0; i < 2 * words; ++i, keys += 16) {
+  for (int x = 0; x < 32 * words; x += count, keys += count) {
     const auto key = hn::LoadU(d, keys);
-    const unsigned is_fixed = Bits(d, hn::Eq(key, fixed_key));
-    const unsigned is_cell = Bits(d, hn::Ne(key, zero)) & ~is_fixed;
+    const unsigned is_fixed = Bits(hn::Eq(key, fixed_key));
+    const unsigned is_cell = Bits(hn::Ne(key, zero)) & ~is_fixed;
     if ((is_cell | is_fixed) == 0) continue;
     const auto left = hn::LoadU(d, keys - 1);
     const auto right = hn::LoadU(d, keys + 1);
@@ -77,19 +80,19 @@ void ClassifyRow(const std::uint8_t* keys, std::ptrdiff_t keys_per_row, int word
     const auto below = hn::LoadU(d, keys + keys_per_row);
     const auto same_x = hn::And(hn::Eq(key, left), hn::Eq(key, right));
     const auto same_y = hn::And(hn::Eq(key, above), hn::Eq(key, below));
-    const unsigned regular = Bits(d, hn::And(same_x, same_y));
+    const unsigned regular = Bits(hn::And(same_x, same_y));
     unsigned beside_cell = 0;
     if ((is_fixed & ~regular) != 0) {
-      const auto is_other_cell = [&](auto other) {
+      const auto is_other_cell = [&](auto other) HWY_ATTR {
         return hn::And(hn::Ne(other, zero), hn::Ne(other, fixed_key));
       };
-      beside_cell = is_fixed & Bits(d, hn::Or(hn::Or(is_other_cell(left), is_other_cell(right)),
-                                              hn::Or(is_other_cell(above), is_other_cell(below))));
+      beside_cell = is_fixed & Bits(hn::Or(hn::Or(is_other_cell(left), is_other_cell(right)),
+                                           hn::Or(is_other_cell(above), is_other_cell(below))));
     }
-    const int shift = 16 * (i % 2);
-    cells[i / 2] |= is_cell << shift;
-    fixed[i / 2] |= beside_cell << shift;
-    irregular[i / 2] |= (is_cell & ~regular) << shift;
+    const int shift = x % 32;
+    cells[x / 32] |= is_cell << shift;
+    fixed[x / 32] |= beside_cell << shift;
+    irregular[x / 32] |= (is_cell & ~regular) << shift;
   }
 }
 

@@ -10,6 +10,7 @@
 #include "pose/depth_check.h"
 #include "pose/marker_pose.h"
 #include "pose/pose_list.h"
+#include "temporary_folder.h"
 
 namespace diminish {
 namespace {
@@ -53,9 +54,10 @@ class PoseSources : public ::testing::Test {
   }
   void configure(const std::string& source, const std::string& yaml) {
     frame.rig.pose_source = source;
-    frame.rig.pose = Config::parse(yaml, std::filesystem::path(::testing::TempDir()) / "rig.yaml");
+    frame.rig.pose = Config::parse(yaml, folder.path() / "rig.yaml");
   }
 
+  TemporaryFolder folder;
   AnalyticFrame frame;
   Scene scene;
 };
@@ -123,11 +125,10 @@ TEST_F(PoseSources, FixedPosesThatAreMissingOrTooManyAreErrors) {
 }
 
 TEST_F(PoseSources, PosesFromFilesAreTheNearestInTime) {
-  const std::filesystem::path folder = ::testing::TempDir();
   const auto write = [&](const char* name, const RigidTransform& camera_from_world) {
     const RigidTransform pose = camera_from_world.inverse();
     const Eigen::Quaterniond q(pose.rotation);
-    std::ofstream file(folder / name);
+    std::ofstream file(folder.path() / name);
     file.precision(12);
     file << "# timestamp tx ty tz qx qy qz qw\n9.9 0 0 0 0 0 0 1\n10.001";
     for (const double value : {pose.translation.x(), pose.translation.y(), pose.translation.z(),

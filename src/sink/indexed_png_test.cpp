@@ -7,22 +7,23 @@
 
 #include "diminish/error.h"
 #include "sink/palette.h"
+#include "temporary_folder.h"
 
 namespace diminish {
 namespace {
 
 class IndexedPng : public testing::Test {
  protected:
-  IndexedPng() : file(std::filesystem::path(testing::TempDir()) / "indexed.png") {
+  IndexedPng() {
     for (int y = 0; y < indices.height(); ++y) {
       for (int x = 0; x < indices.width(); ++x) {
         indices(x, y) = static_cast<std::uint8_t>(x * 37 + y * 11);
       }
     }
   }
-  ~IndexedPng() override { std::filesystem::remove(file); }
 
-  std::filesystem::path file;
+  TemporaryFolder folder;
+  std::filesystem::path file = folder.path() / "indexed.png";
   Image<std::uint8_t> indices{33, 17};
 };
 

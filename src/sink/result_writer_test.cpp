@@ -15,6 +15,7 @@
 #include "score/csv_table.h"
 #include "sink/indexed_png.h"
 #include "sink/partial_file.h"
+#include "temporary_folder.h"
 
 namespace diminish {
 namespace {
@@ -24,10 +25,6 @@ namespace fs = std::filesystem;
 class ResultWriterTest : public ::testing::Test {
  protected:
   ResultWriterTest() {
-    folder =
-        fs::path(::testing::TempDir()) /
-        (std::string("results_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::remove_all(folder);
     rig = testing::small_rig();
     frame.name = result.name = "000007";
     frame.color.resize(rig.color.width, rig.color.height, {10, 20, 30});
@@ -43,7 +40,6 @@ class ResultWriterTest : public ::testing::Test {
     result.report.occluders = {{"lamp", true, {true}, ""}};
     result.report.messages = {"a \"quoted\", message", "another"};
   }
-  ~ResultWriterTest() override { fs::remove_all(folder); }
 
   ResultWriter make(const ResultWriterOptions& options = {}) {
     return {folder, rig, Options(), 25, options};
@@ -61,7 +57,8 @@ class ResultWriterTest : public ::testing::Test {
     return stream.str();
   }
 
-  fs::path folder;
+  TemporaryFolder temporary;
+  fs::path folder = temporary.path() / "results";
   Rig rig;
   FrameSet frame;
   DiminishedFrame result;

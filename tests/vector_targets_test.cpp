@@ -1,0 +1,61 @@
+#include <gtest/gtest.h>
+#include <hwy/highway.h>
+#include <hwy/targets.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "diminish/frame_source.h"
+#include "diminish/pipeline.h"
+
+namespace diminish {
+namespace {
+
+/// Has the kernels take one of the instruction sets that they were compiled for.
+class OnTarget {
+ public:
+  explicit OnTarget(std::int64_t target) { hwy::SetSupportedTargetsForTest(target); }
+  ~OnTarget() { hwy::SetSupportedTargetsForTest(0); }
+  OnTarget(const OnTarget&) = delete;
+  OnTarget& operator=(const OnTarget&) = delete;
+};
+
+// Whole frames on every instruction set that this processor has, down to plain C++: the same pixels
+// are seen, and colours differ by rounding only.
+TEST(VectorTargets, AgreeOnWholeFrames) {
+  const Recording recording =
+      load_recording(std::filesystem::path(DIMINISH_RECORDINGS_DIR) / "calendar");
+  const Options options;
+  FrameSet frame;
+  open_recording(recording, options)->next(frame);
+  DiminishedFrame expected;
+  Pipeline(recording.rig, recording.scene, options).process(frame, expected);
+  ASSERT_GT(expected.report.valid_pixels, 50000U);
+
+  int targets = 0;
+  std::int64_t remaining = hwy::SupportedTargets() & HWY_TARGETS;
+  while (remaining != 0) {
+    const std::int64_t target = remaining & -remaining;
+    remaining &= remaining - 1;
+    SCOPED_TRACE(hwy::TargetName(target));
+    const OnTarget chosen(target);
+    DiminishedFrame result;
+    Pipeline(recording.rig, recording.scene, options).process(frame, result);
+    EXPECT_EQ(result.mask, expected.mask);
+    EXPECT_EQ(result.provenance, expected.provenance);
+    int worst = 0;
+    for (int y = 0; y < result.picture.height(); ++y) {
+      for (int x = 0; x < result.picture.width(); ++x) {
+        const Bgr& a = result.picture(x, y);
+        const Bgr& b = expected.picture(x, y);
+        worst = std::max({worst, std::abs(a.b - b.b), std::abs(a.g - b.g), std::abs(a.r - b.r)});
+      }
+    }
+    EXPECT_LE(worst, 1);
+    ++targets;
+  }
+  EXPECT_GE(targets, 1);
+}
+
+}  // namespace
+}  // namespace diminish
