@@ -20,8 +20,8 @@ struct SurfaceBuffer {
 };
 
 /// Draws the cells between 16 vertices of two neighbouring rows and the vertices beside and below
-/// them (rules 2 to 5 of sdct.h). Whether a pixel lies in one of a small cell's triangles is
-/// decided for 16 cells at once; larger triangles are drawn one by one, 16 pixels at once.
+/// them (rules 2 to 5 of sdct.h). Edges and planes of neighbouring cells are set up together; then
+/// each cell is drawn as one quadrilateral, a vector of pixels at a time.
 void draw_cells(const VertexRow& upper, const VertexRow& lower, int block, float threshold_m,
                 SurfaceBuffer& surface);
 
