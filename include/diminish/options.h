@@ -14,7 +14,7 @@ struct Options {
   double blob_spread = 1.0;
   double discontinuity_threshold_m = 0.05;
   double depth_agreement_m = 0.03;
-  int surroundings_px = 32;
+  int surroundings_px = 1;
   bool whole_view = false;
   std::string color_correct = "poisson";
   std::string inpaint = "harmonic";

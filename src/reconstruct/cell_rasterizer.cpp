@@ -166,16 +166,17 @@ HWY_INLINE void DrawCell(const Cells& cells, int lane, SurfaceBuffer& surface) {
     float* us = surface.u_over_z.data() + place;
     float* vs = surface.v_over_z.data() + place;
     for (int y = 0; y < rows; ++y) {
-      const Vector side = hn::BitCast(d, diagonal.value);
-      const Vector outside =
-          hn::IfNegativeThenElse(side, hn::BitCast(d, hn::Or(be.value, ec.value)),
-                                 hn::BitCast(d, hn::Or(ca.value, ab.value)));
+      const auto in_second = hn::Lt(diagonal.value, hn::Zero(di));
+      const LaneMask second = hn::RebindMask(d, in_second);
+      const IntVector outside =
+          hn::IfThenElse(in_second, hn::Or(be.value, ec.value), hn::Or(ca.value, ab.value));
       const Vector old_z = hn::LoadU(d, zs);
-      const Vector z = hn::IfNegativeThenElse(side, z2.value, z1.value);
-      const Vector u = hn::IfNegativeThenElse(side, u2.value, u1.value);
-      const Vector v = hn::IfNegativeThenElse(side, v2.value, v1.value);
-      const Vector nearest = hn::IfNegativeThenElse(outside, old_z, hn::Max(z, old_z));
-      const LaneMask kept = hn::Ne(nearest, old_z);
+      const Vector z = hn::IfThenElse(second, z2.value, z1.value);
+      const Vector u = hn::IfThenElse(second, u2.value, u1.value);
+      const Vector v = hn::IfThenElse(second, v2.value, v1.value);
+      const LaneMask kept =
+          hn::AndNot(hn::RebindMask(d, hn::Lt(outside, hn::Zero(di))), hn::Gt(z, old_z));
+      const Vector nearest = hn::IfThenElse(kept, z, old_z);
       hn::StoreU(nearest, d, zs);
       hn::StoreU(hn::IfThenElse(kept, u, hn::LoadU(d, us)), d, us);
       hn::StoreU(hn::IfThenElse(kept, v, hn::LoadU(d, vs)), d, vs);

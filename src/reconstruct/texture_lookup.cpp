@@ -14,115 +14,142 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr int block = 16;
-using Floats = hn::CappedTag<float, block>;
-using Ints = hn::RebindToSigned<Floats>;
-using Vector = hn::Vec<Floats>;
-using IntVector = hn::Vec<Ints>;
+using Floats = hn::CappedTag<float, 16>;
 
-template <int channel>
-HWY_INLINE Vector Channel(IntVector pixels) {
-  return hn::ConvertTo(Floats(),
-                       hn::And(hn::ShiftRight<8 * channel>(pixels), hn::Set(Ints(), 255)));
-}
-
-/// Blue, green and red of pixels in the lower three bytes. Four bytes are read at once, but not
-/// beyond `last`. (On many processors the gather instruction is slower.)
-HWY_INLINE IntVector Gather(const std::uint8_t* texture, IntVector at, std::int32_t last) {
-  const Ints d;
-  HWY_ALIGN std::int32_t places[block];
-  HWY_ALIGN std::int32_t pixels[block];
-  hn::Store(at, d, places);
-  for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
-    const std::int32_t place = std::min(places[i], last);
-    std::uint32_t pixel;
-    std::memcpy(&pixel, texture + place, sizeof(pixel));
-    pixels[i] = static_cast<std::int32_t>(pixel >> (8 * (places[i] - place)));
+/// Calls `visit(tag, first)` for vectors of pixels that cover a row; the last may overlap the one
+/// before it. Rows shorter than a vector are walked pixel by pixel.
+template <class Visit>
+HWY_INLINE void ForEachVector(int width, const Visit& visit) {
+  const auto lanes = static_cast<int>(hn::Lanes(Floats()));
+  if (width < lanes) {
+    for (int i = 0; i < width; ++i) visit(hn::CappedTag<float, 1>(), i);
+    return;
   }
-  return hn::Load(d, pixels);
+  for (int i = 0; i + lanes <= width; i += lanes) visit(Floats(), i);
+  if (width % lanes != 0) visit(Floats(), width - lanes);
 }
 
-void LookUpRow(const SurfaceBuffer& surface, int y, const std::uint8_t* wanted,
-               const Image<Bgr>& texture, Bgra* colors, float* depth_m) {
-  const Floats d;
-  const Ints di;
-  const hn::Rebind<std::uint8_t, Floats> d8;
-  const auto lanes = static_cast<int>(hn::Lanes(d));
+void ChooseSource(const std::vector<SurfaceRow>& rows, float agreement_m, int width,
+                  std::uint8_t* source, float* depth_m) {
+  ForEachVector(width, [&](auto d, int i) HWY_ATTR {
+    const hn::RebindToSigned<decltype(d)> di;
+    const hn::Rebind<std::uint8_t, decltype(d)> d8;
+    const auto agreement = hn::Set(d, agreement_m);
+    auto nearest = hn::Zero(d);
+    auto chosen = hn::Zero(di);
+    for (const SurfaceRow& row : rows) {
+      const auto inverse_z = hn::LoadU(d, row.inverse_z + i);
+      const auto there = hn::Gt(inverse_z, hn::Zero(d));
+      if (hn::AllFalse(d, there)) continue;
+      const auto z = hn::IfThenElseZero(there, hn::Div(hn::Set(d, 1.F), inverse_z));
+      const auto nearer = hn::And(
+          there, hn::Or(hn::Eq(nearest, hn::Zero(d)), hn::Lt(z, hn::Sub(nearest, agreement))));
+      nearest = hn::IfThenElse(nearer, z, nearest);
+      chosen = hn::IfThenElse(hn::RebindMask(di, nearer), hn::Set(di, row.source), chosen);
+    }
+    hn::StoreU(nearest, d, depth_m + i);
+    hn::StoreU(hn::DemoteTo(d8, chosen), d8, source + i);
+  });
+}
+
+/// What is known of some neighbouring pixels of a row. Each step of the lookup goes over all of
+/// them before the next begins, so that no vector is read back while its parts are being written.
+/// (On many processors gather instructions are slower.)
+struct alignas(64) Places {
+  static constexpr int most = 128;
+  float fx[most], fy[most];      ///< the place between four pixels of the texture
+  std::int32_t place[most];      ///< of the upper left one, in bytes
+  std::int32_t pixels[4][most];  ///< upper left, upper right, lower left, lower right
+};
+
+HWY_INLINE void FindPlaces(const SurfaceRow& row, const Image<Bgr>& texture, int first, int count,
+                           const float* depth_m, Places& places) {
+  ForEachVector(count, [&](auto d, int i) HWY_ATTR {
+    const hn::RebindToSigned<decltype(d)> di;
+    const auto zero = hn::Zero(d);
+    const auto one = hn::Set(d, 1.F);
+    const auto z = hn::LoadU(d, depth_m + first + i);
+    // What lies outside is another camera's pixel.
+    const auto place = [&](const float* over_z, int side, float* fraction) HWY_ATTR {
+      const auto last = hn::Set(d, static_cast<float>(side - 1));
+      const auto value = hn::Min(hn::Max(hn::Mul(hn::LoadU(d, over_z + first + i), z), zero), last);
+      // The last pixel is the second of a pair.
+      const auto whole = hn::Min(hn::ConvertTo(di, value), hn::Set(di, side - 2));
+      hn::StoreU(hn::Min(hn::Sub(value, hn::ConvertTo(d, whole)), one), d, fraction + i);
+      return whole;
+    };
+    const auto x = place(row.u_over_z, texture.width(), places.fx);
+    const auto y = place(row.v_over_z, texture.height(), places.fy);
+    const auto row_bytes = hn::Set(di, 3 * texture.width());
+    hn::StoreU(hn::Add(hn::Mul(y, row_bytes), hn::Mul(x, hn::Set(di, 3))), di, places.place + i);
+  });
+}
+
+/// Two neighbouring pixels of three bytes each.
+HWY_INLINE std::uint64_t PixelPair(const std::uint8_t* texture, std::int32_t place) {
+  std::uint64_t pair;
+  std::memcpy(&pair, texture + place, sizeof(pair));
+  return pair;
+}
+
+HWY_INLINE void ReadPixels(const Image<Bgr>& texture, int count, Places& places) {
   const auto* bytes = reinterpret_cast<const std::uint8_t*>(texture.data());
-  // The last place that four bytes can be read from.
-  const auto last = static_cast<std::int32_t>(3 * texture.size()) - 4;
-  const IntVector last_column = hn::Set(di, texture.width() - 1);
-  const IntVector last_row = hn::Set(di, texture.height() - 1);
-  HWY_ALIGN std::uint8_t padded_wanted[block];
-  HWY_ALIGN Bgra padded_colors[block];
-  HWY_ALIGN float padded_depth[block];
-  const int count = surface.region.width;
-  for (int i = 0; i < count; i += lanes) {
-    const int here = std::min(lanes, count - i);
-    const bool partial = here < lanes;
-    const std::ptrdiff_t from = surface.row(y) + i;
-    const std::uint8_t* wanted_here = wanted ? wanted + i : nullptr;
-    Bgra* to = colors + i;
-    float* to_depth = depth_m + i;
-    if (partial) {
-      if (wanted) {
-        std::copy_n(wanted_here, here, padded_wanted);
-        wanted_here = padded_wanted;
-      }
-      to = padded_colors;
-      to_depth = padded_depth;
+  const auto row_bytes = static_cast<std::int32_t>(3 * texture.width());
+  // The last place that eight bytes can be read from.
+  const auto last = static_cast<std::int32_t>(3 * texture.size()) - 8;
+  for (int i = 0; i < count; ++i) {
+    const std::int32_t upper = places.place[i];
+    const std::int32_t lower = upper + row_bytes;
+    const std::int32_t from = std::min(lower, last);
+    const std::uint64_t upper_pair = PixelPair(bytes, upper);
+    const std::uint64_t lower_pair = PixelPair(bytes, from) >> (8 * (lower - from));
+    places.pixels[0][i] = static_cast<std::int32_t>(upper_pair);
+    places.pixels[1][i] = static_cast<std::int32_t>(upper_pair >> 24);
+    places.pixels[2][i] = static_cast<std::int32_t>(lower_pair);
+    places.pixels[3][i] = static_cast<std::int32_t>(lower_pair >> 24);
+  }
+}
+
+template <int shift, class D>
+HWY_INLINE hn::Vec<hn::RebindToSigned<D>> BlendChannel(D d, const Places& places, int i) {
+  const hn::RebindToSigned<D> di;
+  const auto value = [&](int pixel) HWY_ATTR {
+    const auto bits = hn::ShiftRight<shift>(hn::LoadU(di, places.pixels[pixel] + i));
+    return hn::ConvertTo(d, hn::And(bits, hn::Set(di, 255)));
+  };
+  const auto fx = hn::LoadU(d, places.fx + i);
+  const auto fy = hn::LoadU(d, places.fy + i);
+  const auto left = value(0);
+  const auto lower_left = value(2);
+  const auto top = hn::MulAdd(fx, hn::Sub(value(1), left), left);
+  const auto bottom = hn::MulAdd(fx, hn::Sub(value(3), lower_left), lower_left);
+  return hn::NearestInt(hn::MulAdd(fy, hn::Sub(bottom, top), top));
+}
+
+void LookUpColors(const SurfaceRow& row, const Image<Bgr>& texture, int width,
+                  const std::uint8_t* source, const float* depth_m, Bgra* colors) {
+  Places places;
+  for (int first = 0; first < width; first += Places::most) {
+    const int count = std::min(Places::most, width - first);
+    if (std::find(source + first, source + first + count, row.source) == source + first + count) {
+      continue;
     }
-    const Vector inverse_z = hn::LoadU(d, surface.inverse_z.data() + from);
-    const Vector u_over_z = hn::LoadU(d, surface.u_over_z.data() + from);
-    const Vector v_over_z = hn::LoadU(d, surface.v_over_z.data() + from);
-    auto seen = hn::Gt(inverse_z, hn::Zero(d));
-    if (wanted) {
-      const IntVector flags = hn::PromoteTo(di, hn::LoadU(d8, wanted_here));
-      seen = hn::And(seen, hn::RebindMask(d, hn::Ne(flags, hn::Zero(di))));
-    }
-    if (hn::AllFalse(d, seen)) {
-      std::fill_n(to, lanes, Bgra{});
-      std::fill_n(to_depth, lanes, 0.F);
-    } else {
-      const Vector z = hn::IfThenElseZero(seen, hn::Div(hn::Set(d, 1.F), inverse_z));
-      const Vector u = hn::Max(hn::Mul(u_over_z, z), hn::Zero(d));
-      const Vector v = hn::Max(hn::Mul(v_over_z, z), hn::Zero(d));
-      const IntVector x0 = hn::Min(hn::ConvertTo(di, u), last_column);
-      const IntVector y0 = hn::Min(hn::ConvertTo(di, v), last_row);
-      const IntVector x1 = hn::Min(hn::Add(x0, hn::Set(di, 1)), last_column);
-      const IntVector y1 = hn::Min(hn::Add(y0, hn::Set(di, 1)), last_row);
-      const Vector fx = hn::Sub(u, hn::ConvertTo(d, x0));
-      const Vector fy = hn::Sub(v, hn::ConvertTo(d, y0));
-      const IntVector row_bytes = hn::Set(di, 3 * texture.width());
-      const auto offset = [&](IntVector column, IntVector line) HWY_ATTR {
-        return hn::Add(hn::Mul(line, row_bytes), hn::Mul(column, hn::Set(di, 3)));
-      };
-      const IntVector p00 = Gather(bytes, offset(x0, y0), last);
-      const IntVector p10 = Gather(bytes, offset(x1, y0), last);
-      const IntVector p01 = Gather(bytes, offset(x0, y1), last);
-      const IntVector p11 = Gather(bytes, offset(x1, y1), last);
-      const auto blend = [&](Vector q00, Vector q10, Vector q01, Vector q11) HWY_ATTR {
-        const Vector top = hn::MulAdd(fx, hn::Sub(q10, q00), q00);
-        const Vector bottom = hn::MulAdd(fx, hn::Sub(q11, q01), q01);
-        return hn::NearestInt(hn::MulAdd(fy, hn::Sub(bottom, top), top));
-      };
-      const IntVector blue =
-          blend(Channel<0>(p00), Channel<0>(p10), Channel<0>(p01), Channel<0>(p11));
-      const IntVector green =
-          blend(Channel<1>(p00), Channel<1>(p10), Channel<1>(p01), Channel<1>(p11));
-      const IntVector red =
-          blend(Channel<2>(p00), Channel<2>(p10), Channel<2>(p01), Channel<2>(p11));
-      const IntVector color = hn::Or(
-          hn::Or(blue, hn::ShiftLeft<8>(green)),
-          hn::Or(hn::ShiftLeft<16>(red), hn::Set(di, static_cast<std::int32_t>(0xFF000000U))));
-      hn::StoreU(hn::IfThenElseZero(hn::RebindMask(di, seen), color), di,
-                 reinterpret_cast<std::int32_t*>(to));
-      hn::StoreU(z, d, to_depth);
-    }
-    if (partial) {
-      std::copy_n(padded_colors, here, colors + i);
-      std::copy_n(padded_depth, here, depth_m + i);
-    }
+    FindPlaces(row, texture, first, count, depth_m, places);
+    ReadPixels(texture, count, places);
+    ForEachVector(count, [&](auto d, int i) HWY_ATTR {
+      const hn::RebindToSigned<decltype(d)> di;
+      const hn::Rebind<std::uint8_t, decltype(d)> d8;
+      const auto sources = hn::PromoteTo(di, hn::LoadU(d8, source + first + i));
+      const auto mine = hn::Eq(sources, hn::Set(di, row.source));
+      if (hn::AllFalse(di, mine)) return;
+      const auto blue = BlendChannel<0>(d, places, i);
+      const auto green = hn::ShiftLeft<8>(BlendChannel<8>(d, places, i));
+      const auto red = hn::ShiftLeft<16>(BlendChannel<16>(d, places, i));
+      const auto alpha = hn::Set(di, static_cast<std::int32_t>(0xFF000000U));
+      const auto color = hn::Or(hn::Or(blue, green), hn::Or(red, alpha));
+      auto* to = reinterpret_cast<std::int32_t*>(colors + first + i);
+      hn::StoreU(hn::IfThenElse(mine, color, hn::LoadU(di, to)), di, to);
+    });
   }
 }
 
@@ -133,11 +160,17 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace diminish {
 
-HWY_EXPORT(LookUpRow);
+HWY_EXPORT(ChooseSource);
+HWY_EXPORT(LookUpColors);
 
-void look_up_row(const SurfaceBuffer& surface, int y, const std::uint8_t* wanted,
-                 const Image<Bgr>& texture, Bgra* colors, float* depth_m) {
-  HWY_DYNAMIC_DISPATCH(LookUpRow)(surface, y, wanted, texture, colors, depth_m);
+void choose_source(const std::vector<SurfaceRow>& rows, float agreement_m, int width,
+                   std::uint8_t* source, float* depth_m) {
+  HWY_DYNAMIC_DISPATCH(ChooseSource)(rows, agreement_m, width, source, depth_m);
+}
+
+void look_up_colors(const SurfaceRow& row, const Image<Bgr>& texture, int width,
+                    const std::uint8_t* source, const float* depth_m, Bgra* colors) {
+  HWY_DYNAMIC_DISPATCH(LookUpColors)(row, texture, width, source, depth_m, colors);
 }
 
 }  // namespace diminish

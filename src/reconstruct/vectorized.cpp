@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "diminish/error.h"
 #include "diminish/reconstructor.h"
 #include "reconstruct/cell_rasterizer.h"
 #include "reconstruct/texture_lookup.h"
@@ -8,6 +9,9 @@
 
 namespace diminish {
 namespace {
+
+/// Colours are looked up eight bytes at a time.
+constexpr int min_texture_side = 8;
 
 /// Draws one RGB-D camera's mesh.
 class CameraMesh {
@@ -52,13 +56,18 @@ class CameraMesh {
 class VectorizedReconstructor : public Reconstructor {
  public:
   explicit VectorizedReconstructor(const Rig& rig) : color_(rig.color) {
-    for (const RgbdCamera& camera : rig.rgbd) meshes_.emplace_back(camera, rig.color);
+    for (const RgbdCamera& camera : rig.rgbd) {
+      if (std::min(camera.color.width, camera.color.height) < min_texture_side) {
+        throw Error(camera.name + ": expected a colour image of at least 8x8 pixels");
+      }
+      meshes_.emplace_back(camera, rig.color);
+    }
   }
 
   void reconstruct(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks,
                    const Rect& region, const Options& options,
                    Reconstruction& reconstruction) override {
-    clear(region, reconstruction);
+    clear_outside(region, reconstruction);
     drawn_.clear();
     for (std::size_t k = 0; k < meshes_.size(); ++k) {
       if (!frame.rgbd[k].available() || !poses.color_from_depth[k]) continue;
@@ -70,8 +79,20 @@ class VectorizedReconstructor : public Reconstructor {
     if (drawn_.size() > 1) sort_by_coverage();
     const auto agreement_m = static_cast<float>(options.depth_agreement_m);
     for (int y = region.y; y < region.bottom(); ++y) {
-      choose(y, agreement_m, reconstruction);
-      for (const Drawn& drawn : drawn_) color_row(frame, drawn.camera, y, reconstruction);
+      rows_.clear();
+      for (const Drawn& drawn : drawn_) {
+        rows_.emplace_back(meshes_[drawn.camera].surface(), y,
+                           static_cast<std::uint8_t>(1 + drawn.camera));
+      }
+      std::uint8_t* source = reconstruction.source.row(y) + region.x;
+      float* depth_m = reconstruction.depth_m.row(y) + region.x;
+      Bgra* colors = reconstruction.color.row(y) + region.x;
+      choose_source(rows_, agreement_m, region.width, source, depth_m);
+      std::fill_n(colors, region.width, Bgra{});
+      for (const SurfaceRow& row : rows_) {
+        look_up_colors(row, frame.rgbd[row.source - 1U].color, region.width, source, depth_m,
+                       colors);
+      }
     }
   }
 
@@ -82,13 +103,13 @@ class VectorizedReconstructor : public Reconstructor {
   };
 
   /// Everything outside `region` becomes empty; the region's pixels are written later.
-  void clear(const Rect& region, Reconstruction& reconstruction) const {
+  void clear_outside(const Rect& region, Reconstruction& reconstruction) const {
     const bool same_size = reconstruction.color.width() == color_.width &&
                            reconstruction.color.height() == color_.height;
     if (same_size) {
-      reconstruction.color.fill(reconstruction.region, {});
-      reconstruction.depth_m.fill(reconstruction.region, 0.F);
-      reconstruction.source.fill(reconstruction.region, 0);
+      clear_outside(region, reconstruction.region, reconstruction.color);
+      clear_outside(region, reconstruction.region, reconstruction.depth_m);
+      clear_outside(region, reconstruction.region, reconstruction.source);
     } else {
       reconstruction.color.resize(color_.width, color_.height, {});
       reconstruction.depth_m.resize(color_.width, color_.height, 0.F);
@@ -96,81 +117,37 @@ class VectorizedReconstructor : public Reconstructor {
     }
     reconstruction.region = region;
   }
+  template <class Pixel>
+  static void clear_outside(const Rect& region, const Rect& drawn, Image<Pixel>& image) {
+    const Rect both = intersect(region, drawn);
+    if (both.empty()) return image.fill(drawn, {});
+    image.fill({drawn.x, drawn.y, drawn.width, both.y - drawn.y}, {});
+    image.fill({drawn.x, both.y, both.x - drawn.x, both.height}, {});
+    image.fill({both.right(), both.y, drawn.right() - both.right(), both.height}, {});
+    image.fill({drawn.x, both.bottom(), drawn.width, drawn.bottom() - both.bottom()}, {});
+  }
 
   /// The camera that sees most of the region first, as merge_layers does.
   void sort_by_coverage() {
-    for (Drawn& drawn : drawn_) {
-      const std::vector<float>& inverse_z = meshes_[drawn.camera].surface().inverse_z;
-      drawn.pixels = static_cast<std::size_t>(
-          std::count_if(inverse_z.begin(), inverse_z.end(), [](float value) { return value > 0; }));
-    }
+    for (Drawn& drawn : drawn_) drawn.pixels = count_drawn(meshes_[drawn.camera].surface());
     std::stable_sort(drawn_.begin(), drawn_.end(),
                      [](const Drawn& a, const Drawn& b) { return a.pixels > b.pixels; });
   }
-
-  /// Decides which camera each pixel of a row is taken from (the rule of merge_layers).
-  void choose(int y, float agreement_m, Reconstruction& reconstruction) {
-    const Rect& region = reconstruction.region;
-    std::uint8_t* source = reconstruction.source.row(y) + region.x;
-    if (drawn_.size() == 1) {
-      const float* inverse_z = inverse_z_row(drawn_[0].camera, y);
-      const auto name = static_cast<std::uint8_t>(1 + drawn_[0].camera);
-      for (int i = 0; i < region.width; ++i) source[i] = inverse_z[i] > 0 ? name : 0;
-      return;
+  static std::size_t count_drawn(const SurfaceBuffer& surface) {
+    std::size_t count = 0;
+    for (int y = surface.region.y; y < surface.region.bottom(); ++y) {
+      const float* inverse_z = surface.inverse_z.data() + surface.row(y);
+      int in_row = 0;
+      for (int i = 0; i < surface.region.width; ++i) in_row += inverse_z[i] > 0 ? 1 : 0;
+      count += static_cast<std::size_t>(in_row);
     }
-    nearest_.assign(static_cast<std::size_t>(region.width), 0.F);
-    std::fill_n(source, region.width, std::uint8_t{0});
-    for (const Drawn& drawn : drawn_) {
-      const float* inverse_z = inverse_z_row(drawn.camera, y);
-      const auto name = static_cast<std::uint8_t>(1 + drawn.camera);
-      for (int i = 0; i < region.width; ++i) {
-        if (!(inverse_z[i] > 0)) continue;
-        const float z = 1.F / inverse_z[i];
-        float& nearest = nearest_[static_cast<std::size_t>(i)];
-        if (nearest == 0 || z < nearest - agreement_m) {
-          nearest = z;
-          source[i] = name;
-        }
-      }
-    }
-  }
-
-  const float* inverse_z_row(std::size_t camera, int y) {
-    const SurfaceBuffer& surface = meshes_[camera].surface();
-    return surface.inverse_z.data() + surface.row(y);
-  }
-
-  void color_row(const FrameSet& frame, std::size_t camera, int y, Reconstruction& reconstruction) {
-    const Rect& region = reconstruction.region;
-    const SurfaceBuffer& surface = meshes_[camera].surface();
-    Bgra* color = reconstruction.color.row(y) + region.x;
-    float* depth = reconstruction.depth_m.row(y) + region.x;
-    if (drawn_.size() == 1) {
-      look_up_row(surface, y, nullptr, frame.rgbd[camera].color, color, depth);
-      return;
-    }
-    const std::uint8_t* source = reconstruction.source.row(y) + region.x;
-    const auto width = static_cast<std::size_t>(region.width);
-    wanted_.resize(width);
-    color_row_.resize(width);
-    depth_row_.resize(width);
-    const auto name = static_cast<std::uint8_t>(1 + camera);
-    for (std::size_t i = 0; i < width; ++i) wanted_[i] = source[i] == name ? 255 : 0;
-    look_up_row(surface, y, wanted_.data(), frame.rgbd[camera].color, color_row_.data(),
-                depth_row_.data());
-    for (std::size_t i = 0; i < width; ++i) {
-      if (wanted_[i] == 0) continue;
-      color[i] = color_row_[i];
-      depth[i] = depth_row_[i];
-    }
+    return count;
   }
 
   Intrinsics color_;
   std::vector<CameraMesh> meshes_;
   std::vector<Drawn> drawn_;
-  std::vector<float> nearest_, depth_row_;
-  std::vector<std::uint8_t> wanted_;
-  std::vector<Bgra> color_row_;
+  std::vector<SurfaceRow> rows_;
 };
 
 const bool registered = Registry<Reconstructor>::add(

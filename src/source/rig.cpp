@@ -10,6 +10,7 @@
 namespace diminish {
 namespace {
 
+constexpr int min_image_side = 8;
 constexpr int max_image_side = 16384;
 /// A pixel's provenance has this many values for RGB-D cameras.
 constexpr std::size_t max_rgbd_cameras = 253;
@@ -37,8 +38,8 @@ double read_principal_point(const Config& config, double value, int side) {
 Intrinsics read_intrinsics(const Config& config) {
   config.expect_keys({"width", "height", "camera_matrix", "distortion"});
   Intrinsics intrinsics;
-  intrinsics.width = config.at("width").integer(1, max_image_side);
-  intrinsics.height = config.at("height").integer(1, max_image_side);
+  intrinsics.width = config.at("width").integer(min_image_side, max_image_side);
+  intrinsics.height = config.at("height").integer(min_image_side, max_image_side);
   const Config matrix = config.at("camera_matrix");
   const std::vector<double> k = matrix.numbers(4);
   const std::vector<Config> places = matrix.items();
