@@ -42,13 +42,43 @@ cv::Mat square(int size) {
 
 }  // namespace
 
-void BlobSegmentation::segment(const Image<Bgr>& image) {
+void BlobSegmentation::shrink(const Image<Bgr>& image) {
   scale_ = (image.width() + segment_width - 1) / segment_width;
-  const cv::Size size(std::max(1, image.width() / scale_), std::max(1, image.height() / scale_));
-  const cv::Mat whole_cells =
-      as_mat(image)(cv::Rect({}, size * scale_) & cv::Rect(0, 0, image.width(), image.height()));
-  cv::resize(whole_cells, small_, size, 0, 0, cv::INTER_AREA);
-  cv::GaussianBlur(small_, smooth_, {3, 3}, 0);
+  small_.resize(std::max(1, image.width() / scale_), std::max(1, image.height() / scale_));
+  const int rows = std::min(scale_, image.height());
+  const int columns = std::min(scale_, image.width());
+  const auto used = static_cast<std::size_t>(small_.width() * columns * 3);
+  const unsigned area = static_cast<unsigned>(rows * columns);
+  sums_.resize(used);
+  for (int y = 0; y < small_.height(); ++y) {
+    std::fill(sums_.begin(), sums_.end(), std::uint16_t{0});
+    for (int dy = 0; dy < rows; ++dy) {
+      const auto* bytes = reinterpret_cast<const std::uint8_t*>(image.row(y * scale_ + dy));
+      for (std::size_t i = 0; i < used; ++i)
+        sums_[i] = static_cast<std::uint16_t>(sums_[i] + bytes[i]);
+    }
+    const std::uint16_t* sum = sums_.data();
+    for (int x = 0; x < small_.width(); ++x) {
+      unsigned blue = area / 2;
+      unsigned green = area / 2;
+      unsigned red = area / 2;
+      for (int dx = 0; dx < columns; ++dx, sum += 3) {
+        blue += sum[0];
+        green += sum[1];
+        red += sum[2];
+      }
+      small_(x, y) = {static_cast<std::uint8_t>(blue / area),
+                      static_cast<std::uint8_t>(green / area),
+                      static_cast<std::uint8_t>(red / area)};
+    }
+  }
+}
+
+void BlobSegmentation::segment(const Rect& window) {
+  window_ = window;
+  const cv::Rect part(window.x, window.y, window.width, window.height);
+  cv::GaussianBlur(as_mat(small_)(part), smooth_, {3, 3}, 0, 0,
+                   cv::BORDER_DEFAULT | cv::BORDER_ISOLATED);
   find_seeds();
   cv::watershed(smooth_, labels_);
   average_colors();
@@ -79,37 +109,34 @@ void BlobSegmentation::average_colors() {
   areas_.assign(mean_bgr_.size(), 0);
   for (int y = 0; y < labels_.rows; ++y) {
     int* const label = labels_.ptr<int>(y);
-    const cv::Vec3b* const color = small_.ptr<cv::Vec3b>(y);
+    const Bgr* const color = small_.row(window_.y + y) + window_.x;
     for (int x = 0; x < labels_.cols; ++x) {
       label[x] = std::max(label[x], 0);  // the lines between blobs are -1
-      mean_bgr_[label[x]] += Eigen::Vector3d(color[x][0], color[x][1], color[x][2]);
+      mean_bgr_[label[x]] += Eigen::Vector3d(color[x].b, color[x].g, color[x].r);
       ++areas_[label[x]];
     }
   }
   for (std::size_t i = 0; i < mean_bgr_.size(); ++i) mean_bgr_[i] /= std::max(areas_[i], 1);
 }
 
-void refine_region(const Image<Bgr>& image, const cv::Mat& region, int scale, Mask& mask) {
+Rect refine_region(const Image<Bgr>& image, const cv::Mat& region, const Rect& window, int scale,
+                   Mask& object_mask) {
   // How far, in segment pixels, the outline may be inside and outside the region's.
   constexpr int inward = 1;
   constexpr int outward = 2;
   // The crop's own rim is outside, and cv::watershed gives no label to the outermost pixels.
   constexpr int rim = outward + 1;
   const cv::Rect box = cv::boundingRect(region);
-  if (box.empty()) return;
-  const cv::Rect cells(box.x - rim, box.y - rim, box.width + 2 * rim, box.height + 2 * rim);
-
+  if (box.empty()) return {};
   // Beyond the picture's border both go on as they are at the border, so that an object that is
   // cut off there is not closed.
-  const auto repeated = [&](const auto* from, int x, int y, int width, int height) {
-    return from[std::clamp(y, 0, height - 1) * static_cast<std::ptrdiff_t>(width) +
-                std::clamp(x, 0, width - 1)];
-  };
-  cv::Mat coarse(cells.size(), CV_8U);
+  cv::Mat coarse;
+  cv::copyMakeBorder(region(box), coarse, rim, rim, rim, rim, cv::BORDER_CONSTANT, 0);
   for (int y = 0; y < coarse.rows; ++y) {
     for (int x = 0; x < coarse.cols; ++x) {
       coarse.at<std::uint8_t>(y, x) =
-          repeated(region.ptr<std::uint8_t>(), x + cells.x, y + cells.y, region.cols, region.rows);
+          region.at<std::uint8_t>(std::clamp(box.y - rim + y, 0, region.rows - 1),
+                                  std::clamp(box.x - rim + x, 0, region.cols - 1));
     }
   }
   cv::Mat inside;
@@ -117,35 +144,45 @@ void refine_region(const Image<Bgr>& image, const cv::Mat& region, int scale, Ma
   cv::erode(coarse, inside, square(2 * inward + 1));
   cv::dilate(coarse, not_outside, square(2 * outward + 1));
 
-  const Rect part{cells.x * scale, cells.y * scale, cells.width * scale, cells.height * scale};
-  cv::Mat colors(part.height, part.width, CV_8UC3);
+  const Rect part{(window.x + box.x - rim) * scale, (window.y + box.y - rim) * scale,
+                  coarse.cols * scale, coarse.rows * scale};
+  const Rect visible = intersect(part, image.bounds());
+  cv::Mat colors;
+  const cv::Rect crop(visible.x, visible.y, visible.width, visible.height);
+  cv::copyMakeBorder(as_mat(image)(crop), colors, visible.y - part.y,
+                     part.bottom() - visible.bottom(), visible.x - part.x,
+                     part.right() - visible.right(), cv::BORDER_REPLICATE | cv::BORDER_ISOLATED);
   cv::Mat labels(part.height, part.width, CV_32S);
   for (int y = 0; y < part.height; ++y) {
-    for (int x = 0; x < part.width; ++x) {
-      const Bgr color =
-          repeated(image.data(), x + part.x, y + part.y, image.width(), image.height());
-      colors.at<cv::Vec3b>(y, x) = {color.b, color.g, color.r};
-      const int cell_x = x / scale;
-      const int cell_y = y / scale;
-      int& label = labels.at<int>(y, x);
-      if (inside.at<std::uint8_t>(cell_y, cell_x)) {
-        label = object;
-      } else {
-        label = not_outside.at<std::uint8_t>(cell_y, cell_x) ? 0 : background;
-      }
+    int* const label = labels.ptr<int>(y);
+    if (y % scale != 0) {
+      std::copy_n(labels.ptr<int>(y - 1), part.width, label);
+      continue;
+    }
+    for (int x = 0; x < coarse.cols; ++x) {
+      const int not_object = not_outside.at<std::uint8_t>(y / scale, x) != 0 ? 0 : background;
+      const int value = inside.at<std::uint8_t>(y / scale, x) != 0 ? object : not_object;
+      std::fill_n(label + x * scale, scale, value);
     }
   }
   cv::GaussianBlur(colors, colors, {3, 3}, 0);
   cv::watershed(colors, labels);
 
-  const Rect visible = intersect(grow(part, -1), image.bounds());
+  object_mask.resize(visible.width, visible.height);
   for (int y = visible.y; y < visible.bottom(); ++y) {
+    const int* const label = labels.ptr<int>(y - part.y) - part.x;
+    std::uint8_t* const mask = object_mask.row(y - visible.y) - visible.x;
+    const bool outermost_row = y == part.y || y == part.bottom() - 1;
     for (int x = visible.x; x < visible.right(); ++x) {
-      int label = labels.at<int>(y - part.y, x - part.x);
-      if (label == -1) label = nearest_side(colors, labels, x - part.x, y - part.y);
-      if (label == object) mask(x, y) = 255;
+      int side = label[x];
+      if (side == -1) {
+        const bool outermost = outermost_row || x == part.x || x == part.right() - 1;
+        side = outermost ? background : nearest_side(colors, labels, x - part.x, y - part.y);
+      }
+      mask[x] = side == object ? 255 : 0;
     }
   }
+  return visible;
 }
 
 }  // namespace diminish

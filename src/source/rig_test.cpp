@@ -80,7 +80,7 @@ TEST(Rig, EachWrongValueIsNamed) {
     const char* message;
   } cases[] = {
       {"width: 640", "width: 0",
-       "rig.yaml:1: color.width: expected a whole number from 1 to 16384"},
+       "rig.yaml:1: color.width: expected a whole number from 8 to 16384"},
       {"height: 480", "height: 16385", "rig.yaml:1: color.height: "},
       {"height: 480, ", "", "rig.yaml:1: color: missing key 'height'"},
       {"width: 640", "wdith: 640", "rig.yaml:1: color.wdith: unknown key, expected one of width, "},
