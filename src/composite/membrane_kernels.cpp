@@ -40,6 +40,13 @@ HWY_INLINE Vector Zero() {
   return hn::Zero(Floats());
 }
 
+/// The lanes whose bits are set, from bit i on.
+HWY_INLINE Mask LoadBits(unsigned bits, std::ptrdiff_t i) {
+  alignas(8) std::uint8_t bytes[8] = {};
+  bytes[0] = static_cast<std::uint8_t>(bits >> i);
+  bytes[1] = static_cast<std::uint8_t>(bits >> (i + 8));
+  return hn::LoadMaskBits(Floats(), bytes);
+}
 /// Calls visit(column) for each block of a row.
 template <class Visit>
 HWY_INLINE void ForEachBlock(const std::vector<MembraneLevel::Span>& spans,
@@ -107,14 +114,10 @@ HWY_INLINE unsigned EvenBits(std::uint32_t bits) {
 
 /// `value` where the bit is set, else 0; even and odd cells apart.
 HWY_INLINE void StoreBits(std::uint32_t bits, float value, float* even, std::ptrdiff_t pitch) {
-  const Floats d;
   for (int parity = 0; parity < 2; ++parity) {
     const unsigned half = EvenBits(bits >> parity);
     for (std::ptrdiff_t i = 0; i < lanes; i += VectorSize()) {
-      alignas(8) std::uint8_t bytes[8] = {};
-      bytes[0] = static_cast<std::uint8_t>(half >> i);
-      bytes[1] = static_cast<std::uint8_t>(half >> (i + 8));
-      Store(hn::IfThenElseZero(hn::LoadMaskBits(d, bytes), Set(value)), even + parity * pitch + i);
+      Store(hn::IfThenElseZero(LoadBits(half, i), Set(value)), even + parity * pitch + i);
     }
   }
 }
@@ -200,15 +203,53 @@ HWY_INLINE Vector ConductanceToFixed(Vector across, Vector inside, Vector far_fi
                             hn::IfThenElse(IsFixed(far_first), to_first, further));
 }
 
-/// A row (or column) of fine cells from a coarse cell to the one beside it.
+/// Two rows (or columns) of fine cells from a coarse cell to the one beside it.
 struct EdgeRow {
   Vector near_first, near_second, far_first, far_second;  ///< inverse diagonals
   Vector inside, across, beyond;                          ///< the edges between these four
 };
-HWY_INLINE Vector CoarseWeight(const EdgeRow& p, const EdgeRow& q, Mask near_fixed,
-                               Mask far_fixed) {
+/// The edges from one row to the other, between the cells that touch the other coarse cell.
+struct Links {
+  Vector near, far;
+};
+
+/// a and b one after the other.
+HWY_INLINE Vector InSeries(Vector a, Vector b) {
+  return hn::Div(hn::Mul(a, b), hn::Max(hn::Add(a, b), Set(1e-12F)));
+}
+
+/// From a coarse cell's centre to the fine cell that an edge across starts from: half a fine edge
+/// inside its row, and what the other row has to spare by way of the link.
+/// outer: the inverse diagonal of the row's other cell; without one the centre is no nearer.
+HWY_INLINE Vector ConductanceFromCenter(Vector outer, Vector inside, Vector other_outer,
+                                        Vector other_inside, Vector link, Vector spare) {
+  const auto half_edge = [](Vector cell, Vector edge) HWY_ATTR {
+    // A coarse cell that has a gap inside must not come loose: a correction that is too large
+    // does harm, one that is too small is made up for in the next cycle.
+    const Vector least = hn::Max(edge, Set(0.25F));
+    return hn::Mul(Set(2.F), hn::IfThenElse(hn::Eq(cell, Zero()), Set(1.F), least));
+  };
+  return hn::MulAdd(spare, InSeries(half_edge(other_outer, other_inside), link),
+                    half_edge(outer, inside));
+}
+
+/// Between the centres of two coarse cells: what crosses in the first row. Where only one row
+/// crosses, however often that happens from level to level, resistances so add up as those of a
+/// narrow gap do, and parts that hang together by a few pixels are neither torn nor glued.
+HWY_INLINE Vector RowConductance(const EdgeRow& row, const EdgeRow& other, const Links& links) {
+  const Vector spare =
+      hn::Div(hn::Max(hn::Sub(row.across, other.across), Zero()), hn::Max(row.across, Set(1e-12F)));
+  const Vector near = ConductanceFromCenter(row.near_first, row.inside, other.near_first,
+                                            other.inside, links.near, spare);
+  const Vector far = ConductanceFromCenter(row.far_second, row.beyond, other.far_second,
+                                           other.beyond, links.far, spare);
+  return InSeries(row.across, InSeries(near, far));
+}
+
+HWY_INLINE Vector CoarseWeight(const EdgeRow& p, const EdgeRow& q, const Links& links,
+                               Mask near_fixed, Mask far_fixed) {
   const Floats d;
-  const Vector plain = hn::Mul(Set(0.5F), hn::Add(p.across, q.across));
+  const Vector plain = hn::Add(RowConductance(p, q, links), RowConductance(q, p, links));
   const Mask any_fixed = hn::Or(near_fixed, far_fixed);
   if (hn::AllFalse(d, any_fixed)) return plain;
   const Vector to_far = hn::Add(ConductanceToFixed(p.across, p.beyond, p.far_first, p.far_second),
@@ -248,13 +289,13 @@ HWY_INLINE void CoarsenHalf(const MembraneLevel& fine, int y, int column, int of
     Store(CoarseWeight(
               {own.a, own.b, beside.a, beside.b, horizontal.a, horizontal.b, Load(right + 1)},
               {own.c, own.d, beside.c, beside.d, horizontal.c, horizontal.d, Load(right + row + 1)},
-              fixed, beside.AnyFixed()),
+              {vertical.b, Load(down + 1)}, fixed, beside.AnyFixed()),
           cells.right + to);
     Store(
         CoarseWeight(
             {own.a, own.c, below.a, below.c, vertical.a, vertical.c, Load(down + 2 * row)},
             {own.b, own.d, below.b, below.d, vertical.b, vertical.d, Load(down + 2 * row + pitch)},
-            fixed, below.AnyFixed()),
+            {horizontal.c, Load(right + 2 * row)}, fixed, below.AnyFixed()),
         cells.down + to);
     Store(hn::IfThenElseZero(fixed, Set(-1.F)), cells.inverse + to);
     const auto one_if = [](Mask mask) { return hn::IfThenElseZero(mask, Set(1.F)); };
@@ -373,18 +414,11 @@ struct Neighbours {
 struct EdgeMasks {
   Mask left, right, up, down;
 
-  HWY_INLINE EdgeMasks(const std::uint16_t* edges, std::ptrdiff_t i) {
-    const auto mask = [i](std::uint16_t bits) HWY_ATTR {
-      alignas(8) std::uint8_t bytes[8] = {};
-      bytes[0] = static_cast<std::uint8_t>(bits >> i);
-      bytes[1] = static_cast<std::uint8_t>(bits >> (i + 8));
-      return hn::LoadMaskBits(Floats(), bytes);
-    };
-    left = mask(edges[0]);
-    right = mask(edges[1]);
-    up = mask(edges[2]);
-    down = mask(edges[3]);
-  }
+  HWY_INLINE EdgeMasks(const std::uint16_t* edges, std::ptrdiff_t i)
+      : left(LoadBits(edges[0], i)),
+        right(LoadBits(edges[1], i)),
+        up(LoadBits(edges[2], i)),
+        down(LoadBits(edges[3], i)) {}
   HWY_INLINE Vector Sum(const Neighbours& n) const {
     return hn::Add(hn::Add(hn::IfThenElseZero(left, n.left), hn::IfThenElseZero(right, n.right)),
                    hn::Add(hn::IfThenElseZero(up, n.up), hn::IfThenElseZero(down, n.down)));

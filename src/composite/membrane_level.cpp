@@ -90,7 +90,7 @@ void MembraneLevel::spread(Tile from, Tile to) {
   }
 }
 
-void MembraneLevel::choose_tiles() {
+void MembraneLevel::choose_tiles(bool may_be_smooth) {
   for (int row = 0; row < tile_rows; ++row) {
     for (int column = 0; column < tile_columns; ++column) {
       int plain = 0;
@@ -99,9 +99,10 @@ void MembraneLevel::choose_tiles() {
         plain += block(y, column) == Block::plain ? 1 : 0;
         empty += block(y, column) == Block::empty ? 1 : 0;
       }
-      state(column, row) = empty == tile_height   ? Tile::empty
-                           : plain == tile_height ? Tile::smooth
-                                                  : Tile::active;
+      const bool smooth = may_be_smooth && plain == tile_height;
+      state(column, row) = empty == tile_height ? Tile::empty
+                           : smooth             ? Tile::smooth
+                                                : Tile::active;
     }
   }
   // Through `ghost`, so that a tile made active does not make its own neighbours active.

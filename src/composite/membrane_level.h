@@ -69,8 +69,8 @@ struct MembraneLevel {
 
   /// Makes room for width x height cells and forgets the last problem.
   void begin(int width, int height);
-  /// From the blocks, decides the tiles' states.
-  void choose_tiles();
+  /// From the blocks, decides the tiles' states; some are smooth only if they may be.
+  void choose_tiles(bool may_be_smooth);
 
   /// Where a block's cells of one parity begin in arrays of one value a cell, and of three.
   std::ptrdiff_t at(int y, int parity, int column) const {

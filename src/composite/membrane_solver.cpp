@@ -13,8 +13,19 @@ namespace {
 using Block = MembraneLevel::Block;
 constexpr int tile_width = MembraneLevel::tile_width;
 
-constexpr int coarsest_sweeps = 8;
 constexpr int max_cycles = 12;
+/// On the level that MembraneCoarsest corrects.
+constexpr int coarsest_sweeps = 4;
+/// Multiplications that its factorization may take.
+constexpr double most_work = 2e6;
+
+/// The squared error after a cycle, in terms of its squared change, if further ones reduce it at
+/// the rate at which it was reduced before. At least 1: what is said of the first cycle is a guess.
+double left_of_error(double change_before, double change) {
+  if (change_before <= 0) return 1;
+  const double rate = std::min(0.95, std::sqrt(change / change_before));
+  return std::max(1.0, std::pow(rate / (1 - rate), 2));
+}
 
 int half(int cells) {
   return (cells + 1) / 2;
@@ -105,7 +116,10 @@ const std::vector<LooseRun>& MembraneSolver::take_out_loose_parts() {
 
 void MembraneSolver::build() {
   level_count_ = 1;
-  for (int w = width_, h = height_; w > 1 || h > 1; w = half(w), h = half(h)) ++level_count_;
+  for (int w = width_, h = height_; MembraneCoarsest::work(w, h) > most_work; ++level_count_) {
+    w = half(w);
+    h = half(h);
+  }
   if (levels_.size() < level_count_) levels_.resize(level_count_);
 
   MembraneLevel& finest = levels_.front();
@@ -120,7 +134,7 @@ void MembraneSolver::build() {
           cells[column] == ~0U && irregular[column] == 0 ? Block::plain : Block::general;
     }
   }
-  finest.choose_tiles();
+  finest.choose_tiles(level_count_ > 1);
   finest.has_sources = !sources_.empty();
   membrane::set_weights(cells_.data(), fixed_.data(), words_per_row_, finest);
   const auto place = [&](const Boundary& boundary, int channel) {
@@ -144,10 +158,11 @@ void MembraneSolver::build() {
     MembraneLevel& coarse = levels_[l];
     coarse.begin(half(fine.width), half(fine.height));
     coarsen_blocks(fine, coarse);
-    coarse.choose_tiles();
+    coarse.choose_tiles(l + 1 < level_count_);
     membrane::coarsen(fine, coarse);
     membrane::invert_diagonal(coarse);
   }
+  coarsest_.build(levels_[level_count_ - 1]);
 }
 
 void MembraneSolver::coarsen_blocks(const MembraneLevel& fine, MembraneLevel& coarse) const {
@@ -172,9 +187,9 @@ double MembraneSolver::cycle(std::size_t l, bool from_zero) {
   float* values = from_zero ? level.error.data() : level.x.data();
   membrane::relax(level, right_side, values, from_zero);
   if (l + 1 == level_count_) {
-    for (int sweep = 1; sweep < coarsest_sweeps; ++sweep) {
-      membrane::relax(level, right_side, values, false);
-    }
+    for (int i = 1; i < coarsest_sweeps; ++i) membrane::relax(level, right_side, values, false);
+    coarsest_.correct(level, right_side, values);
+    for (int i = 0; i < coarsest_sweeps; ++i) membrane::relax(level, right_side, values, false);
     return 0;
   }
   MembraneLevel& coarse = levels_[l + 1];
@@ -192,18 +207,22 @@ void MembraneSolver::solve(float tolerance) {
   cycles_ = 0;
   if (size_ == 0) return;
   build();
-  cycle(level_count_ - 1, false);
-  const double limit = static_cast<double>(tolerance) * static_cast<double>(tolerance) *
-                       static_cast<double>(channels) * static_cast<double>(size_);
+  const std::size_t last = level_count_ - 1;
+  for (int i = 0; i < (last == 0 ? max_cycles : 2); ++i) cycle(last, false);
+  const double finest_limit = static_cast<double>(tolerance) * static_cast<double>(tolerance) *
+                              static_cast<double>(channels) * static_cast<double>(size_);
   for (std::size_t l = level_count_ - 1; l-- > 0;) {
     MembraneLevel& level = levels_[l];
     membrane::extend_over_fixed(levels_[l + 1], levels_[l + 1].x.data());
     membrane::prolong(levels_[l + 1], levels_[l + 1].x.data(), false, level, level.x.data());
-    const int most = l == 0 ? max_cycles : 1;
+    const double limit = std::ldexp(finest_limit, -2 * static_cast<int>(l));
+    double before = 0;
+    const int most = l == 0 ? max_cycles : 2;
     for (int i = 0; i < most; ++i) {
       const double change = cycle(l, false);
       if (l == 0) ++cycles_;
-      if (change < limit) break;
+      if (change * left_of_error(before, change) < limit) break;
+      before = change;
     }
   }
   for (std::size_t l = level_count_ - 1; l-- > 1;) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "composite/connected_runs.h"
+#include "composite/membrane_coarsest.h"
 #include "composite/membrane_level.h"
 
 namespace diminish {
@@ -116,6 +117,7 @@ class MembraneSolver {
   std::vector<LooseRun> loose_;
   std::vector<MembraneLevel> levels_;
   std::size_t level_count_ = 0;
+  MembraneCoarsest coarsest_;
   int cycles_ = 0;
 };
 
