@@ -1,10 +1,10 @@
 #include "pose/marker_pose.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <opencv2/calib3d.hpp>
-#include <opencv2/core/eigen.hpp>
 #include <vector>
 
 namespace diminish {
@@ -12,41 +12,90 @@ namespace {
 
 /// A marker's corners as pixels of an ideal camera: no lens, focal length as the real one's.
 struct IdealView {
-  std::vector<cv::Point2d> pixels;
-  cv::Matx33d camera_matrix;
+  std::array<Eigen::Vector2d, 4> pixels;
+  double fx, fy;
 };
 
 IdealView undistort(const std::array<Eigen::Vector2d, 4>& corners, const Lens& lens) {
-  const double fx = lens.intrinsics().fx;
-  const double fy = lens.intrinsics().fy;
-  IdealView view{{}, {fx, 0, 0, 0, fy, 0, 0, 0, 1}};
-  for (const Eigen::Vector2d& corner : corners) {
-    const Eigen::Vector2d ray = lens.undistort(corner);
-    view.pixels.emplace_back(ray.x() * fx, ray.y() * fy);
+  IdealView view{{}, lens.intrinsics().fx, lens.intrinsics().fy};
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Eigen::Vector2d ray = lens.undistort(corners[i]);
+    view.pixels[i] = {ray.x() * view.fx, ray.y() * view.fy};
   }
   return view;
 }
 
-bool is_convex_clockwise(const std::vector<cv::Point2d>& p) {
+bool is_convex_clockwise(const std::array<Eigen::Vector2d, 4>& p) {
   for (std::size_t i = 0; i < 4; ++i) {
-    const cv::Point2d a = p[(i + 1) % 4] - p[i];
-    const cv::Point2d b = p[(i + 2) % 4] - p[(i + 1) % 4];
+    const Eigen::Vector2d a = p[(i + 1) % 4] - p[i];
+    const Eigen::Vector2d b = p[(i + 2) % 4] - p[(i + 1) % 4];
     constexpr double min_sine = 0.02;
-    if (!(a.cross(b) > min_sine * cv::norm(a) * cv::norm(b))) return false;
+    if (!(a.x() * b.y() - a.y() * b.x() > min_sine * a.norm() * b.norm())) return false;
   }
   return true;
 }
 
-double reprojection_error(const std::vector<cv::Point3d>& points, const IdealView& view,
-                          const cv::Vec3d& rotation, const cv::Vec3d& translation) {
-  std::vector<cv::Point2d> projected;
-  cv::projectPoints(points, rotation, translation, view.camera_matrix, cv::noArray(), projected);
+using Corners = std::array<Eigen::Vector3d, 4>;
+
+/// Root mean square over the corners, pixels.
+double reprojection_error(const Corners& corners, const IdealView& view,
+                          const RigidTransform& camera_from_corners) {
   double squares = 0;
   for (std::size_t i = 0; i < 4; ++i) {
-    const cv::Point2d difference = projected[i] - view.pixels[i];
-    squares += difference.dot(difference);
+    const Eigen::Vector3d p = camera_from_corners * corners[i];
+    const Eigen::Vector2d projected(view.fx * p.x() / p.z(), view.fy * p.y() / p.z());
+    squares += (projected - view.pixels[i]).squaredNorm();
   }
   return std::sqrt(squares / 4);
+}
+
+Eigen::Matrix3d rotation_by(const Eigen::Vector3d& axis_times_angle) {
+  const double angle = axis_times_angle.norm();
+  if (angle < 1e-300) return Eigen::Matrix3d::Identity();
+  return Eigen::AngleAxisd(angle, axis_times_angle / angle).toRotationMatrix();
+}
+
+/// Levenberg-Marquardt on the reprojection error; returns what is left of it, pixels.
+double refine(const Corners& corners, const IdealView& view, RigidTransform& camera_from_corners) {
+  constexpr int max_steps = 40;
+  double error = reprojection_error(corners, view, camera_from_corners);
+  double damping = 1e-3;
+  for (int step = 0; step < max_steps && std::isfinite(error); ++step) {
+    Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
+    Eigen::Matrix<double, 6, 1> gradient = Eigen::Matrix<double, 6, 1>::Zero();
+    for (std::size_t i = 0; i < 4; ++i) {
+      // In camera coordinates, by the rotation about the marker's centre, then the translation.
+      const Eigen::Vector3d arm = camera_from_corners.rotation * corners[i];
+      const Eigen::Vector3d p = arm + camera_from_corners.translation;
+      Eigen::Matrix<double, 2, 3> by_point;
+      by_point << view.fx / p.z(), 0, -view.fx * p.x() / (p.z() * p.z()),  //
+          0, view.fy / p.z(), -view.fy * p.y() / (p.z() * p.z());
+      Eigen::Matrix3d by_rotation;  // minus the cross product's matrix
+      by_rotation << 0, arm.z(), -arm.y(), -arm.z(), 0, arm.x(), arm.y(), -arm.x(), 0;
+      Eigen::Matrix<double, 2, 6> jacobian;
+      jacobian << by_point * by_rotation, by_point;
+      const Eigen::Vector2d projected(view.fx * p.x() / p.z(), view.fy * p.y() / p.z());
+      normal += jacobian.transpose() * jacobian;
+      gradient += jacobian.transpose() * (view.pixels[i] - projected);
+    }
+    Eigen::Matrix<double, 6, 6> damped = normal;
+    damped.diagonal() *= 1 + damping;
+    const Eigen::Matrix<double, 6, 1> change = damped.ldlt().solve(gradient);
+    const RigidTransform next{rotation_by(change.head<3>()) * camera_from_corners.rotation,
+                              camera_from_corners.translation + change.tail<3>()};
+    const double next_error = reprojection_error(corners, view, next);
+    if (!(next_error < error)) {
+      damping *= 10;
+      if (damping > 1e6) break;
+      continue;
+    }
+    const bool done = error - next_error <= 1e-12 * error;
+    camera_from_corners = next;
+    error = next_error;
+    damping /= 10;
+    if (done) break;
+  }
+  return error;
 }
 
 /// The solver works on a marker frame with y down and z into the marker: an upright marker that
@@ -54,13 +103,10 @@ double reprojection_error(const std::vector<cv::Point3d>& points, const IdealVie
 /// degrees, where rotation vectors jump and OpenCV's solvers fail.
 const Eigen::Matrix3d solver_from_marker = Eigen::Vector3d(1, -1, -1).asDiagonal();
 
+/// camera_from_solver.
 RigidTransform to_transform(const cv::Vec3d& rotation, const cv::Vec3d& translation) {
-  cv::Matx33d matrix;
-  cv::Rodrigues(rotation, matrix);
-  RigidTransform camera_from_solver;
-  cv::cv2eigen(matrix, camera_from_solver.rotation);
-  camera_from_solver.translation = {translation[0], translation[1], translation[2]};
-  return camera_from_solver * RigidTransform{solver_from_marker, Eigen::Vector3d::Zero()};
+  return {rotation_by({rotation[0], rotation[1], rotation[2]}),
+          {translation[0], translation[1], translation[2]}};
 }
 
 struct Solution {
@@ -92,22 +138,26 @@ std::optional<MarkerPose> estimate_marker_pose(const std::array<Eigen::Vector2d,
                                                double size_m, const Lens& lens) {
   const IdealView view = undistort(corners, lens);
   if (!is_convex_clockwise(view.pixels)) return std::nullopt;
-  std::vector<cv::Point3d> points;
-  for (const Eigen::Vector3d& in_marker : marker_corners(size_m)) {
-    const Eigen::Vector3d corner = solver_from_marker * in_marker;
-    points.emplace_back(corner.x(), corner.y(), corner.z());
+  const RigidTransform solver_frame{solver_from_marker, Eigen::Vector3d::Zero()};
+  Corners points = marker_corners(size_m);
+  std::vector<cv::Point3d> object_points;
+  std::vector<cv::Point2d> image_points;
+  for (std::size_t i = 0; i < 4; ++i) {
+    points[i] = solver_frame * points[i];
+    object_points.emplace_back(points[i].x(), points[i].y(), points[i].z());
+    image_points.emplace_back(view.pixels[i].x(), view.pixels[i].y());
   }
   std::vector<cv::Vec3d> rotations;
   std::vector<cv::Vec3d> translations;
-  cv::solvePnPGeneric(points, view.pixels, view.camera_matrix, cv::noArray(), rotations,
+  cv::solvePnPGeneric(object_points, image_points,
+                      cv::Matx33d(view.fx, 0, 0, 0, view.fy, 0, 0, 0, 1), cv::noArray(), rotations,
                       translations, false, cv::SOLVEPNP_IPPE);
   std::vector<Solution> solutions;
   for (std::size_t i = 0; i < rotations.size(); ++i) {
-    cv::solvePnPRefineLM(points, view.pixels, view.camera_matrix, cv::noArray(), rotations[i],
-                         translations[i]);
-    const double error = reprojection_error(points, view, rotations[i], translations[i]);
-    if (std::isfinite(error) && translations[i][2] > 0) {
-      solutions.push_back({to_transform(rotations[i], translations[i]), error});
+    RigidTransform pose = to_transform(rotations[i], translations[i]);
+    const double error = refine(points, view, pose);
+    if (std::isfinite(error) && pose.translation.z() > 0) {
+      solutions.push_back({pose * solver_frame, error});
     }
   }
   if (solutions.empty()) return std::nullopt;
