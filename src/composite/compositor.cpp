@@ -8,14 +8,20 @@ namespace diminish {
 namespace {
 
 /// Copies the camera's picture and sorts the mask's pixels into seen and missing.
+/// missing_box: where `missing` was set before; becomes where it is now.
 void sort_pixels(const Image<Bgr>& camera, const OcclusionMasks& masks, DiminishedFrame& result,
-                 Mask& missing) {
+                 Mask& missing, Rect& missing_box) {
   result.picture = camera;
   result.mask = masks.color;
   result.provenance.resize(camera.width(), camera.height(), provenance::camera);
-  missing.resize(camera.width(), camera.height(), 0);
+  if (missing.width() == camera.width() && missing.height() == camera.height()) {
+    missing.fill(missing_box, 0);
+  } else {
+    missing.resize(camera.width(), camera.height(), 0);
+  }
   FrameReport& report = result.report;
   const Rect objects = bounding_box(masks.color);
+  missing_box = objects;
   const Rect drawn = intersect(objects, result.reconstruction.region);
   for (int y = objects.y; y < objects.bottom(); ++y) {
     const std::uint8_t* mask = masks.color.row(y);
@@ -51,7 +57,7 @@ void Compositor::composite(const Image<Bgr>& camera, const OcclusionMasks& masks
   StageTimes& milliseconds = result.report.milliseconds;
   {
     const ScopedTimer timer(milliseconds, Stage::compositing);
-    sort_pixels(camera, masks, result, missing_);
+    sort_pixels(camera, masks, result, missing_, missing_box_);
   }
   if (result.report.valid_pixels > 0) {
     const ScopedTimer timer(milliseconds, Stage::color_correction);

@@ -27,6 +27,7 @@ class Compositor {
   std::map<std::string, std::unique_ptr<ColorCorrector>> correctors_;
   std::map<std::string, std::unique_ptr<Inpainter>> inpainters_;
   Mask missing_;
+  Rect missing_box_;
 };
 
 }  // namespace diminish

@@ -130,10 +130,9 @@ HWY_INLINE void Fill(float value, float* even, std::ptrdiff_t pitch) {
 }
 
 void SetWeights(const std::uint32_t* cells, const std::uint32_t* fixed,
-                std::ptrdiff_t words_per_row, MembraneLevel& level) {
-  level.edges.resize(level.blocks.size() * 8);
+                std::ptrdiff_t words_per_row, Rows rows, MembraneLevel& level) {
   const std::ptrdiff_t pitch = level.pitch;
-  for (int y = 0; y < level.rows(); ++y) {
+  for (int y = rows.first; y < rows.last; ++y) {
     ForEachBlock(level.stored, level.stored_rows, y, [&](int column) {
       const std::ptrdiff_t at = level.at(y, 0, column);
       if (level.block(y, column) == Block::empty) return;
@@ -331,10 +330,10 @@ HWY_INLINE Tile StateOf(const MembraneLevel& level, int y, int column) {
                                                          : Tile::empty;
 }
 
-void Coarsen(const MembraneLevel& fine, MembraneLevel& coarse) {
+void Coarsen(const MembraneLevel& fine, Rows rows, MembraneLevel& coarse) {
   const std::ptrdiff_t pitch = coarse.pitch;
   CoarseCells cells;
-  for (int y = 0; y < coarse.rows(); ++y) {
+  for (int y = rows.first; y < rows.last; ++y) {
     ForEachBlock(coarse.stored, coarse.stored_rows, y, [&](int column) {
       const std::ptrdiff_t at = coarse.at(y, 0, column);
       const Block kind = coarse.block(y, column);
@@ -429,8 +428,8 @@ struct EdgeMasks {
   }
 };
 
-void InvertDiagonal(MembraneLevel& level) {
-  for (int y = 0; y < level.rows(); ++y) {
+void InvertDiagonal(Rows rows, MembraneLevel& level) {
+  for (int y = rows.first; y < rows.last; ++y) {
     ForEachBlock(level.stored, level.stored_rows, y, [&](int column) {
       if (level.block(y, column) == Block::empty) return;
       if (level.block(y, column) == Block::plain) {
@@ -505,24 +504,35 @@ HWY_INLINE void RelaxParity(const MembraneLevel& level, const float* HWY_RESTRIC
   });
 }
 
+/// Black cells of a row: those that are relaxed second.
 template <Start start>
-HWY_INLINE void RelaxAll(const MembraneLevel& level, const float* right_side, float* values) {
-  // The red cells of a row, then the black ones of the row above, whose neighbours are then all
-  // new: one pass over memory.
-  for (int y = 0; y < level.height; ++y) {
-    RelaxParity<start, true>(level, right_side, values, y, y & 1);
-    if (y > 0) RelaxParity<start, false>(level, right_side, values, y - 1, y & 1);
-  }
-  RelaxParity<start, false>(level, right_side, values, level.height - 1, level.height & 1);
+HWY_INLINE void RelaxBlack(const MembraneLevel& level, const float* right_side, float* values,
+                           int y) {
+  RelaxParity<start, false>(level, right_side, values, y, (y + 1) & 1);
 }
 
-void Relax(const MembraneLevel& level, const float* right_side, float* values, bool from_zero) {
+template <Start start>
+HWY_INLINE void RelaxRows(const MembraneLevel& level, const float* right_side, float* values,
+                          Rows rows) {
+  // The red cells of a row, then the black ones of the row above, whose neighbours are then all
+  // new: one pass over memory.
+  for (int y = rows.first; y < rows.last; ++y) {
+    RelaxParity<start, true>(level, right_side, values, y, y & 1);
+    const bool above_is_seam = y - 1 == rows.first && rows.first > 0;
+    if (y > rows.first && !above_is_seam) RelaxBlack<start>(level, right_side, values, y - 1);
+  }
+  if (rows.last == level.height) RelaxBlack<start>(level, right_side, values, rows.last - 1);
+}
+
+void Relax(const MembraneLevel& level, const float* right_side, float* values, bool from_zero,
+           Rows rows) {
   if (!from_zero) {
-    return values == level.x.data() ? RelaxAll<Start::x>(level, right_side, values)
-                                    : RelaxAll<Start::error>(level, right_side, values);
+    return values == level.x.data() ? RelaxRows<Start::x>(level, right_side, values, rows)
+                                    : RelaxRows<Start::error>(level, right_side, values, rows);
   }
   if (level.has_smooth || level.height < 2) {
-    for (int y = 0; y < level.rows(); ++y) {
+    const int end = rows.last == level.height ? level.rows() : rows.last;
+    for (int y = rows.first; y < end; ++y) {
       ForEachBlock(level.stored, level.stored_rows, y, [&](int column) {
         for (int c = 0; c < channels; ++c) {
           Fill(0.F, values + level.at(y, c, 0, column), level.pitch);
@@ -530,7 +540,20 @@ void Relax(const MembraneLevel& level, const float* right_side, float* values, b
       });
     }
   }
-  RelaxAll<Start::zero>(level, right_side, values);
+  RelaxRows<Start::zero>(level, right_side, values, rows);
+}
+
+void RelaxSeam(const MembraneLevel& level, const float* right_side, float* values, bool from_zero,
+               int row) {
+  for (int y = row - 1; y <= row; ++y) {
+    if (from_zero) {
+      RelaxBlack<Start::zero>(level, right_side, values, y);
+    } else if (values == level.x.data()) {
+      RelaxBlack<Start::x>(level, right_side, values, y);
+    } else {
+      RelaxBlack<Start::error>(level, right_side, values, y);
+    }
+  }
 }
 
 /// A fixed cell stands for a value somewhere between its centre and the next cell's. Gives it the
@@ -729,10 +752,10 @@ class FluxCorrection {
 };
 
 double RestrictResidual(const MembraneLevel& fine, const float* right_side, const float* values,
-                        MembraneLevel& coarse) {
+                        Rows rows, MembraneLevel& coarse) {
   HWY_ALIGN float sums[channels][2 * lanes];
   Vector squares = Zero();
-  for (int y = 0; y < coarse.rows(); ++y) {
+  for (int y = rows.first; y < rows.last; ++y) {
     ForEachBlock(coarse.active, coarse.active_rows, y, [&](int column) HWY_ATTR {
       if (coarse.block(y, column) == Block::empty) return;
       Tile states[2];
@@ -766,9 +789,12 @@ double RestrictResidual(const MembraneLevel& fine, const float* right_side, cons
       }
     });
   }
+  return static_cast<double>(hn::GetLane(hn::SumOfLanes(Floats(), squares)));
+}
+
+void FinishResidual(const MembraneLevel& fine, const float* values, MembraneLevel& coarse) {
   if (fine.has_smooth) FluxCorrection(fine, values, coarse).Apply();
   CollectFromFixed(coarse);
-  return static_cast<double>(hn::GetLane(hn::SumOfLanes(Floats(), squares)));
 }
 
 /// Coarse values around one fine row, blended vertically, in the order of the columns.
@@ -845,10 +871,10 @@ HWY_INLINE Vector BlendColumns(const float* row, std::ptrdiff_t i, int parity) {
 }
 
 template <bool add>
-HWY_INLINE double ProlongAll(const MembraneLevel& coarse, const float* coarse_values,
-                             const MembraneLevel& fine, float* values) {
+HWY_INLINE double ProlongRows(const MembraneLevel& coarse, const float* coarse_values, Rows rows,
+                              const MembraneLevel& fine, float* values) {
   // Two, in turn, so that none is read just after it was written.
-  BlendedRow rows[2];
+  BlendedRow blended[2];
   int turn = 0;
   Vector squares = Zero();
   const auto finish = [&](const BlendedRow& row, int y, int column) HWY_ATTR {
@@ -872,25 +898,25 @@ HWY_INLINE double ProlongAll(const MembraneLevel& coarse, const float* coarse_va
       }
     }
   };
-  for (int y = 0; y < fine.rows(); ++y) {
+  for (int y = rows.first; y < rows.last; ++y) {
     int pending = -1;
     ForEachBlock(fine.stored, fine.stored_rows, y, [&](int column) HWY_ATTR {
       const Block kind = fine.block(y, column);
       if (kind == Block::empty) return;
-      rows[turn].Set(coarse, coarse_values, y, column);
-      if (pending >= 0) finish(rows[1 - turn], y, pending);
+      blended[turn].Set(coarse, coarse_values, y, column);
+      if (pending >= 0) finish(blended[1 - turn], y, pending);
       turn = 1 - turn;
       pending = column;
     });
-    if (pending >= 0) finish(rows[1 - turn], y, pending);
+    if (pending >= 0) finish(blended[1 - turn], y, pending);
   }
   return static_cast<double>(hn::GetLane(hn::SumOfLanes(Floats(), squares)));
 }
 
-double Prolong(const MembraneLevel& coarse, const float* coarse_values, bool add,
+double Prolong(const MembraneLevel& coarse, const float* coarse_values, bool add, Rows rows,
                const MembraneLevel& fine, float* values) {
-  return add ? ProlongAll<true>(coarse, coarse_values, fine, values)
-             : ProlongAll<false>(coarse, coarse_values, fine, values);
+  return add ? ProlongRows<true>(coarse, coarse_values, rows, fine, values)
+             : ProlongRows<false>(coarse, coarse_values, rows, fine, values);
 }
 
 void AddError(MembraneLevel& level) {
@@ -963,7 +989,9 @@ HWY_EXPORT(SetWeights);
 HWY_EXPORT(Coarsen);
 HWY_EXPORT(InvertDiagonal);
 HWY_EXPORT(Relax);
+HWY_EXPORT(RelaxSeam);
 HWY_EXPORT(RestrictResidual);
+HWY_EXPORT(FinishResidual);
 HWY_EXPORT(Prolong);
 HWY_EXPORT(AddError);
 HWY_EXPORT(ExtendOverFixed);
@@ -975,28 +1003,36 @@ void classify_row(const std::uint8_t* keys, std::ptrdiff_t keys_per_row, int wor
   HWY_DYNAMIC_DISPATCH(ClassifyRow)(keys, keys_per_row, words, cells, fixed, irregular);
 }
 void set_weights(const std::uint32_t* cells, const std::uint32_t* fixed,
-                 std::ptrdiff_t words_per_row, MembraneLevel& level) {
-  HWY_DYNAMIC_DISPATCH(SetWeights)(cells, fixed, words_per_row, level);
+                 std::ptrdiff_t words_per_row, Rows rows, MembraneLevel& level) {
+  HWY_DYNAMIC_DISPATCH(SetWeights)(cells, fixed, words_per_row, rows, level);
 }
-void coarsen(const MembraneLevel& fine, MembraneLevel& coarse) {
-  HWY_DYNAMIC_DISPATCH(Coarsen)(fine, coarse);
+void coarsen(const MembraneLevel& fine, Rows rows, MembraneLevel& coarse) {
+  HWY_DYNAMIC_DISPATCH(Coarsen)(fine, rows, coarse);
 }
-void invert_diagonal(MembraneLevel& level) {
-  HWY_DYNAMIC_DISPATCH(InvertDiagonal)(level);
+void invert_diagonal(Rows rows, MembraneLevel& level) {
+  HWY_DYNAMIC_DISPATCH(InvertDiagonal)(rows, level);
 }
-void relax(const MembraneLevel& level, const float* right_side, float* values, bool from_zero) {
-  HWY_DYNAMIC_DISPATCH(Relax)(level, right_side, values, from_zero);
+void relax(const MembraneLevel& level, const float* right_side, float* values, bool from_zero,
+           Rows rows) {
+  HWY_DYNAMIC_DISPATCH(Relax)(level, right_side, values, from_zero, rows);
+}
+void relax_seam(const MembraneLevel& level, const float* right_side, float* values, bool from_zero,
+                int row) {
+  HWY_DYNAMIC_DISPATCH(RelaxSeam)(level, right_side, values, from_zero, row);
 }
 double restrict_residual(const MembraneLevel& fine, const float* right_side, const float* values,
-                         MembraneLevel& coarse) {
-  return HWY_DYNAMIC_DISPATCH(RestrictResidual)(fine, right_side, values, coarse);
+                         Rows rows, MembraneLevel& coarse) {
+  return HWY_DYNAMIC_DISPATCH(RestrictResidual)(fine, right_side, values, rows, coarse);
+}
+void finish_residual(const MembraneLevel& fine, const float* values, MembraneLevel& coarse) {
+  HWY_DYNAMIC_DISPATCH(FinishResidual)(fine, values, coarse);
 }
 void extend_over_fixed(const MembraneLevel& level, float* values) {
   HWY_DYNAMIC_DISPATCH(ExtendOverFixed)(level, values);
 }
-double prolong(const MembraneLevel& coarse, const float* coarse_values, bool add,
+double prolong(const MembraneLevel& coarse, const float* coarse_values, bool add, Rows rows,
                const MembraneLevel& fine, float* values) {
-  return HWY_DYNAMIC_DISPATCH(Prolong)(coarse, coarse_values, add, fine, values);
+  return HWY_DYNAMIC_DISPATCH(Prolong)(coarse, coarse_values, add, rows, fine, values);
 }
 void add_error(MembraneLevel& level) {
   HWY_DYNAMIC_DISPATCH(AddError)(level);

@@ -10,6 +10,12 @@ namespace diminish::membrane {
 // The inner loops of MembraneSolver, vectorised for whatever the processor has. `values` and
 // `right_side` are a level's x and right_side, or its error and residual.
 
+/// Rows [first, last): threads share a level's rows. Where `first` is not 0 and `last` is not the
+/// level's height, they are even.
+struct Rows {
+  int first, last;
+};
+
 /// The key of a pixel with a given value (Dirichlet).
 inline constexpr std::uint8_t fixed_value_key = 255;
 
@@ -21,24 +27,32 @@ void classify_row(const std::uint8_t* keys, std::ptrdiff_t keys_per_row, int wor
 
 /// Sets the weights of the stored blocks of the finest level: 1 between neighbouring cells and from
 /// cells to fixed pixels; marks the fixed pixels.
-/// cells, fixed: as from classify_row, with a margin of one word and one row of zeros.
+/// cells, fixed: as from classify_row, with a margin of one word and one row of zeros. level.edges:
+/// of the right size.
 void set_weights(const std::uint32_t* cells, const std::uint32_t* fixed,
-                 std::ptrdiff_t words_per_row, MembraneLevel& level);
+                 std::ptrdiff_t words_per_row, Rows rows, MembraneLevel& level);
 
-/// Makes the coarser level's weights, right side and fixed values: a cell of 2x2.
-void coarsen(const MembraneLevel& fine, MembraneLevel& coarse);
+/// Makes the coarser level's weights, right side and fixed values: a cell of 2x2. rows: of the
+/// coarser level.
+void coarsen(const MembraneLevel& fine, Rows rows, MembraneLevel& coarse);
 
 /// Computes `inverse` from the weights.
-void invert_diagonal(MembraneLevel& level);
+void invert_diagonal(Rows rows, MembraneLevel& level);
 
 /// One red-black Gauss-Seidel sweep over the active tiles. from_zero: whatever is in `values`, take
-/// it for 0.
-void relax(const MembraneLevel& level, const float* right_side, float* values, bool from_zero);
+/// it for 0. Leaves half of the first and of the last row to relax_seam, unless they are the
+/// level's.
+void relax(const MembraneLevel& level, const float* right_side, float* values, bool from_zero,
+           Rows rows);
+/// The rest of a sweep, where rows before `row` and from `row` on were relaxed apart.
+void relax_seam(const MembraneLevel& level, const float* right_side, float* values, bool from_zero,
+                int row);
 
-/// coarse.residual = what is left of the fine equations after `relax`, summed over 2x2 cells.
-/// Returns the sum of its squares.
+/// coarse.residual = what is left of the fine equations after `relax`, summed over 2x2 cells, in
+/// rows of the coarser level. Returns the sum of its squares. Then, once, finish_residual.
 double restrict_residual(const MembraneLevel& fine, const float* right_side, const float* values,
-                         MembraneLevel& coarse);
+                         Rows rows, MembraneLevel& coarse);
+void finish_residual(const MembraneLevel& fine, const float* values, MembraneLevel& coarse);
 
 /// Continues `values` over fixed cells, so that they interpolate well. To be called once `values`
 /// are relaxed for the last time.
@@ -46,7 +60,8 @@ void extend_over_fixed(const MembraneLevel& level, float* values);
 
 /// Bilinear interpolation from the coarse level's cells that exist to the fine level's stored
 /// blocks; replaces `values` or adds to them. Returns the sum of squares of what was added.
-double prolong(const MembraneLevel& coarse, const float* coarse_values, bool add,
+/// rows: of the fine level.
+double prolong(const MembraneLevel& coarse, const float* coarse_values, bool add, Rows rows,
                const MembraneLevel& fine, float* values);
 
 /// Adds `error` to `x` in the stored blocks.

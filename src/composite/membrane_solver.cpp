@@ -1,5 +1,7 @@
 #include "composite/membrane_solver.h"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -25,6 +27,59 @@ double left_of_error(double change_before, double change) {
   if (change_before <= 0) return 1;
   const double rate = std::min(0.95, std::sqrt(change / change_before));
   return std::max(1.0, std::pow(rate / (1 - rate), 2));
+}
+
+using membrane::Rows;
+
+/// Where a level's rows are divided between two threads; 0: they are not worth it. The same on
+/// every machine, so that sums are, too.
+int seam(int rows) {
+  constexpr int fewest = 128;
+  constexpr int unit = 2 * MembraneLevel::tile_height;
+  return rows < fewest ? 0 : (rows / 2 + unit - 1) / unit * unit;
+}
+/// Calls visit(rows), in two threads if there are many; returns the sum of what it returns.
+template <class Visit>
+double sum_over_rows(int rows, const Visit& visit) {
+  const int middle = seam(rows);
+  if (middle == 0) return visit(Rows{0, rows});
+  double sums[2];
+  oneapi::tbb::parallel_for(0, 2, [&](int part) {
+    sums[part] = visit(part == 0 ? Rows{0, middle} : Rows{middle, rows});
+  });
+  return sums[0] + sums[1];
+}
+template <class Visit>
+void for_rows(int rows, const Visit& visit) {
+  sum_over_rows(rows, [&](Rows part) {
+    visit(part);
+    return 0.0;
+  });
+}
+
+void relax(const MembraneLevel& level, const float* right_side, float* values, bool from_zero) {
+  for_rows(level.height,
+           [&](Rows rows) { membrane::relax(level, right_side, values, from_zero, rows); });
+  if (const int middle = seam(level.height); middle > 0) {
+    membrane::relax_seam(level, right_side, values, from_zero, middle);
+  }
+}
+double prolong(const MembraneLevel& coarse, const float* coarse_values, bool add,
+               const MembraneLevel& fine, float* values) {
+  return sum_over_rows(fine.rows(), [&](Rows rows) {
+    return membrane::prolong(coarse, coarse_values, add, rows, fine, values);
+  });
+}
+double restrict_residual(const MembraneLevel& fine, const float* right_side, const float* values,
+                         MembraneLevel& coarse) {
+  const double squares = sum_over_rows(coarse.rows(), [&](Rows rows) {
+    return membrane::restrict_residual(fine, right_side, values, rows, coarse);
+  });
+  membrane::finish_residual(fine, values, coarse);
+  return squares;
+}
+void invert_diagonal(MembraneLevel& level) {
+  for_rows(level.rows(), [&](Rows rows) { membrane::invert_diagonal(rows, level); });
 }
 
 int half(int cells) {
@@ -136,7 +191,10 @@ void MembraneSolver::build() {
   }
   finest.choose_tiles(level_count_ > 1);
   finest.has_sources = !sources_.empty();
-  membrane::set_weights(cells_.data(), fixed_.data(), words_per_row_, finest);
+  finest.edges.resize(finest.blocks.size() * 8);
+  for_rows(finest.rows(), [&](Rows rows) {
+    membrane::set_weights(cells_.data(), fixed_.data(), words_per_row_, rows, finest);
+  });
   const auto place = [&](const Boundary& boundary, int channel) {
     return finest.at(boundary.y, channel, boundary.x % 2, boundary.x / tile_width) +
            boundary.x % tile_width / 2;
@@ -151,7 +209,7 @@ void MembraneSolver::build() {
       finest.x.data()[place(boundary, c)] = boundary.value[c];
     }
   }
-  membrane::invert_diagonal(finest);
+  invert_diagonal(finest);
 
   for (std::size_t l = 1; l < level_count_; ++l) {
     const MembraneLevel& fine = levels_[l - 1];
@@ -159,8 +217,8 @@ void MembraneSolver::build() {
     coarse.begin(half(fine.width), half(fine.height));
     coarsen_blocks(fine, coarse);
     coarse.choose_tiles(l + 1 < level_count_);
-    membrane::coarsen(fine, coarse);
-    membrane::invert_diagonal(coarse);
+    for_rows(coarse.rows(), [&](Rows rows) { membrane::coarsen(fine, rows, coarse); });
+    invert_diagonal(coarse);
   }
   coarsest_.build(levels_[level_count_ - 1]);
 }
@@ -185,20 +243,20 @@ double MembraneSolver::cycle(std::size_t l, bool from_zero) {
   MembraneLevel& level = levels_[l];
   const float* right_side = from_zero ? level.residual.data() : level.right_side.data();
   float* values = from_zero ? level.error.data() : level.x.data();
-  membrane::relax(level, right_side, values, from_zero);
+  relax(level, right_side, values, from_zero);
   if (l + 1 == level_count_) {
-    for (int i = 1; i < coarsest_sweeps; ++i) membrane::relax(level, right_side, values, false);
+    for (int i = 1; i < coarsest_sweeps; ++i) relax(level, right_side, values, false);
     coarsest_.correct(level, right_side, values);
-    for (int i = 0; i < coarsest_sweeps; ++i) membrane::relax(level, right_side, values, false);
+    for (int i = 0; i < coarsest_sweeps; ++i) relax(level, right_side, values, false);
     return 0;
   }
   MembraneLevel& coarse = levels_[l + 1];
-  const double residual = membrane::restrict_residual(level, right_side, values, coarse);
+  const double residual = restrict_residual(level, right_side, values, coarse);
   cycle(l + 1, true);
   membrane::extend_over_fixed(coarse, coarse.error.data());
-  const double change = membrane::prolong(coarse, coarse.error.data(), true, level, values);
+  const double change = prolong(coarse, coarse.error.data(), true, level, values);
   if (level.has_smooth) membrane::add_error(coarse);
-  membrane::relax(level, right_side, values, false);
+  relax(level, right_side, values, false);
   // A residual is about four times the error that it stands for.
   return change + residual / 16;
 }
@@ -214,7 +272,7 @@ void MembraneSolver::solve(float tolerance) {
   for (std::size_t l = level_count_ - 1; l-- > 0;) {
     MembraneLevel& level = levels_[l];
     membrane::extend_over_fixed(levels_[l + 1], levels_[l + 1].x.data());
-    membrane::prolong(levels_[l + 1], levels_[l + 1].x.data(), false, level, level.x.data());
+    prolong(levels_[l + 1], levels_[l + 1].x.data(), false, level, level.x.data());
     const double limit = std::ldexp(finest_limit, -2 * static_cast<int>(l));
     double before = 0;
     const int most = l == 0 ? max_cycles : 2;

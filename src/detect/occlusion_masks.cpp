@@ -1,5 +1,7 @@
 #include "detect/occlusion_masks.h"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -46,25 +48,26 @@ void OccluderStage::detect(const Observation& observation, OcclusionMasks& masks
 }
 
 void OccluderStage::clear(OcclusionMasks& masks) const {
-  diminish::clear(rig_.color, masks.color);
   masks.rgbd_color.resize(rig_.rgbd.size());
   masks.rgbd_depth.resize(rig_.rgbd.size());
-  for (std::size_t k = 0; k < rig_.rgbd.size(); ++k) {
-    diminish::clear(rig_.rgbd[k].color, masks.rgbd_color[k]);
-    diminish::clear(rig_.rgbd[k].depth, masks.rgbd_depth[k]);
-  }
+  oneapi::tbb::parallel_for(std::size_t{0}, rig_.rgbd.size() + 1, [&](std::size_t i) {
+    if (i == 0) return diminish::clear(rig_.color, masks.color);
+    diminish::clear(rig_.rgbd[i - 1].color, masks.rgbd_color[i - 1]);
+    diminish::clear(rig_.rgbd[i - 1].depth, masks.rgbd_depth[i - 1]);
+  });
 }
 
 void OccluderStage::grow_by_margins(const Options& options, OcclusionMasks& masks) {
   const auto grow_by = [](int margin_px, Mask& mask, Mask& scratch) {
     if (margin_px > 0) dilate_by_disc(mask, margin_px, scratch);
   };
-  grow_by(options.mask_margin_px, masks.color, scratch_.color);
-  for (std::size_t k = 0; k < rig_.rgbd.size(); ++k) {
+  oneapi::tbb::parallel_for(std::size_t{0}, rig_.rgbd.size() + 1, [&](std::size_t i) {
+    if (i == 0) return grow_by(options.mask_margin_px, masks.color, scratch_.color);
+    const std::size_t k = i - 1;
     const int margin_px = options.rgbd_mask_margin_px;
     grow_by(margin_px, masks.rgbd_color[k], scratch_.rgbd_color[k]);
     grow_by(depth_margin_px(rig_.rgbd[k], margin_px), masks.rgbd_depth[k], scratch_.rgbd_depth[k]);
-  }
+  });
 }
 
 }  // namespace diminish
