@@ -1,5 +1,6 @@
 #include "composite/membrane_picture.h"
 #include "composite/membrane_solver.h"
+#include "core/rows.h"
 #include "diminish/inpainter.h"
 
 namespace diminish {
@@ -17,11 +18,13 @@ class HarmonicInpainting : public Inpainter {
     if (holes.empty()) return true;
     const Rect window = intersect(grow(holes, 1), picture.bounds());
     solver_.begin(window.width, window.height);
-    for (int row = 0; row < window.height; ++row) {
-      const std::uint8_t* mask = missing.row(window.y + row) + window.x;
-      std::uint8_t* keys = solver_.keys(row);
-      for (int i = 0; i < window.width; ++i) keys[i] = mask[i] != 0 ? 1 : MembraneSolver::fixed;
-    }
+    for_rows(window.height, [&](Rows rows) {
+      for (int row = rows.first; row < rows.last; ++row) {
+        const std::uint8_t* mask = missing.row(window.y + row) + window.x;
+        std::uint8_t* keys = solver_.keys(row);
+        for (int i = 0; i < window.width; ++i) keys[i] = mask[i] != 0 ? 1 : MembraneSolver::fixed;
+      }
+    });
     solver_.connect();
     bool anything_known = false;
     solver_.for_each_fixed([&](int x, int y) {

@@ -4,17 +4,12 @@
 #include <cstdint>
 
 #include "composite/membrane_level.h"
+#include "core/rows.h"
 
 namespace diminish::membrane {
 
 // The inner loops of MembraneSolver, vectorised for whatever the processor has. `values` and
 // `right_side` are a level's x and right_side, or its error and residual.
-
-/// Rows [first, last): threads share a level's rows. Where `first` is not 0 and `last` is not the
-/// level's height, they are even.
-struct Rows {
-  int first, last;
-};
 
 /// The key of a pixel with a given value (Dirichlet).
 inline constexpr std::uint8_t fixed_value_key = 255;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/rows.h"
+
 namespace diminish {
 namespace {
 
@@ -52,17 +54,20 @@ void MembraneLevel::begin(int width_, int height_) {
 }
 
 void MembraneLevel::clear_stored() {
-  for (int row = 0; row + 1 < static_cast<int>(stored_rows.size()); ++row) {
-    const auto from = static_cast<std::size_t>(stored_rows[static_cast<std::size_t>(row)]);
-    const auto to = static_cast<std::size_t>(stored_rows[static_cast<std::size_t>(row) + 1]);
-    for (std::size_t i = from; i < to; ++i) {
-      for (int y = row * tile_height; y < (row + 1) * tile_height; ++y) {
-        for (int column = stored[i].first; column < stored[i].last; ++column) {
-          if (block(y, column) != Block::empty) clear_block(y, column);
+  const int count = static_cast<int>(stored_rows.size()) - 1;
+  for_rows(std::max(count, 0) * tile_height, [&](Rows part) {
+    for (int row = part.first / tile_height; row < part.last / tile_height; ++row) {
+      const auto from = static_cast<std::size_t>(stored_rows[static_cast<std::size_t>(row)]);
+      const auto to = static_cast<std::size_t>(stored_rows[static_cast<std::size_t>(row) + 1]);
+      for (std::size_t i = from; i < to; ++i) {
+        for (int y = row * tile_height; y < (row + 1) * tile_height; ++y) {
+          for (int column = stored[i].first; column < stored[i].last; ++column) {
+            if (block(y, column) != Block::empty) clear_block(y, column);
+          }
         }
       }
     }
-  }
+  });
   stored_rows.clear();
 }
 

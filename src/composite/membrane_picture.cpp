@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/rows.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "composite/membrane_picture.cpp"
 #include <hwy/foreach_target.h>
@@ -63,12 +65,12 @@ HWY_EXPORT(WriteBlock);
 
 constexpr int block = MembraneLevel::tile_width;
 
-void write(const MembraneSolver& solver, const Rect& window, const Image<Bgra>* base,
+void write(const MembraneSolver& solver, const Rect& window, const Image<Bgra>* base, Rows rows,
            Image<Bgr>& picture) {
   HWY_ALIGN float solution[3 * block];
   HWY_ALIGN Bgra base_end[block] = {};
   HWY_ALIGN Bgr picture_end[block];
-  for (int row = 0; row < window.height; ++row) {
+  for (int row = rows.first; row < rows.last; ++row) {
     for (int column = 0; column * block < window.width; ++column) {
       if (!solver.any_in_block(row, column)) continue;
       solver.read_block(row, column, solution);
@@ -94,11 +96,11 @@ void write(const MembraneSolver& solver, const Rect& window, const Image<Bgra>* 
 }  // namespace
 
 void write_solution(const MembraneSolver& solver, const Rect& window, Image<Bgr>& picture) {
-  write(solver, window, nullptr, picture);
+  for_rows(window.height, [&](Rows rows) { write(solver, window, nullptr, rows, picture); });
 }
 void add_solution(const MembraneSolver& solver, const Rect& window, const Image<Bgra>& base,
                   Image<Bgr>& picture) {
-  write(solver, window, &base, picture);
+  for_rows(window.height, [&](Rows rows) { write(solver, window, &base, rows, picture); });
 }
 
 }  // namespace diminish

@@ -1,13 +1,12 @@
 #include "composite/membrane_solver.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
 
 #include "composite/channels.h"
 #include "composite/membrane_kernels.h"
+#include "core/rows.h"
 
 namespace diminish {
 namespace {
@@ -27,34 +26,6 @@ double left_of_error(double change_before, double change) {
   if (change_before <= 0) return 1;
   const double rate = std::min(0.95, std::sqrt(change / change_before));
   return std::max(1.0, std::pow(rate / (1 - rate), 2));
-}
-
-using membrane::Rows;
-
-/// Where a level's rows are divided between two threads; 0: they are not worth it. The same on
-/// every machine, so that sums are, too.
-int seam(int rows) {
-  constexpr int fewest = 128;
-  constexpr int unit = 2 * MembraneLevel::tile_height;
-  return rows < fewest ? 0 : (rows / 2 + unit - 1) / unit * unit;
-}
-/// Calls visit(rows), in two threads if there are many; returns the sum of what it returns.
-template <class Visit>
-double sum_over_rows(int rows, const Visit& visit) {
-  const int middle = seam(rows);
-  if (middle == 0) return visit(Rows{0, rows});
-  double sums[2];
-  oneapi::tbb::parallel_for(0, 2, [&](int part) {
-    sums[part] = visit(part == 0 ? Rows{0, middle} : Rows{middle, rows});
-  });
-  return sums[0] + sums[1];
-}
-template <class Visit>
-void for_rows(int rows, const Visit& visit) {
-  sum_over_rows(rows, [&](Rows part) {
-    visit(part);
-    return 0.0;
-  });
 }
 
 void relax(const MembraneLevel& level, const float* right_side, float* values, bool from_zero) {
@@ -110,22 +81,26 @@ void MembraneSolver::begin(int width, int height) {
 }
 
 void MembraneSolver::connect() {
-  size_ = 0;
   for (auto* words : {&cells_, &fixed_, &irregular_}) {
     std::fill_n(words->begin(), words_per_row_, std::uint32_t{0});
     std::fill(words->begin() + (height_ + 1) * words_per_row_, words->end(), std::uint32_t{0});
   }
-  for (int y = 0; y < height_; ++y) {
-    const std::ptrdiff_t row = word_index(y);
-    for (auto* words : {&cells_, &fixed_, &irregular_}) {
-      words->data()[row - 1] = words->data()[row + tile_columns_] = 0;
+  const double size = sum_over_rows(height_, [&](Rows rows) {
+    std::size_t count = 0;
+    for (int y = rows.first; y < rows.last; ++y) {
+      const std::ptrdiff_t row = word_index(y);
+      for (auto* words : {&cells_, &fixed_, &irregular_}) {
+        words->data()[row - 1] = words->data()[row + tile_columns_] = 0;
+      }
+      membrane::classify_row(keys(y), keys_per_row_, tile_columns_, cells_.data() + row,
+                             fixed_.data() + row, irregular_.data() + row);
+      for (int word = 0; word < tile_columns_; ++word) {
+        count += static_cast<std::size_t>(std::popcount(cells_.data()[row + word]));
+      }
     }
-    membrane::classify_row(keys(y), keys_per_row_, tile_columns_, cells_.data() + row,
-                           fixed_.data() + row, irregular_.data() + row);
-    for (int word = 0; word < tile_columns_; ++word) {
-      size_ += static_cast<std::size_t>(std::popcount(cells_.data()[row + word]));
-    }
-  }
+    return static_cast<double>(count);
+  });
+  size_ = static_cast<std::size_t>(size);
 }
 
 void MembraneSolver::set_fixed(int x, int y, const Values& value) {

@@ -1,8 +1,11 @@
+#include <atomic>
+#include <bit>
 #include <cstddef>
 
 #include "composite/channels.h"
 #include "composite/membrane_picture.h"
 #include "composite/membrane_solver.h"
+#include "core/rows.h"
 #include "diminish/color_corrector.h"
 
 namespace diminish {
@@ -33,17 +36,21 @@ class PoissonCorrection : public ColorCorrector {
     const Rect region = intersect(grow(bounding_box(occlusion), 1), reconstruction.region);
     if (region.empty()) return;
     solver_.begin(region.width, region.height);
-    unsigned sources = 0;
-    for (int row = 0; row < region.height; ++row) {
-      const std::uint8_t* mask = occlusion.row(region.y + row) + region.x;
-      const std::uint8_t* source = reconstruction.source.row(region.y + row) + region.x;
-      std::uint8_t* keys = solver_.keys(row);
-      for (int i = 0; i < region.width; ++i) {
-        const std::uint8_t outside = source[i] != 0 ? MembraneSolver::fixed : 0;
-        keys[i] = mask[i] != 0 ? source[i] : outside;
-        sources |= mask[i] != 0 ? source[i] : 0U;
+    std::atomic<unsigned> sources = 0;
+    for_rows(region.height, [&](Rows rows) {
+      unsigned found = 0;
+      for (int row = rows.first; row < rows.last; ++row) {
+        const std::uint8_t* mask = occlusion.row(region.y + row) + region.x;
+        const std::uint8_t* source = reconstruction.source.row(region.y + row) + region.x;
+        std::uint8_t* keys = solver_.keys(row);
+        for (int i = 0; i < region.width; ++i) {
+          const std::uint8_t outside = source[i] != 0 ? MembraneSolver::fixed : 0;
+          keys[i] = mask[i] != 0 ? source[i] : outside;
+          found |= mask[i] != 0 ? source[i] : 0U;
+        }
       }
-    }
+      sources |= found;
+    });
     solver_.connect();
     if (solver_.size() == 0) return;
 
@@ -70,7 +77,8 @@ class PoissonCorrection : public ColorCorrector {
       }
     }
     // One camera has no seams.
-    if ((sources & (sources - 1)) != 0) even_out_seams(reconstruction, region);
+    const bool has_seams = !std::has_single_bit(sources.load());
+    if (has_seams) even_out_seams(reconstruction, region);
     solver_.solve(tolerance_levels);
     add_solution(solver_, region, reconstruction.color, picture);
   }
