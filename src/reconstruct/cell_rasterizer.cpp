@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <climits>
 
 #include "reconstruct/sdct.h"
 
@@ -199,6 +200,11 @@ struct VertexAt {
   std::int64_t y() const { return row.y[index]; }
 };
 
+HWY_INLINE void Touch(int first_row, int last_row, SurfaceBuffer& surface) {
+  surface.first_row = std::min(surface.first_row, first_row);
+  surface.last_row = std::max(surface.last_row, last_row);
+}
+
 /// A triangle of any size, pixel by pixel in 64 bits, as draw_triangle does.
 void DrawLarge(const VertexAt (&p)[3], SurfaceBuffer& surface) {
   const std::int64_t area =
@@ -213,6 +219,8 @@ void DrawLarge(const VertexAt (&p)[3], SurfaceBuffer& surface) {
   const int x1 = std::min(region.right() - 1, static_cast<int>(right >> bits));
   const int y0 = std::max(region.y, static_cast<int>((top + sdct::subpixels - 1) >> bits));
   const int y1 = std::min(region.bottom() - 1, static_cast<int>(bottom >> bits));
+  if (y0 > y1) return;
+  Touch(y0, y1, surface);
   for (int y = y0; y <= y1; ++y) {
     for (int x = x0; x <= x1; ++x) {
       float inverse_z = 0;
@@ -341,6 +349,10 @@ void DrawCells(const VertexRow& upper, const VertexRow& lower, int block, float 
     const IntVector one = hn::Set(di, 1);
     hn::Store(hn::Add(hn::Sub(x1, x0), one), di, cells.columns);
     hn::Store(hn::Add(hn::Sub(y1, y0), one), di, cells.rows);
+    const auto drawn_cells = hn::RebindMask(di, hn::Or(first, second));
+    Touch(hn::GetLane(hn::MinOfLanes(di, hn::IfThenElse(drawn_cells, y0, hn::Set(di, INT_MAX)))),
+          hn::GetLane(hn::MaxOfLanes(di, hn::IfThenElse(drawn_cells, y1, hn::Set(di, INT_MIN)))),
+          surface);
     for (; forward != 0; forward &= forward - 1) {
       DrawCell(cells, std::countr_zero(forward), surface);
     }
@@ -361,9 +373,34 @@ void SurfaceBuffer::clear(const Rect& region_) {
   pitch = region.width + VertexRow::block;
   const auto size = static_cast<std::size_t>(pitch) * static_cast<std::size_t>(region.height);
   inverse_z.assign(size, 0.F);
+  first_row = region.bottom();
+  last_row = region.y - 1;
   // Undefined where inverse_z is 0.
   u_over_z.resize(size);
   v_over_z.resize(size);
+}
+
+void keep_nearest(const SurfaceBuffer& from, int y, SurfaceBuffer& into) {
+  const std::ptrdiff_t row = into.row(y);
+  const float* const new_z = from.inverse_z.data() + row;
+  const float* const new_u = from.u_over_z.data() + row;
+  const float* const new_v = from.v_over_z.data() + row;
+  float* const z = into.inverse_z.data() + row;
+  float* const u = into.u_over_z.data() + row;
+  float* const v = into.v_over_z.data() + row;
+  for (int i = 0; i < into.region.width; ++i) {
+    if (!(new_z[i] > z[i])) continue;
+    z[i] = new_z[i];
+    u[i] = new_u[i];
+    v[i] = new_v[i];
+  }
+}
+
+int count_drawn(const SurfaceBuffer& surface, int y) {
+  const float* const z = surface.inverse_z.data() + surface.row(y);
+  int count = 0;
+  for (int i = 0; i < surface.region.width; ++i) count += z[i] > 0 ? 1 : 0;
+  return count;
 }
 
 void draw_cells(const VertexRow& upper, const VertexRow& lower, int block, float threshold_m,

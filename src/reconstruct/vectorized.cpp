@@ -1,6 +1,9 @@
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <vector>
 
+#include "core/rows.h"
 #include "diminish/error.h"
 #include "diminish/reconstructor.h"
 #include "reconstruct/cell_rasterizer.h"
@@ -13,20 +16,29 @@ namespace {
 /// Colours are looked up eight bytes at a time.
 constexpr int min_texture_side = 8;
 
-/// Draws one RGB-D camera's mesh.
+/// Draws one RGB-D camera's mesh, in two parts that threads may draw side by side: the upper and
+/// the lower half of the depth image.
 class CameraMesh {
  public:
+  static constexpr int parts = 2;
+
   CameraMesh(const RgbdCamera& camera, const Intrinsics& color) : rows_(camera, color) {
-    for (VertexRow& row : vertices_) row.resize(rows_.width());
+    for (Part& part : parts_) {
+      for (VertexRow& row : part.vertices) row.resize(rows_.width());
+    }
   }
 
   /// Two rows of vertices at a time; cells that cannot touch the region are left out by the block.
-  void draw(const VertexRows::Frame& frame, float threshold_m) {
-    surface_.clear(frame.region);
-    rows_.project(frame, 0, vertices_[0]);
-    for (int y = 0; y + 1 < rows_.height(); ++y) {
-      VertexRow& upper = vertices_[y % 2];
-      VertexRow& lower = vertices_[(y + 1) % 2];
+  void draw(const VertexRows::Frame& frame, float threshold_m, int which) {
+    const int middle = rows_.height() / 2;
+    const int first = which == 0 ? 0 : middle;
+    const int last = which == 0 ? middle : rows_.height() - 1;
+    auto& [vertices, surface] = parts_[which];
+    surface.clear(frame.region);
+    rows_.project(frame, first, vertices[first % 2]);
+    for (int y = first; y < last; ++y) {
+      VertexRow& upper = vertices[y % 2];
+      VertexRow& lower = vertices[(y + 1) % 2];
       rows_.project(frame, y + 1, lower);
       const int blocks = static_cast<int>(upper.beyond.size()) - 1;
       for (int block = 0; block < blocks; ++block) {
@@ -39,17 +51,32 @@ class CameraMesh {
           if (!upper.has_colors[i]) rows_.find_colors(frame, y, k, upper);
           if (!lower.has_colors[i]) rows_.find_colors(frame, y + 1, k, lower);
         }
-        draw_cells(upper, lower, block, threshold_m, surface_);
+        draw_cells(upper, lower, block, threshold_m, surface);
       }
     }
   }
 
-  SurfaceBuffer& surface() { return surface_; }
+  /// Brings a row's parts together, once they are drawn; returns the number of pixels drawn.
+  int merge(int y) {
+    SurfaceBuffer& upper = parts_[0].surface;
+    const SurfaceBuffer& lower = parts_[1].surface;
+    if (upper.touches(y) && lower.touches(y)) keep_nearest(lower, y, upper);
+    return count_drawn(surface(y), y);
+  }
+
+  /// The merged surface of a row.
+  const SurfaceBuffer& surface(int y) const {
+    return parts_[parts_[0].surface.touches(y) ? 0 : 1].surface;
+  }
 
  private:
+  struct Part {
+    VertexRow vertices[2];
+    SurfaceBuffer surface;
+  };
+
   VertexRows rows_;
-  VertexRow vertices_[2];
-  SurfaceBuffer surface_;
+  Part parts_[parts];
 };
 
 /// The default: the same rules as ReferenceReconstructor, on vector instructions.
@@ -71,29 +98,24 @@ class VectorizedReconstructor : public Reconstructor {
     drawn_.clear();
     for (std::size_t k = 0; k < meshes_.size(); ++k) {
       if (!frame.rgbd[k].available() || !poses.color_from_depth[k]) continue;
-      meshes_[k].draw({frame.rgbd[k], masks.rgbd_depth[k], masks.rgbd_color[k],
-                       FloatTransform(*poses.color_from_depth[k]), region},
-                      static_cast<float>(options.discontinuity_threshold_m));
       drawn_.push_back({k, 0});
     }
-    if (drawn_.size() > 1) sort_by_coverage();
+    const auto threshold_m = static_cast<float>(options.discontinuity_threshold_m);
+    oneapi::tbb::parallel_for(
+        std::size_t{0}, CameraMesh::parts * drawn_.size(), [&](std::size_t i) {
+          const std::size_t k = drawn_[i / CameraMesh::parts].camera;
+          meshes_[k].draw({frame.rgbd[k], masks.rgbd_depth[k], masks.rgbd_color[k],
+                           FloatTransform(*poses.color_from_depth[k]), region},
+                          threshold_m, static_cast<int>(i % CameraMesh::parts));
+        });
+    merge_parts(region);
     const auto agreement_m = static_cast<float>(options.depth_agreement_m);
-    for (int y = region.y; y < region.bottom(); ++y) {
-      rows_.clear();
-      for (const Drawn& drawn : drawn_) {
-        rows_.emplace_back(meshes_[drawn.camera].surface(), y,
-                           static_cast<std::uint8_t>(1 + drawn.camera));
+    for_rows(region.height, [&](Rows rows) {
+      std::vector<SurfaceRow>& surfaces = surfaces_[rows.first == 0 ? 0 : 1];
+      for (int y = region.y + rows.first; y < region.y + rows.last; ++y) {
+        color_row(frame, y, agreement_m, surfaces, reconstruction);
       }
-      std::uint8_t* source = reconstruction.source.row(y) + region.x;
-      float* depth_m = reconstruction.depth_m.row(y) + region.x;
-      Bgra* colors = reconstruction.color.row(y) + region.x;
-      choose_source(rows_, agreement_m, region.width, source, depth_m);
-      std::fill_n(colors, region.width, Bgra{});
-      for (const SurfaceRow& row : rows_) {
-        look_up_colors(row, frame.rgbd[row.source - 1U].color, region.width, source, depth_m,
-                       colors);
-      }
-    }
+    });
   }
 
  private:
@@ -127,27 +149,43 @@ class VectorizedReconstructor : public Reconstructor {
     image.fill({drawn.x, both.bottom(), drawn.width, drawn.bottom() - both.bottom()}, {});
   }
 
-  /// The camera that sees most of the region first, as merge_layers does.
-  void sort_by_coverage() {
-    for (Drawn& drawn : drawn_) drawn.pixels = count_drawn(meshes_[drawn.camera].surface());
+  /// Then sorts the cameras: the one that sees most of the region first, as merge_layers does.
+  void merge_parts(const Rect& region) {
+    for (Drawn& drawn : drawn_) {
+      drawn.pixels = static_cast<std::size_t>(sum_over_rows(region.height, [&](Rows rows) {
+        double pixels = 0;
+        for (int y = rows.first; y < rows.last; ++y) {
+          pixels += meshes_[drawn.camera].merge(region.y + y);
+        }
+        return pixels;
+      }));
+    }
     std::stable_sort(drawn_.begin(), drawn_.end(),
                      [](const Drawn& a, const Drawn& b) { return a.pixels > b.pixels; });
   }
-  static std::size_t count_drawn(const SurfaceBuffer& surface) {
-    std::size_t count = 0;
-    for (int y = surface.region.y; y < surface.region.bottom(); ++y) {
-      const float* inverse_z = surface.inverse_z.data() + surface.row(y);
-      int in_row = 0;
-      for (int i = 0; i < surface.region.width; ++i) in_row += inverse_z[i] > 0 ? 1 : 0;
-      count += static_cast<std::size_t>(in_row);
+
+  void color_row(const FrameSet& frame, int y, float agreement_m, std::vector<SurfaceRow>& surfaces,
+                 Reconstruction& reconstruction) const {
+    surfaces.clear();
+    for (const Drawn& drawn : drawn_) {
+      surfaces.emplace_back(meshes_[drawn.camera].surface(y), y,
+                            static_cast<std::uint8_t>(1 + drawn.camera));
     }
-    return count;
+    const Rect& region = reconstruction.region;
+    std::uint8_t* source = reconstruction.source.row(y) + region.x;
+    float* depth_m = reconstruction.depth_m.row(y) + region.x;
+    Bgra* colors = reconstruction.color.row(y) + region.x;
+    choose_source(surfaces, agreement_m, region.width, source, depth_m);
+    std::fill_n(colors, region.width, Bgra{});
+    for (const SurfaceRow& row : surfaces) {
+      look_up_colors(row, frame.rgbd[row.source - 1U].color, region.width, source, depth_m, colors);
+    }
   }
 
   Intrinsics color_;
   std::vector<CameraMesh> meshes_;
   std::vector<Drawn> drawn_;
-  std::vector<SurfaceRow> rows_;
+  std::vector<SurfaceRow> surfaces_[2];  ///< of the row that each thread is at
 };
 
 const bool registered = Registry<Reconstructor>::add(
