@@ -155,9 +155,13 @@ class ColorBlobFinder {
     constexpr double all_holes = 1;
     cv::Mat best;
     double best_score = 0;
+    // Most regions stay as they are from one limit to the next.
+    std::vector<Outline> known;
     for (const double factor : round_factors) {
-      for (const Component& component : components(factor * spread, all_holes)) {
+      for (Component& component : components(factor * spread, all_holes)) {
+        if (std::find(known.begin(), known.end(), component.outline) != known.end()) continue;
         const auto shape = fit_round_shape(component.outline, component.region);
+        known.push_back(std::move(component.outline));
         if (!shape || !is_round(*shape)) continue;
         const double score = shape->agreement * shape->agreement * shape->diameter();
         if (score <= best_score) continue;
