@@ -10,6 +10,12 @@
 
 namespace diminish {
 
+namespace detail {
+/// Does nothing, in the library. A program that asks for nothing else there would be linked without
+/// it, and so without what registers itself in it.
+void need_library();
+}  // namespace detail
+
 /// Implementations found by name. Each registers itself in its own file:
 ///   const bool registered = Registry<Inpainter>::add("telea", [] { return ...; });
 /// `Interface::kind` names what is registered ("inpainting method") in messages, and
@@ -46,6 +52,7 @@ class Registry {
 
  private:
   static std::map<std::string, Factory>& entries() {
+    detail::need_library();
     static std::map<std::string, Factory> all;
     return all;
   }

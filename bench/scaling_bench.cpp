@@ -1,0 +1,55 @@
+#include <benchmark/benchmark.h>
+
+#include <opencv2/imgproc.hpp>
+#include <string>
+
+#include "core/mat.h"
+#include "diminish/frame_source.h"
+#include "diminish/pipeline.h"
+
+namespace diminish {
+namespace {
+
+/// A camera's picture and intrinsics at another size.
+void scale(double factor, Intrinsics& intrinsics, Image<Bgr>& image) {
+  cv::Mat scaled;
+  cv::resize(as_mat(image), scaled, {}, factor, factor,
+             factor < 1 ? cv::INTER_AREA : cv::INTER_CUBIC);
+  copy_from(scaled, image);
+  intrinsics.width = image.width();
+  intrinsics.height = image.height();
+  intrinsics.fx *= factor;
+  intrinsics.fy *= factor;
+  intrinsics.cx = (intrinsics.cx + 0.5) * factor - 0.5;
+  intrinsics.cy = (intrinsics.cy + 0.5) * factor - 0.5;
+}
+
+/// Whole frames of a bundled recording with colour pictures of another size (the first argument,
+/// in percent) and with its RGB-D camera several times (the second).
+void scaling(benchmark::State& state) {
+  Recording recording = load_recording(std::filesystem::path(DIMINISH_RECORDINGS_DIR) / "calendar");
+  FrameSet frame;
+  open_recording(recording, {})->next(frame);
+  Rig& rig = recording.rig;
+  scale(static_cast<double>(state.range(0)) / 100, rig.color, frame.color);
+  for (int k = 1; k < state.range(1); ++k) {
+    rig.rgbd.push_back(rig.rgbd.front());
+    rig.rgbd.back().name = "rgbd" + std::to_string(k);
+    frame.rgbd.push_back(frame.rgbd.front());
+  }
+  Pipeline pipeline(rig, recording.scene, {});
+  DiminishedFrame result;
+  for (auto _ : state) pipeline.process(frame, result);
+  state.counters["width"] = rig.color.width;
+  state.counters["height"] = rig.color.height;
+  state.counters["rgbd_cameras"] = static_cast<double>(state.range(1));
+  state.counters["mask_pixels"] = static_cast<double>(result.report.mask_pixels);
+}
+BENCHMARK(scaling)
+    ->ArgsProduct({{50, 100, 200}, {1, 2, 4}})
+    ->UseRealTime()
+    ->MinTime(2)
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace diminish
