@@ -1,52 +1,75 @@
 #include "composite/compositor.h"
 
 #include <algorithm>
+#include <atomic>
 
+#include "core/rows.h"
 #include "core/stopwatch.h"
 
 namespace diminish {
 namespace {
 
+struct Counts {
+  int mask = 0, missing = 0;
+};
+
+/// Sorts columns [begin, end) of a row into camera, seen and missing. source: of the columns
+/// [drawn_begin, drawn_end); nothing is seen beyond.
+Counts sort_row(const std::uint8_t* mask, const std::uint8_t* source, int begin, int end,
+                int drawn_begin, int drawn_end, std::uint8_t* origin, std::uint8_t* missing) {
+  for (int x = begin; x < end; ++x) {
+    origin[x] = mask[x] != 0 ? provenance::inpainted : provenance::camera;
+  }
+  for (int x = drawn_begin; x < drawn_end; ++x) {
+    origin[x] = mask[x] != 0 && source[x] != 0 ? source[x] : origin[x];
+  }
+  Counts counts;
+  for (int x = begin; x < end; ++x) {
+    const bool is_missing = origin[x] == provenance::inpainted;
+    missing[x] = is_missing ? 255 : 0;
+    counts.missing += is_missing ? 1 : 0;
+    counts.mask += mask[x] != 0 ? 1 : 0;
+  }
+  return counts;
+}
+
 /// Copies the camera's picture and sorts the mask's pixels into seen and missing.
 /// missing_box: where `missing` was set before; becomes where it is now.
 void sort_pixels(const Image<Bgr>& camera, const OcclusionMasks& masks, DiminishedFrame& result,
                  Mask& missing, Rect& missing_box) {
-  result.picture = camera;
-  result.mask = masks.color;
-  result.provenance.resize(camera.width(), camera.height(), provenance::camera);
-  if (missing.width() == camera.width() && missing.height() == camera.height()) {
+  const int width = camera.width();
+  const int height = camera.height();
+  result.picture.resize(width, height);
+  result.mask.resize(width, height);
+  result.provenance.resize(width, height);
+  if (missing.width() == width && missing.height() == height) {
     missing.fill(missing_box, 0);
   } else {
-    missing.resize(camera.width(), camera.height(), 0);
+    missing.resize(width, height, 0);
   }
-  FrameReport& report = result.report;
   const Rect objects = bounding_box(masks.color);
   missing_box = objects;
   const Rect drawn = intersect(objects, result.reconstruction.region);
-  for (int y = objects.y; y < objects.bottom(); ++y) {
-    const std::uint8_t* mask = masks.color.row(y);
-    std::uint8_t* origin = result.provenance.row(y);
-    for (int x = objects.x; x < objects.right(); ++x) {
-      origin[x] = mask[x] != 0 ? provenance::inpainted : provenance::camera;
+  std::atomic<std::size_t> mask_pixels = 0;
+  std::atomic<std::size_t> missing_pixels = 0;
+  for_rows(height, [&](Rows rows) {
+    for (int y = rows.first; y < rows.last; ++y) {
+      std::copy_n(camera.row(y), width, result.picture.row(y));
+      std::copy_n(masks.color.row(y), width, result.mask.row(y));
+      std::fill_n(result.provenance.row(y), width, provenance::camera);
+      if (y < objects.y || y >= objects.bottom()) continue;
+      const bool is_drawn = y >= drawn.y && y < drawn.bottom();
+      const Counts counts =
+          sort_row(masks.color.row(y), is_drawn ? result.reconstruction.source.row(y) : nullptr,
+                   objects.x, objects.right(), is_drawn ? drawn.x : 0, is_drawn ? drawn.right() : 0,
+                   result.provenance.row(y), missing.row(y));
+      mask_pixels += static_cast<std::size_t>(counts.mask);
+      missing_pixels += static_cast<std::size_t>(counts.missing);
     }
-    if (y >= drawn.y && y < drawn.bottom()) {
-      const std::uint8_t* source = result.reconstruction.source.row(y);
-      for (int x = drawn.x; x < drawn.right(); ++x) {
-        origin[x] = mask[x] != 0 && source[x] != 0 ? source[x] : origin[x];
-      }
-    }
-    std::uint8_t* unseen = missing.row(y);
-    int mask_pixels = 0;
-    int missing_pixels = 0;
-    for (int x = objects.x; x < objects.right(); ++x) {
-      const bool is_missing = origin[x] == provenance::inpainted;
-      unseen[x] = is_missing ? 255 : 0;
-      missing_pixels += is_missing ? 1 : 0;
-      mask_pixels += mask[x] != 0 ? 1 : 0;
-    }
-    report.mask_pixels += static_cast<std::size_t>(mask_pixels);
-    report.missing_pixels += static_cast<std::size_t>(missing_pixels);
-  }
+  });
+  FrameReport& report = result.report;
+  report.mask_pixels = mask_pixels;
+  report.missing_pixels = missing_pixels;
   report.valid_pixels = report.mask_pixels - report.missing_pixels;
 }
 

@@ -476,6 +476,12 @@ HWY_INLINE void RelaxParity(const MembraneLevel& level, const float* HWY_RESTRIC
       }
       const Vector inverse = Load(level.inverse.data() + level.at(y, parity, column) + i);
       const Mask cell = hn::Gt(inverse, Zero());
+      if (hn::AllFalse(Floats(), cell)) {
+        if (start != Start::zero) continue;
+        for (int c = 0; c < channels; ++c)
+          Store(Zero(), values + planes + c * level.channel_step());
+        continue;
+      }
       if (start == Start::x && !level.edges.empty()) {
         const EdgeMasks edges(level.edges_at(y, parity, column), i);
         for (int c = 0; c < channels; ++c) {
@@ -651,6 +657,7 @@ HWY_INLINE void Residual(const MembraneLevel& level, const float* right_side, co
     return;
   }
   const Mask cell = hn::Gt(Load(level.inverse.data() + single), Zero());
+  if (hn::AllFalse(Floats(), cell)) return;  // `result` is 0 already
   if (!level.edges.empty()) {
     const EdgeMasks edges(level.edges_at(y, parity, column), i);
     const Vector count = edges.Count();
@@ -883,6 +890,7 @@ HWY_INLINE double ProlongRows(const MembraneLevel& coarse, const float* coarse_v
       for (std::ptrdiff_t i = 0; i < lanes; i += VectorSize()) {
         const Vector inverse = Load(fine.inverse.data() + fine.at(y, parity, column) + i);
         const Mask cell = hn::Gt(inverse, Zero());
+        if (hn::AllFalse(Floats(), cell)) continue;
         Vector scale = Set(1.F);
         if (!plain) {
           scale = hn::Div(scale, hn::Max(BlendColumns(row.presence, i, parity), Set(1e-6F)));

@@ -250,7 +250,7 @@ void MembraneSolver::solve(float tolerance) {
     prolong(levels_[l + 1], levels_[l + 1].x.data(), false, level, level.x.data());
     const double limit = std::ldexp(finest_limit, -2 * static_cast<int>(l));
     double before = 0;
-    const int most = l == 0 ? max_cycles : 2;
+    const int most = l == 0 ? max_cycles : 1;
     for (int i = 0; i < most; ++i) {
       const double change = cycle(l, false);
       if (l == 0) ++cycles_;
