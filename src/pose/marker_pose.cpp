@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <opencv2/calib3d.hpp>
-#include <vector>
+#include <utility>
 
 namespace diminish {
 namespace {
@@ -99,14 +98,53 @@ double refine(const Corners& corners, const IdealView& view, RigidTransform& cam
 }
 
 /// The solver works on a marker frame with y down and z into the marker: an upright marker that
-/// faces the camera is then not turned at all. In the marker's own frame it is turned by 180
-/// degrees, where rotation vectors jump and OpenCV's solvers fail.
-const Eigen::Matrix3d solver_from_marker = Eigen::Vector3d(1, -1, -1).asDiagonal();
+/// faces the camera is then not turned at all.
+const RigidTransform solver_from_marker{Eigen::Vector3d(1, -1, -1).asDiagonal(),
+                                        Eigen::Vector3d::Zero()};
 
-/// camera_from_solver.
-RigidTransform to_transform(const cv::Vec3d& rotation, const cv::Vec3d& translation) {
-  return {rotation_by({rotation[0], rotation[1], rotation[2]}),
-          {translation[0], translation[1], translation[2]}};
+/// camera_from_solver from the homography of the marker's plane (Zhang 2000), which is exact for
+/// exact corners.
+RigidTransform pose_from_homography(const IdealView& view, double size_m) {
+  std::array<Eigen::Vector2d, 4> p;
+  for (std::size_t i = 0; i < 4; ++i) {
+    p[i] = {view.pixels[i].x() / view.fx, view.pixels[i].y() / view.fy};
+  }
+  // From the unit square to the four points (Heckbert 1989).
+  const Eigen::Vector2d a = p[1] - p[2];
+  const Eigen::Vector2d b = p[3] - p[2];
+  const Eigen::Vector2d sum = p[0] - p[1] + p[2] - p[3];
+  const auto cross = [](const Eigen::Vector2d& u, const Eigen::Vector2d& v) {
+    return u.x() * v.y() - u.y() * v.x();
+  };
+  const double g = cross(sum, b) / cross(a, b);
+  const double h = cross(a, sum) / cross(a, b);
+  Eigen::Matrix3d homography;
+  homography.col(0) << p[1] - p[0] + g * p[1], g;
+  homography.col(1) << p[3] - p[0] + h * p[3], h;
+  homography.col(2) << p[0], 1;
+
+  Eigen::Matrix3d axes;
+  axes.col(0) = homography.col(0) / size_m;
+  axes.col(1) = homography.col(1) / size_m;
+  Eigen::Vector3d center = homography * Eigen::Vector3d(0.5, 0.5, 1);
+  const double scale = 2 / (axes.col(0).norm() + axes.col(1).norm());
+  axes.leftCols<2>() *= scale;
+  center *= scale;
+  axes.col(2) = axes.col(0).cross(axes.col(1));
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(axes, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  return {svd.matrixU() * svd.matrixV().transpose(), center};
+}
+
+/// The pose that looks the same from afar: the marker's plane, mirrored about the line of sight
+/// (Schweighofer & Pinz 2006).
+RigidTransform mirrored(const RigidTransform& camera_from_solver) {
+  const Eigen::Matrix3d sight_from_camera =
+      Eigen::Quaterniond::FromTwoVectors(camera_from_solver.translation, Eigen::Vector3d::UnitZ())
+          .toRotationMatrix();
+  const Eigen::Matrix3d flip = Eigen::Vector3d(1, 1, -1).asDiagonal();
+  return {
+      sight_from_camera.transpose() * flip * sight_from_camera * camera_from_solver.rotation * flip,
+      camera_from_solver.translation};
 }
 
 struct Solution {
@@ -138,31 +176,19 @@ std::optional<MarkerPose> estimate_marker_pose(const std::array<Eigen::Vector2d,
                                                double size_m, const Lens& lens) {
   const IdealView view = undistort(corners, lens);
   if (!is_convex_clockwise(view.pixels)) return std::nullopt;
-  const RigidTransform solver_frame{solver_from_marker, Eigen::Vector3d::Zero()};
   Corners points = marker_corners(size_m);
-  std::vector<cv::Point3d> object_points;
-  std::vector<cv::Point2d> image_points;
-  for (std::size_t i = 0; i < 4; ++i) {
-    points[i] = solver_frame * points[i];
-    object_points.emplace_back(points[i].x(), points[i].y(), points[i].z());
-    image_points.emplace_back(view.pixels[i].x(), view.pixels[i].y());
-  }
-  std::vector<cv::Vec3d> rotations;
-  std::vector<cv::Vec3d> translations;
-  cv::solvePnPGeneric(object_points, image_points,
-                      cv::Matx33d(view.fx, 0, 0, 0, view.fy, 0, 0, 0, 1), cv::noArray(), rotations,
-                      translations, false, cv::SOLVEPNP_IPPE);
-  std::vector<Solution> solutions;
-  for (std::size_t i = 0; i < rotations.size(); ++i) {
-    RigidTransform pose = to_transform(rotations[i], translations[i]);
+  for (Eigen::Vector3d& point : points) point = solver_from_marker * point;
+  const RigidTransform start = pose_from_homography(view, size_m);
+  std::array<Solution, 2> solutions;
+  std::size_t count = 0;
+  for (RigidTransform pose : {start, mirrored(start)}) {
     const double error = refine(points, view, pose);
-    if (std::isfinite(error) && pose.translation.z() > 0) {
-      solutions.push_back({pose * solver_frame, error});
-    }
+    if (!std::isfinite(error) || !(pose.translation.z() > 0)) continue;
+    solutions[count++] = {pose * solver_from_marker, error};
   }
-  if (solutions.empty()) return std::nullopt;
-  std::stable_sort(solutions.begin(), solutions.end(),
-                   [](const Solution& a, const Solution& b) { return a.error_px < b.error_px; });
+  if (count == 0) return std::nullopt;
+  if (count == 1) solutions[1] = solutions[0];
+  if (solutions[1].error_px < solutions[0].error_px) std::swap(solutions[0], solutions[1]);
   const Solution& best = solutions.front();
   const Solution& second = solutions.back();
   // Refinement can lead both to the same pose: then there is nothing to choose between.

@@ -20,8 +20,8 @@ struct MarkerPose {
 };
 
 /// corners: as in `Marker`, pixels. size_m: side of the black square. Nothing if the corners are
-/// no convex quadrilateral in front of the camera. IPPE (Collins & Bartoli 2014), then
-/// Levenberg-Marquardt on the reprojection error of each solution.
+/// no convex quadrilateral in front of the camera. From the plane's homography (Zhang 2000) and its
+/// mirror image, Levenberg-Marquardt on the reprojection error.
 std::optional<MarkerPose> estimate_marker_pose(const std::array<Eigen::Vector2d, 4>& corners,
                                                double size_m, const Lens& lens);
 
