@@ -106,6 +106,8 @@ using Mask = Image<std::uint8_t>;
 
 /// The smallest rectangle that holds all non-zero pixels of `mask`. Cost: one pass.
 Rect bounding_box(const Mask& mask);
+/// The same of the mask's part inside `part`, which must not reach beyond the mask.
+Rect bounding_box(const Mask& mask, const Rect& part);
 
 /// The number of non-zero pixels of `mask` inside `part`.
 std::size_t count_nonzero(const Mask& mask, const Rect& part);

@@ -184,6 +184,7 @@ struct Four {
         c(Load(upper + row_step)),
         d(Load(upper + row_step + pitch)) {}
   HWY_INLINE Vector Sum() const { return hn::Add(hn::Add(a, b), hn::Add(c, d)); }
+  HWY_INLINE Vector Least() const { return hn::Min(hn::Min(a, b), hn::Min(c, d)); }
   HWY_INLINE Mask AnyFixed() const {
     return hn::Or(hn::Or(IsFixed(a), IsFixed(b)), hn::Or(IsFixed(c), IsFixed(d)));
   }
@@ -283,29 +284,50 @@ HWY_INLINE void CoarsenHalf(const MembraneLevel& fine, int y, int column, int of
     const Four beside(inverse + 1, pitch, row);
     const Four below(inverse + 2 * row, pitch, row);
     const Mask fixed = own.AnyFixed();
+    const Mask beside_fixed = beside.AnyFixed();
+    const Mask below_fixed = below.AnyFixed();
     const Four horizontal(right, pitch, row);
     const Four vertical(down, pitch, row);
-    Store(CoarseWeight(
-              {own.a, own.b, beside.a, beside.b, horizontal.a, horizontal.b, Load(right + 1)},
-              {own.c, own.d, beside.c, beside.d, horizontal.c, horizontal.d, Load(right + row + 1)},
-              {vertical.b, Load(down + 1)}, fixed, beside.AnyFixed()),
-          cells.right + to);
-    Store(
-        CoarseWeight(
-            {own.a, own.c, below.a, below.c, vertical.a, vertical.c, Load(down + 2 * row)},
-            {own.b, own.d, below.b, below.d, vertical.b, vertical.d, Load(down + 2 * row + pitch)},
-            {horizontal.c, Load(right + 2 * row)}, fixed, below.AnyFixed()),
-        cells.down + to);
+    const Vector beyond_right[] = {Load(right + 1), Load(right + row + 1), Load(down + 1)};
+    const Vector beyond_down[] = {Load(down + 2 * row), Load(down + 2 * row + pitch),
+                                  Load(right + 2 * row)};
+    Vector least = hn::Min(horizontal.Least(), vertical.Least());
+    for (const Vector& edge : beyond_right) least = hn::Min(least, edge);
+    for (const Vector& edge : beyond_down) least = hn::Min(least, edge);
+    const Mask any_fixed = hn::Or(fixed, hn::Or(beside_fixed, below_fixed));
+    const Mask plain = hn::AndNot(any_fixed, hn::Ge(least, Set(1.F)));
+    if (hn::AllTrue(Floats(), plain)) {
+      Store(Set(1.F), cells.right + to);
+      Store(Set(1.F), cells.down + to);
+    } else {
+      Store(CoarseWeight(
+                {own.a, own.b, beside.a, beside.b, horizontal.a, horizontal.b, beyond_right[0]},
+                {own.c, own.d, beside.c, beside.d, horizontal.c, horizontal.d, beyond_right[1]},
+                {vertical.b, beyond_right[2]}, fixed, beside_fixed),
+            cells.right + to);
+      Store(CoarseWeight({own.a, own.c, below.a, below.c, vertical.a, vertical.c, beyond_down[0]},
+                         {own.b, own.d, below.b, below.d, vertical.b, vertical.d, beyond_down[1]},
+                         {horizontal.c, beyond_down[2]}, fixed, below_fixed),
+            cells.down + to);
+    }
     Store(hn::IfThenElseZero(fixed, Set(-1.F)), cells.inverse + to);
-    const auto one_if = [](Mask mask) { return hn::IfThenElseZero(mask, Set(1.F)); };
+    if (fine.has_sources) {
+      for (int c = 0; c < channels; ++c) {
+        const std::ptrdiff_t from = fine.at(y, c, 0, column) + i;
+        Store(Four(fine.right_side.data() + from, pitch, fine.channel_row_step()).Sum(),
+              cells.right_side[c] + to);
+      }
+    }
+    if (hn::AllFalse(Floats(), fixed)) {
+      for (int c = 0; c < channels; ++c) Store(Zero(), cells.x[c] + to);
+      continue;
+    }
+    const auto one_if = [](Mask mask) HWY_ATTR { return hn::IfThenElseZero(mask, Set(1.F)); };
     const Vector count =
         hn::Max(Set(1.F), hn::Add(hn::Add(one_if(IsFixed(own.a)), one_if(IsFixed(own.b))),
                                   hn::Add(one_if(IsFixed(own.c)), one_if(IsFixed(own.d)))));
     for (int c = 0; c < channels; ++c) {
-      const std::ptrdiff_t from = fine.at(y, c, 0, column) + i;
-      Store(Four(fine.right_side.data() + from, pitch, fine.channel_row_step()).Sum(),
-            cells.right_side[c] + to);
-      Four x(fine.x.data() + from, pitch, fine.channel_row_step());
+      Four x(fine.x.data() + fine.at(y, c, 0, column) + i, pitch, fine.channel_row_step());
       x.a = hn::IfThenElseZero(IsFixed(own.a), x.a);
       x.b = hn::IfThenElseZero(IsFixed(own.b), x.b);
       x.c = hn::IfThenElseZero(IsFixed(own.c), x.c);
@@ -366,7 +388,9 @@ void Coarsen(const MembraneLevel& fine, Rows rows, MembraneLevel& coarse) {
       StoreApart(cells.inverse, coarse.inverse.data() + at, pitch);
       for (int c = 0; c < channels; ++c) {
         const std::ptrdiff_t to = coarse.at(y, c, 0, column);
-        StoreApart(cells.right_side[c], coarse.right_side.data() + to, pitch);
+        if (fine.has_sources) {
+          StoreApart(cells.right_side[c], coarse.right_side.data() + to, pitch);
+        }
         StoreApart(cells.x[c], coarse.x.data() + to, pitch);
       }
     });

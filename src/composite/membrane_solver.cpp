@@ -190,6 +190,7 @@ void MembraneSolver::build() {
     const MembraneLevel& fine = levels_[l - 1];
     MembraneLevel& coarse = levels_[l];
     coarse.begin(half(fine.width), half(fine.height));
+    coarse.has_sources = fine.has_sources;
     coarsen_blocks(fine, coarse);
     coarse.choose_tiles(l + 1 < level_count_);
     for_rows(coarse.rows(), [&](Rows rows) { membrane::coarsen(fine, rows, coarse); });

@@ -33,7 +33,8 @@ class PoissonCorrection : public ColorCorrector {
  public:
   void correct(const Image<Bgr>& camera, const Mask& occlusion,
                const Reconstruction& reconstruction, Image<Bgr>& picture) override {
-    const Rect region = intersect(grow(bounding_box(occlusion), 1), reconstruction.region);
+    const Rect objects = bounding_box(occlusion, reconstruction.region);
+    const Rect region = intersect(grow(objects, 1), reconstruction.region);
     if (region.empty()) return;
     solver_.begin(region.width, region.height);
     std::atomic<unsigned> sources = 0;

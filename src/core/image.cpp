@@ -22,23 +22,27 @@ int first_set(const std::uint8_t* row, int count) {
 }  // namespace
 
 Rect bounding_box(const Mask& mask) {
-  int left = mask.width();
+  return bounding_box(mask, mask.bounds());
+}
+
+Rect bounding_box(const Mask& mask, const Rect& part) {
+  int left = part.width;
   int right = -1;
   int top = -1;
   int bottom = -1;
-  for (int y = 0; y < mask.height(); ++y) {
-    const std::uint8_t* row = mask.row(y);
-    if (!any_set(row, mask.width())) continue;
+  for (int y = part.y; y < part.bottom(); ++y) {
+    const std::uint8_t* row = mask.row(y) + part.x;
+    if (!any_set(row, part.width)) continue;
     if (top < 0) top = y;
     bottom = y;
     left = std::min(left, first_set(row, left));
     // From the right end to the rightmost so far.
-    int last = mask.width() - 1;
+    int last = part.width - 1;
     while (last > right && row[last] == 0) --last;
     right = last;
   }
   if (top < 0) return {};
-  return {left, top, right - left + 1, bottom - top + 1};
+  return {part.x + left, top, right - left + 1, bottom - top + 1};
 }
 
 std::size_t count_nonzero(const Mask& mask, const Rect& part) {

@@ -19,6 +19,9 @@ TEST(Image, BoundingBoxHoldsAllPixelsAndNoEmptyRowOrColumn) {
   mask(3, 4) = 255;
   mask(17, 9) = 1;
   EXPECT_EQ(bounding_box(mask), (Rect{3, 4, 15, 6}));
+  EXPECT_EQ(bounding_box(mask, {1, 2, 17, 8}), (Rect{3, 4, 15, 6}));
+  EXPECT_TRUE(bounding_box(mask, {0, 0, 3, 4}).empty());
+  EXPECT_TRUE(bounding_box(mask, {}).empty());
   mask(0, 0) = 255;
   mask(19, 9) = 255;
   EXPECT_EQ(bounding_box(mask), mask.bounds());
