@@ -935,7 +935,12 @@ HWY_INLINE double ProlongRows(const MembraneLevel& coarse, const float* coarse_v
     ForEachBlock(fine.stored, fine.stored_rows, y, [&](int column) HWY_ATTR {
       const Block kind = fine.block(y, column);
       if (kind == Block::empty) return;
-      blended[turn].Set(coarse, coarse_values, y, column);
+      // Where there is no cell, an error is 0.
+      if (add && kind == Block::plain) {
+        blended[turn].SetPlain(coarse, coarse_values, y, column);
+      } else {
+        blended[turn].Set(coarse, coarse_values, y, column);
+      }
       if (pending >= 0) finish(blended[1 - turn], y, pending);
       turn = 1 - turn;
       pending = column;

@@ -1,6 +1,7 @@
 #include "composite/membrane_level.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/rows.h"
 
@@ -35,11 +36,21 @@ void AlignedFloats::require(std::size_t count) {
 }
 
 void MembraneLevel::begin(int width_, int height_) {
-  clear_stored();
+  const int columns = (width_ + tile_width - 1) / tile_width;
+  const int tiles_high = (height_ + tile_height - 1) / tile_height;
+  std::swap(blocks, old_blocks_);
+  std::swap(stored, old_stored_);
+  std::swap(stored_rows, old_stored_rows_);
+  old_sources_ = has_sources;
+  if (columns != tile_columns || tiles_high != tile_rows) {
+    // Everything will be elsewhere.
+    clear_old([](int, int) { return true; });
+    old_stored_rows_.clear();
+  }
   width = width_;
   height = height_;
-  tile_columns = (width + tile_width - 1) / tile_width;
-  tile_rows = (height + tile_height - 1) / tile_height;
+  tile_columns = columns;
+  tile_rows = tiles_high;
   pitch = (tile_columns + 2) * lanes;
   const std::size_t size =
       static_cast<std::size_t>(rows() + 2) * 2 * static_cast<std::size_t>(pitch);
@@ -53,22 +64,27 @@ void MembraneLevel::begin(int width_, int height_) {
                Tile::empty);
 }
 
-void MembraneLevel::clear_stored() {
-  const int count = static_cast<int>(stored_rows.size()) - 1;
+template <class IsLeft>
+void MembraneLevel::clear_old(const IsLeft& is_left) {
+  const int count = static_cast<int>(old_stored_rows_.size()) - 1;
   for_rows(std::max(count, 0) * tile_height, [&](Rows part) {
     for (int row = part.first / tile_height; row < part.last / tile_height; ++row) {
-      const auto from = static_cast<std::size_t>(stored_rows[static_cast<std::size_t>(row)]);
-      const auto to = static_cast<std::size_t>(stored_rows[static_cast<std::size_t>(row) + 1]);
+      const auto from = static_cast<std::size_t>(old_stored_rows_[static_cast<std::size_t>(row)]);
+      const auto to = static_cast<std::size_t>(old_stored_rows_[static_cast<std::size_t>(row) + 1]);
       for (std::size_t i = from; i < to; ++i) {
         for (int y = row * tile_height; y < (row + 1) * tile_height; ++y) {
-          for (int column = stored[i].first; column < stored[i].last; ++column) {
-            if (block(y, column) != Block::empty) clear_block(y, column);
+          for (int column = old_stored_[i].first; column < old_stored_[i].last; ++column) {
+            if (old_blocks_[block_index(y, column)] == Block::empty) continue;
+            if (is_left(y, column)) {
+              clear_block(y, column);
+            } else if (old_sources_) {
+              clear_right_side(y, column);
+            }
           }
         }
       }
     }
   });
-  stored_rows.clear();
 }
 
 void MembraneLevel::clear_block(int y, int column) {
@@ -76,6 +92,15 @@ void MembraneLevel::clear_block(int y, int column) {
     for (AlignedFloats* values : {&right, &down, &inverse}) {
       std::fill_n(values->data() + at(y, parity, column), lanes, 0.F);
     }
+    for (int channel = 0; channel < channels; ++channel) {
+      std::fill_n(error.data() + at(y, channel, parity, column), lanes, 0.F);
+    }
+  }
+  clear_right_side(y, column);
+}
+
+void MembraneLevel::clear_right_side(int y, int column) {
+  for (int parity = 0; parity < 2; ++parity) {
     for (int channel = 0; channel < channels; ++channel) {
       std::fill_n(right_side.data() + at(y, channel, parity, column), lanes, 0.F);
     }
@@ -122,6 +147,12 @@ void MembraneLevel::choose_tiles(bool may_be_smooth) {
   collect(
       *this, [](Tile state) { return state == Tile::active || state == Tile::ghost; }, stored,
       stored_rows);
+  // The rest is going to be overwritten.
+  clear_old([this](int y, int column) {
+    const Tile tile = state(column, y / tile_height);
+    const bool is_stored = tile == Tile::active || tile == Tile::ghost;
+    return !is_stored || block(y, column) == Block::empty;
+  });
 }
 
 }  // namespace diminish

@@ -105,8 +105,16 @@ struct MembraneLevel {
            static_cast<std::size_t>(column + 1);
   }
   void spread(Tile from, Tile to);
-  void clear_stored();
+  /// Zeroes what the last problem left in the blocks that `is_left` names.
+  template <class IsLeft>
+  void clear_old(const IsLeft& is_left);
   void clear_block(int y, int column);
+  void clear_right_side(int y, int column);
+
+  std::vector<Block> old_blocks_;
+  std::vector<Span> old_stored_;
+  std::vector<int> old_stored_rows_;
+  bool old_sources_ = false;
 };
 
 }  // namespace diminish

@@ -53,6 +53,20 @@ void invert_diagonal(MembraneLevel& level) {
   for_rows(level.rows(), [&](Rows rows) { membrane::invert_diagonal(rows, level); });
 }
 
+/// Sets the solution to 0 where it is not given: another frame's may be left there.
+void start_from_zero(MembraneLevel& level) {
+  for (int y = 0; y < level.height; ++y) {
+    for (int x = 0; x < level.width; ++x) {
+      const int column = x / tile_width;
+      const int place = x % tile_width / 2;
+      if (level.inverse.data()[level.at(y, x % 2, column) + place] < 0) continue;
+      for (int c = 0; c < MembraneLevel::channels; ++c) {
+        level.x.data()[level.at(y, c, x % 2, column) + place] = 0;
+      }
+    }
+  }
+}
+
 int half(int cells) {
   return (cells + 1) / 2;
 }
@@ -242,6 +256,7 @@ void MembraneSolver::solve(float tolerance) {
   if (size_ == 0) return;
   build();
   const std::size_t last = level_count_ - 1;
+  start_from_zero(levels_[last]);
   for (int i = 0; i < (last == 0 ? max_cycles : 2); ++i) cycle(last, false);
   const double finest_limit = static_cast<double>(tolerance) * static_cast<double>(tolerance) *
                               static_cast<double>(channels) * static_cast<double>(size_);

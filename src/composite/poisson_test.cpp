@@ -258,6 +258,38 @@ TEST(PoissonCorrection, EqualsThePlainVersionOnNarrowStrips) {
   expect_near_plain(problem, 4);
 }
 
+// Grids are kept from one frame to the next; what was in them must not show.
+TEST(PoissonCorrection, RemembersNoOtherFrame) {
+  const auto used = Registry<ColorCorrector>::get("poisson")();
+  std::mt19937 random(23);
+  for (int round = 0; round < 12; ++round) {
+    Problem problem(420, 300, 30U + static_cast<unsigned>(round));
+    // Of the same size at times, and of others.
+    const int right = round % 3 == 0 ? 400 : 300 + static_cast<int>(random() % 100);
+    for (int k = 0; k < 9; ++k) {
+      const int x = 10 + static_cast<int>(random() % 200);
+      const int y = 10 + static_cast<int>(random() % 200);
+      const int width = k == 0 ? right - x : 20 + static_cast<int>(random() % 90);
+      for (int row = y; row < y + 80; ++row) {
+        std::fill_n(problem.occlusion.row(row) + x, width, 255);
+      }
+    }
+    for (int k = 0; k < 6; ++k) {
+      problem.hide({static_cast<int>(random() % 380), static_cast<int>(random() % 260), 35, 33});
+    }
+    if (round % 4 == 1) {  // two RGB-D cameras: sources along the seam
+      for (int y = 0; y < 300; ++y) {
+        for (int x = 150; x < 420; ++x) {
+          if (problem.reconstruction.source(x, y) == 1) problem.reconstruction.source(x, y) = 2;
+        }
+      }
+    }
+    Image<Bgr> picture = problem.camera;
+    used->correct(problem.camera, problem.occlusion, problem.reconstruction, picture);
+    ASSERT_EQ(picture, problem.solve()) << round;
+  }
+}
+
 class PoissonOnRecordings : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Recordings, PoissonOnRecordings,
                          testing::Values("calendar", "ball", "workbench"));

@@ -1,12 +1,21 @@
 #include "diminish/image.h"
 
+#include <cstring>
+
 namespace diminish {
 namespace {
 
 bool any_set(const std::uint8_t* row, int count) {
   // Without a branch inside, so that the compiler takes many pixels at a time.
-  std::uint8_t all = 0;
-  for (int x = 0; x < count; ++x) all |= row[x];
+  std::uint64_t all = 0;
+  int x = 0;
+  constexpr int step = 64;
+  for (; x + step <= count; x += step) {
+    std::uint64_t words[step / sizeof(std::uint64_t)];
+    std::memcpy(words, row + x, step);
+    for (const std::uint64_t word : words) all |= word;
+  }
+  for (; x < count; ++x) all |= row[x];
   return all != 0;
 }
 
