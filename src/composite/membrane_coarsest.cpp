@@ -11,10 +11,6 @@ constexpr int none = -1;
 constexpr int fixed = -2;
 constexpr int channels = MembraneLevel::channels;
 
-std::ptrdiff_t single_index(const MembraneLevel& level, int x, int y) {
-  return level.at(y, x % 2, x / MembraneLevel::tile_width) + x % MembraneLevel::tile_width / 2;
-}
-
 /// From a group's centre to the centre of a fixed cell outside its own 2x2.
 double weight_to_fixed(double weight) {
   return weight / (1 + weight / 2);
@@ -55,7 +51,7 @@ void MembraneCoarsest::find_groups(const MembraneLevel& level) {
     for (int k = 0; k < 4; ++k) {
       unknown[k] = false;
       if ((k % 2 == 1 && !inside[0]) || (k / 2 == 1 && !inside[1])) continue;
-      at[k] = single_index(level, places[k][0], places[k][1]);
+      at[k] = level.cell_at(places[k][0], places[k][1]);
       unknown[k] = inverse[at[k]] > 0;
       if (inverse[at[k]] < 0) group(places[k][0], places[k][1]) = fixed;
     }
@@ -76,10 +72,7 @@ void MembraneCoarsest::find_groups(const MembraneLevel& level) {
       int& number = numbers[part[k]];
       if (number == none) number = group_count_++;
       group(places[k][0], places[k][1]) = number;
-      const std::ptrdiff_t triple =
-          level.at(places[k][1], 0, places[k][0] % 2, places[k][0] / MembraneLevel::tile_width) +
-          places[k][0] % MembraneLevel::tile_width / 2;
-      cells_.push_back({at[k], triple, number});
+      cells_.push_back({at[k], level.cell_at(places[k][0], places[k][1], 0), number});
     }
   };
   // Along the shorter side first: the matrix's band is as wide as that is long.
@@ -113,7 +106,7 @@ void MembraneCoarsest::find_edges(const MembraneLevel& level) {
     const int* group = group_of_.data() + (y + 1) * groups_per_row_ + 1;
     for (int x = 0; x < level.width; ++x) {
       if (group[x] == none) continue;
-      const std::ptrdiff_t at = single_index(level, x, y);
+      const std::ptrdiff_t at = level.cell_at(x, y);
       connect(group[x], group[x + 1], level.right.data()[at], x % 2 == 0);
       connect(group[x], group[x + groups_per_row_], level.down.data()[at], y % 2 == 0);
     }

@@ -79,6 +79,13 @@ struct MembraneLevel {
   std::ptrdiff_t at(int y, int channel, int parity, int column) const {
     return (2 * (channels * (y + 1) + channel) + parity) * pitch + (column + 1) * lanes;
   }
+  /// Where one cell is in them.
+  std::ptrdiff_t cell_at(int column, int y) const {
+    return at(y, column % 2, column / tile_width) + column % tile_width / 2;
+  }
+  std::ptrdiff_t cell_at(int column, int y, int channel) const {
+    return at(y, channel, column % 2, column / tile_width) + column % tile_width / 2;
+  }
   std::ptrdiff_t row_step() const { return 2 * pitch; }
   std::ptrdiff_t channel_step() const { return 2 * pitch; }
   std::ptrdiff_t channel_row_step() const { return 2 * channels * pitch; }

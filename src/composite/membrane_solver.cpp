@@ -57,11 +57,9 @@ void invert_diagonal(MembraneLevel& level) {
 void start_from_zero(MembraneLevel& level) {
   for (int y = 0; y < level.height; ++y) {
     for (int x = 0; x < level.width; ++x) {
-      const int column = x / tile_width;
-      const int place = x % tile_width / 2;
-      if (level.inverse.data()[level.at(y, x % 2, column) + place] < 0) continue;
+      if (level.inverse.data()[level.cell_at(x, y)] < 0) continue;
       for (int c = 0; c < MembraneLevel::channels; ++c) {
-        level.x.data()[level.at(y, c, x % 2, column) + place] = 0;
+        level.x.data()[level.cell_at(x, y, c)] = 0;
       }
     }
   }
@@ -184,18 +182,14 @@ void MembraneSolver::build() {
   for_rows(finest.rows(), [&](Rows rows) {
     membrane::set_weights(cells_.data(), fixed_.data(), words_per_row_, rows, finest);
   });
-  const auto place = [&](const Boundary& boundary, int channel) {
-    return finest.at(boundary.y, channel, boundary.x % 2, boundary.x / tile_width) +
-           boundary.x % tile_width / 2;
-  };
   for (const Boundary& boundary : sources_) {
     for (int c = 0; c < channels; ++c) {
-      finest.right_side.data()[place(boundary, c)] += boundary.value[c];
+      finest.right_side.data()[finest.cell_at(boundary.x, boundary.y, c)] += boundary.value[c];
     }
   }
   for (const Boundary& boundary : fixed_values_) {
     for (int c = 0; c < channels; ++c) {
-      finest.x.data()[place(boundary, c)] = boundary.value[c];
+      finest.x.data()[finest.cell_at(boundary.x, boundary.y, c)] = boundary.value[c];
     }
   }
   invert_diagonal(finest);
