@@ -19,9 +19,9 @@ double weight_to_fixed(double weight) {
 }  // namespace
 
 double MembraneCoarsest::work(int width, int height) {
-  const double columns = (width + 1) / 2;
-  const double rows = (height + 1) / 2;
-  return columns * rows * std::pow(std::min(columns, rows), 2);
+  const int columns = (width + 1) / 2;
+  const int rows = (height + 1) / 2;
+  return std::pow(std::min(columns, rows), 3) * std::max(columns, rows);
 }
 
 void MembraneCoarsest::build(const MembraneLevel& level) {

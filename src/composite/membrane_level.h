@@ -74,10 +74,11 @@ struct MembraneLevel {
 
   /// Where a block's cells of one parity begin in arrays of one value a cell, and of three.
   std::ptrdiff_t at(int y, int parity, int column) const {
-    return (2 * (y + 1) + parity) * pitch + (column + 1) * lanes;
+    return (2 * (y + 1) + parity) * pitch + std::ptrdiff_t{lanes} * (column + 1);
   }
   std::ptrdiff_t at(int y, int channel, int parity, int column) const {
-    return (2 * (channels * (y + 1) + channel) + parity) * pitch + (column + 1) * lanes;
+    return (2 * (channels * (y + 1) + channel) + parity) * pitch +
+           std::ptrdiff_t{lanes} * (column + 1);
   }
   /// Where one cell is in them.
   std::ptrdiff_t cell_at(int column, int y) const {
@@ -88,7 +89,7 @@ struct MembraneLevel {
   }
   std::ptrdiff_t row_step() const { return 2 * pitch; }
   std::ptrdiff_t channel_step() const { return 2 * pitch; }
-  std::ptrdiff_t channel_row_step() const { return 2 * channels * pitch; }
+  std::ptrdiff_t channel_row_step() const { return 2 * pitch * channels; }
 
   std::uint16_t* edges_at(int y, int parity, int column) {
     return edges.data() + 4 * (2 * block_index(y, column) + static_cast<std::size_t>(parity));

@@ -47,8 +47,9 @@ void BlobSegmentation::shrink(const Image<Bgr>& image) {
   small_.resize(std::max(1, image.width() / scale_), std::max(1, image.height() / scale_));
   const int rows = std::min(scale_, image.height());
   const int columns = std::min(scale_, image.width());
-  const auto used = static_cast<std::size_t>(small_.width() * columns * 3);
-  const unsigned area = static_cast<unsigned>(rows * columns);
+  const auto used =
+      static_cast<std::size_t>(small_.width()) * static_cast<std::size_t>(columns) * 3;
+  const auto area = static_cast<unsigned>(rows * columns);
   // A multiplication is quicker than a division, and the same for values as small as these.
   const std::uint64_t reciprocal = (std::uint64_t{1} << 32) / area + 1;
   sums_.resize(used);
@@ -165,7 +166,7 @@ Rect refine_region(const Image<Bgr>& image, const cv::Mat& region, const Rect& w
     for (int x = 0; x < coarse.cols; ++x) {
       const int not_object = not_outside.at<std::uint8_t>(y / scale, x) != 0 ? 0 : background;
       const int value = inside.at<std::uint8_t>(y / scale, x) != 0 ? object : not_object;
-      std::fill_n(label + x * scale, scale, value);
+      std::fill_n(label + std::ptrdiff_t{x} * scale, scale, value);
     }
   }
   cv::GaussianBlur(colors, colors, {3, 3}, 0);

@@ -95,7 +95,7 @@ class ColorBlobFinder {
     cv::Rect box;
     for (int i = 1; i < count; ++i) {
       if (core_pixels_[i] < smallest_core / 4 * fewest_pixels()) continue;
-      const int* const stats = candidate_boxes_.ptr<int>(i);
+      const auto* const stats = candidate_boxes_.ptr<int>(i);
       box |= cv::Rect(stats[cv::CC_STAT_LEFT], stats[cv::CC_STAT_TOP], stats[cv::CC_STAT_WIDTH],
                       stats[cv::CC_STAT_HEIGHT]);
     }
@@ -234,7 +234,8 @@ class ColorBlobDetector : public OccluderDetector {
   }
 
   OccluderReport detect(const Observation& observation, OcclusionMasks& masks) override {
-    const auto& [frame, markers, poses, options] = observation;
+    const FrameSet& frame = observation.frame;
+    const Options& options = observation.options;
     OccluderReport report;
     report.name = name_;
     // One image a core. (Not std::vector<bool>: its elements share bytes.)

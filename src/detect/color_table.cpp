@@ -32,10 +32,11 @@ ColorTable::ColorTable(const ColorModel& model) {
       for (int r = 0; r < side; ++r) {
         Entry least{255, 255};
         for (int corner = 0; corner < 8; ++corner) {
-          const auto at = static_cast<std::size_t>(
-              ((b + corner / 4) * corners + g + corner / 2 % 2) * corners + r + corner % 2);
-          least.core = std::min(least.core, lattice[at].core);
-          least.neighbor = std::min(least.neighbor, lattice[at].neighbor);
+          const int at =
+              ((b + corner / 4) * corners + g + corner / 2 % 2) * corners + r + corner % 2;
+          const Entry& here = lattice[static_cast<std::size_t>(at)];
+          least.core = std::min(least.core, here.core);
+          least.neighbor = std::min(least.neighbor, here.neighbor);
         }
         entries_.push_back(least);
       }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -22,13 +23,15 @@ class ColorTable {
   static constexpr int per_deviation = 8;
 
   const Entry& operator()(const Bgr& color) const {
-    return entries_[static_cast<std::size_t>((color.b / step * side + color.g / step) * side +
-                                             color.r / step)];
+    return entries_[entry(color.b / step, color.g / step, color.r / step)];
   }
 
  private:
   static constexpr int side = 32;
   static constexpr int step = 256 / side;
+  static std::size_t entry(std::size_t b, std::size_t g, std::size_t r) {
+    return (b * side + g) * side + r;
+  }
   std::vector<Entry> entries_;
 };
 
