@@ -109,7 +109,7 @@ class ColorBlobFinder {
     selected.create(labels.size(), CV_8U);
     for (int y = 0; y < labels.rows; ++y) {
       const int* const label = labels.ptr<int>(y);
-      std::uint8_t* const row = selected.ptr<std::uint8_t>(y);
+      auto* const row = selected.ptr<std::uint8_t>(y);
       for (int x = 0; x < labels.cols; ++x) row[x] = deviations[label[x]] <= limit ? 255 : 0;
     }
     cv::morphologyEx(selected, selected, cv::MORPH_CLOSE,
