@@ -1,7 +1,6 @@
 #include "composite/compositor.h"
 
 #include <algorithm>
-#include <atomic>
 
 #include "core/rows.h"
 #include "core/stopwatch.h"
@@ -9,8 +8,13 @@
 namespace diminish {
 namespace {
 
+/// Pixels.
 struct Counts {
-  int mask = 0, missing = 0;
+  std::size_t mask = 0, missing = 0;
+
+  friend Counts operator+(const Counts& a, const Counts& b) {
+    return {a.mask + b.mask, a.missing + b.missing};
+  }
 };
 
 /// Sorts columns [begin, end) of a row into camera, seen and missing. source: of the columns
@@ -23,14 +27,15 @@ Counts sort_row(const std::uint8_t* mask, const std::uint8_t* source, int begin,
   for (int x = drawn_begin; x < drawn_end; ++x) {
     origin[x] = mask[x] != 0 && source[x] != 0 ? source[x] : origin[x];
   }
-  Counts counts;
+  int mask_pixels = 0;
+  int missing_pixels = 0;
   for (int x = begin; x < end; ++x) {
     const bool is_missing = origin[x] == provenance::inpainted;
     missing[x] = is_missing ? 255 : 0;
-    counts.missing += is_missing ? 1 : 0;
-    counts.mask += mask[x] != 0 ? 1 : 0;
+    missing_pixels += is_missing ? 1 : 0;
+    mask_pixels += mask[x] != 0 ? 1 : 0;
   }
-  return counts;
+  return {static_cast<std::size_t>(mask_pixels), static_cast<std::size_t>(missing_pixels)};
 }
 
 /// Copies the camera's picture and sorts the mask's pixels into seen and missing.
@@ -50,26 +55,24 @@ void sort_pixels(const Image<Bgr>& camera, const OcclusionMasks& masks, Diminish
   const Rect objects = bounding_box(masks.color);
   missing_box = objects;
   const Rect drawn = intersect(objects, result.reconstruction.region);
-  std::atomic<std::size_t> mask_pixels = 0;
-  std::atomic<std::size_t> missing_pixels = 0;
-  for_rows(height, [&](Rows rows) {
+  const Counts counts = sum_over_rows(height, [&](Rows rows) {
+    Counts sum;
     for (int y = rows.first; y < rows.last; ++y) {
       std::copy_n(camera.row(y), width, result.picture.row(y));
       std::copy_n(masks.color.row(y), width, result.mask.row(y));
       std::fill_n(result.provenance.row(y), width, provenance::camera);
       if (y < objects.y || y >= objects.bottom()) continue;
       const bool is_drawn = y >= drawn.y && y < drawn.bottom();
-      const Counts counts =
-          sort_row(masks.color.row(y), is_drawn ? result.reconstruction.source.row(y) : nullptr,
-                   objects.x, objects.right(), is_drawn ? drawn.x : 0, is_drawn ? drawn.right() : 0,
-                   result.provenance.row(y), missing.row(y));
-      mask_pixels += static_cast<std::size_t>(counts.mask);
-      missing_pixels += static_cast<std::size_t>(counts.missing);
+      sum = sum + sort_row(masks.color.row(y),
+                           is_drawn ? result.reconstruction.source.row(y) : nullptr, objects.x,
+                           objects.right(), is_drawn ? drawn.x : 0, is_drawn ? drawn.right() : 0,
+                           result.provenance.row(y), missing.row(y));
     }
+    return sum;
   });
   FrameReport& report = result.report;
-  report.mask_pixels = mask_pixels;
-  report.missing_pixels = missing_pixels;
+  report.mask_pixels = counts.mask;
+  report.missing_pixels = counts.missing;
   report.valid_pixels = report.mask_pixels - report.missing_pixels;
 }
 

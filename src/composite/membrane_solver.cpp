@@ -97,7 +97,7 @@ void MembraneSolver::connect() {
     std::fill_n(words->begin(), words_per_row_, std::uint32_t{0});
     std::fill(words->begin() + (height_ + 1) * words_per_row_, words->end(), std::uint32_t{0});
   }
-  const double size = sum_over_rows(height_, [&](Rows rows) {
+  size_ = sum_over_rows(height_, [&](Rows rows) {
     std::size_t count = 0;
     for (int y = rows.first; y < rows.last; ++y) {
       const std::ptrdiff_t row = word_index(y);
@@ -110,9 +110,8 @@ void MembraneSolver::connect() {
         count += static_cast<std::size_t>(std::popcount(cells_.data()[row + word]));
       }
     }
-    return static_cast<double>(count);
+    return count;
   });
-  size_ = static_cast<std::size_t>(size);
 }
 
 void MembraneSolver::set_fixed(int x, int y, const Values& value) {

@@ -19,10 +19,10 @@ inline int seam(int rows) {
 
 /// Calls visit(rows), in two threads if there are many rows; returns the sum of what it returns.
 template <class Visit>
-double sum_over_rows(int rows, const Visit& visit) {
+auto sum_over_rows(int rows, const Visit& visit) {
   const int middle = seam(rows);
   if (middle == 0) return visit(Rows{0, rows});
-  double sums[2];
+  decltype(visit(Rows{})) sums[2];
   oneapi::tbb::parallel_for(0, 2, [&](int part) {
     sums[part] = visit(part == 0 ? Rows{0, middle} : Rows{middle, rows});
   });
@@ -34,7 +34,7 @@ template <class Visit>
 void for_rows(int rows, const Visit& visit) {
   sum_over_rows(rows, [&](Rows part) {
     visit(part);
-    return 0.0;
+    return 0;
   });
 }
 

@@ -135,14 +135,7 @@ Rect refine_region(const Image<Bgr>& image, const cv::Mat& region, const Rect& w
   // Beyond the picture's border both go on as they are at the border, so that an object that is
   // cut off there is not closed.
   cv::Mat coarse;
-  cv::copyMakeBorder(region(box), coarse, rim, rim, rim, rim, cv::BORDER_CONSTANT, 0);
-  for (int y = 0; y < coarse.rows; ++y) {
-    for (int x = 0; x < coarse.cols; ++x) {
-      coarse.at<std::uint8_t>(y, x) =
-          region.at<std::uint8_t>(std::clamp(box.y - rim + y, 0, region.rows - 1),
-                                  std::clamp(box.x - rim + x, 0, region.cols - 1));
-    }
-  }
+  cv::copyMakeBorder(region(box), coarse, rim, rim, rim, rim, cv::BORDER_REPLICATE);
   cv::Mat inside;
   cv::Mat not_outside;
   cv::erode(coarse, inside, square(2 * inward + 1));

@@ -13,6 +13,10 @@ namespace {
 struct IdealView {
   std::array<Eigen::Vector2d, 4> pixels;
   double fx, fy;
+
+  Eigen::Vector2d project(const Eigen::Vector3d& p) const {
+    return {fx * p.x() / p.z(), fy * p.y() / p.z()};
+  }
 };
 
 IdealView undistort(const std::array<Eigen::Vector2d, 4>& corners, const Lens& lens) {
@@ -24,12 +28,16 @@ IdealView undistort(const std::array<Eigen::Vector2d, 4>& corners, const Lens& l
   return view;
 }
 
+double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
 bool is_convex_clockwise(const std::array<Eigen::Vector2d, 4>& p) {
   for (std::size_t i = 0; i < 4; ++i) {
     const Eigen::Vector2d a = p[(i + 1) % 4] - p[i];
     const Eigen::Vector2d b = p[(i + 2) % 4] - p[(i + 1) % 4];
     constexpr double min_sine = 0.02;
-    if (!(a.x() * b.y() - a.y() * b.x() > min_sine * a.norm() * b.norm())) return false;
+    if (!(cross(a, b) > min_sine * a.norm() * b.norm())) return false;
   }
   return true;
 }
@@ -41,9 +49,7 @@ double reprojection_error(const Corners& corners, const IdealView& view,
                           const RigidTransform& camera_from_corners) {
   double squares = 0;
   for (std::size_t i = 0; i < 4; ++i) {
-    const Eigen::Vector3d p = camera_from_corners * corners[i];
-    const Eigen::Vector2d projected(view.fx * p.x() / p.z(), view.fy * p.y() / p.z());
-    squares += (projected - view.pixels[i]).squaredNorm();
+    squares += (view.project(camera_from_corners * corners[i]) - view.pixels[i]).squaredNorm();
   }
   return std::sqrt(squares / 4);
 }
@@ -73,9 +79,8 @@ double refine(const Corners& corners, const IdealView& view, RigidTransform& cam
       by_rotation << 0, arm.z(), -arm.y(), -arm.z(), 0, arm.x(), arm.y(), -arm.x(), 0;
       Eigen::Matrix<double, 2, 6> jacobian;
       jacobian << by_point * by_rotation, by_point;
-      const Eigen::Vector2d projected(view.fx * p.x() / p.z(), view.fy * p.y() / p.z());
       normal += jacobian.transpose() * jacobian;
-      gradient += jacobian.transpose() * (view.pixels[i] - projected);
+      gradient += jacobian.transpose() * (view.pixels[i] - view.project(p));
     }
     Eigen::Matrix<double, 6, 6> damped = normal;
     damped.diagonal() *= 1 + damping;
@@ -113,9 +118,6 @@ RigidTransform pose_from_homography(const IdealView& view, double size_m) {
   const Eigen::Vector2d a = p[1] - p[2];
   const Eigen::Vector2d b = p[3] - p[2];
   const Eigen::Vector2d sum = p[0] - p[1] + p[2] - p[3];
-  const auto cross = [](const Eigen::Vector2d& u, const Eigen::Vector2d& v) {
-    return u.x() * v.y() - u.y() * v.x();
-  };
   const double g = cross(sum, b) / cross(a, b);
   const double h = cross(a, sum) / cross(a, b);
   Eigen::Matrix3d homography;

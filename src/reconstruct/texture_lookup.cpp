@@ -67,7 +67,6 @@ HWY_INLINE void FindPlaces(const SurfaceRow& row, const Image<Bgr>& texture, int
   ForEachVector(count, [&](auto d, int i) HWY_ATTR {
     const hn::RebindToSigned<decltype(d)> di;
     const auto zero = hn::Zero(d);
-    const auto one = hn::Set(d, 1.F);
     const auto z = hn::LoadU(d, depth_m + first + i);
     // What lies outside is another camera's pixel.
     const auto place = [&](const float* over_z, int side, float* fraction) HWY_ATTR {
@@ -75,7 +74,7 @@ HWY_INLINE void FindPlaces(const SurfaceRow& row, const Image<Bgr>& texture, int
       const auto value = hn::Min(hn::Max(hn::Mul(hn::LoadU(d, over_z + first + i), z), zero), last);
       // The last pixel is the second of a pair.
       const auto whole = hn::Min(hn::ConvertTo(di, value), hn::Set(di, side - 2));
-      hn::StoreU(hn::Min(hn::Sub(value, hn::ConvertTo(d, whole)), one), d, fraction + i);
+      hn::StoreU(hn::Sub(value, hn::ConvertTo(d, whole)), d, fraction + i);
       return whole;
     };
     const auto x = place(row.u_over_z, texture.width(), places.fx);

@@ -56,12 +56,11 @@ class CameraMesh {
     }
   }
 
-  /// Brings a row's parts together, once they are drawn; returns the number of pixels drawn.
-  int merge(int y) {
+  /// Brings a row's parts together, once they are drawn.
+  void merge(int y) {
     SurfaceBuffer& upper = parts_[0].surface;
     const SurfaceBuffer& lower = parts_[1].surface;
     if (upper.touches(y) && lower.touches(y)) keep_nearest(lower, y, upper);
-    return count_drawn(surface(y), y);
   }
 
   /// The merged surface of a row.
@@ -108,7 +107,12 @@ class VectorizedReconstructor : public Reconstructor {
                            FloatTransform(*poses.color_from_depth[k]), region},
                           threshold_m, static_cast<int>(i % CameraMesh::parts));
         });
-    merge_parts(region);
+    for_rows(region.height, [&](Rows rows) {
+      for (const Drawn& drawn : drawn_) {
+        for (int y = rows.first; y < rows.last; ++y) meshes_[drawn.camera].merge(region.y + y);
+      }
+    });
+    if (drawn_.size() > 1) sort_by_coverage(region);
     const auto agreement_m = static_cast<float>(options.depth_agreement_m);
     for_rows(region.height, [&](Rows rows) {
       std::vector<SurfaceRow>& surfaces = surfaces_[rows.first == 0 ? 0 : 1];
@@ -121,7 +125,7 @@ class VectorizedReconstructor : public Reconstructor {
  private:
   struct Drawn {
     std::size_t camera;
-    std::size_t pixels;
+    int pixels;
   };
 
   /// Everything outside `region` becomes empty; the region's pixels are written later.
@@ -149,16 +153,16 @@ class VectorizedReconstructor : public Reconstructor {
     image.fill({drawn.x, both.bottom(), drawn.width, drawn.bottom() - both.bottom()}, {});
   }
 
-  /// Then sorts the cameras: the one that sees most of the region first, as merge_layers does.
-  void merge_parts(const Rect& region) {
+  /// The camera that sees most of the region first, as merge_layers does.
+  void sort_by_coverage(const Rect& region) {
     for (Drawn& drawn : drawn_) {
-      drawn.pixels = static_cast<std::size_t>(sum_over_rows(region.height, [&](Rows rows) {
-        double pixels = 0;
-        for (int y = rows.first; y < rows.last; ++y) {
-          pixels += meshes_[drawn.camera].merge(region.y + y);
+      drawn.pixels = sum_over_rows(region.height, [&](Rows rows) {
+        int pixels = 0;
+        for (int y = region.y + rows.first; y < region.y + rows.last; ++y) {
+          pixels += count_drawn(meshes_[drawn.camera].surface(y), y);
         }
         return pixels;
-      }));
+      });
     }
     std::stable_sort(drawn_.begin(), drawn_.end(),
                      [](const Drawn& a, const Drawn& b) { return a.pixels > b.pixels; });
