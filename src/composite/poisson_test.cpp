@@ -55,30 +55,42 @@ double value(const Bgra& color, int channel) {
   return value(Bgr{color.b, color.g, color.r}, channel);
 }
 
-/// The fast version's result is half a level from the plain one's, both rounded.
-void expect_near_plain(const Problem& problem, int largest_difference) {
-  const Image<Bgr> fast = problem.solve("poisson");
-  const Image<Bgr> plain = problem.solve("poisson_reference");
+/// In levels.
+struct Errors {
+  double worst = 0, rms = 0;
+};
+/// How far the valid pixels are from expected(x, y, channel); the others must be the camera's.
+template <class Expected>
+void measure(const Problem& problem, const Image<Bgr>& picture, const Expected& expected,
+             Errors& errors) {
   double squares = 0;
-  int worst = 0;
   int count = 0;
-  for (int y = 0; y < plain.height(); ++y) {
-    for (int x = 0; x < plain.width(); ++x) {
+  for (int y = 0; y < picture.height(); ++y) {
+    for (int x = 0; x < picture.width(); ++x) {
       if (!problem.valid(x, y)) {
-        ASSERT_EQ(fast(x, y), problem.camera(x, y));
+        ASSERT_EQ(picture(x, y), problem.camera(x, y)) << x << ' ' << y;
         continue;
       }
       for (int c = 0; c < 3; ++c) {
-        const int difference =
-            std::abs(static_cast<int>(value(fast(x, y), c) - value(plain(x, y), c)));
-        worst = std::max(worst, difference);
-        squares += difference * difference;
+        const double error = std::abs(value(picture(x, y), c) - expected(x, y, c));
+        errors.worst = std::max(errors.worst, error);
+        squares += error * error;
         ++count;
       }
     }
   }
-  EXPECT_LE(worst, largest_difference);
-  EXPECT_LE(std::sqrt(squares / count), 0.5);
+  errors.rms = std::sqrt(squares / count);
+}
+
+/// The fast version's result is half a level from the plain one's, both rounded.
+void expect_near_plain(const Problem& problem, int largest_difference) {
+  const Image<Bgr> plain = problem.solve("poisson_reference");
+  Errors errors;
+  measure(
+      problem, problem.solve("poisson"), [&](int x, int y, int c) { return value(plain(x, y), c); },
+      errors);
+  EXPECT_LE(errors.worst, largest_difference);
+  EXPECT_LE(errors.rms, 0.5);
 }
 
 /// The exact result, unrounded, for the result itself (not its correction): for each valid pixel p,
@@ -140,29 +152,17 @@ std::vector<Image<double>> solve_directly(const Problem& problem) {
 void expect_exact(const Problem& problem, const char* method, double worst_error,
                   double rms_error) {
   SCOPED_TRACE(method);
-  const Image<Bgr> picture = problem.solve(method);
   const auto exact = solve_directly(problem);
-  double worst = 0;
-  double squares = 0;
-  int count = 0;
-  for (int y = 0; y < picture.height(); ++y) {
-    for (int x = 0; x < picture.width(); ++x) {
-      if (!problem.valid(x, y)) {
-        ASSERT_EQ(picture(x, y), problem.camera(x, y)) << x << ' ' << y;
-        continue;
-      }
-      for (int c = 0; c < 3; ++c) {
-        const double expected = std::clamp(exact[static_cast<std::size_t>(c)](x, y), 0.0, 255.0);
-        const double error = std::abs(value(picture(x, y), c) - expected);
-        worst = std::max(worst, error);
-        squares += error * error;
-        ++count;
-      }
-    }
-  }
-  EXPECT_LE(worst, 0.5 + worst_error);
+  Errors errors;
+  measure(
+      problem, problem.solve(method),
+      [&](int x, int y, int c) {
+        return std::clamp(exact[static_cast<std::size_t>(c)](x, y), 0.0, 255.0);
+      },
+      errors);
+  EXPECT_LE(errors.worst, 0.5 + worst_error);
   // Rounding alone leaves 0.29.
-  EXPECT_LE(std::sqrt(squares / count), 0.29 + rms_error);
+  EXPECT_LE(errors.rms, 0.29 + rms_error);
 }
 void expect_exact(const Problem& problem) {
   expect_exact(problem, "poisson_reference", 0.05, 0.03);
