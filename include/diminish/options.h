@@ -14,9 +14,9 @@ struct Options {
   double blob_spread = 1.0;
   double discontinuity_threshold_m = 0.05;
   double depth_agreement_m = 0.03;
-  int surroundings_px = 1;
+  int surroundings_px = 8;
   bool whole_view = false;
-  std::string color_correct = "poisson";
+  std::string color_correct = "field_membrane";
   std::string inpaint = "harmonic";
   int inpaint_radius_px = 5;
 };

@@ -1,10 +1,21 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
+#include <vector>
 
 #include "diminish/image.h"
 
 namespace diminish {
+
+/// A point on a surface that an RGB-D camera sees and the colour camera may see, too.
+struct SceneSample {
+  Eigen::Vector3f point_m;     ///< in the colour camera's frame
+  Eigen::Vector2f pixel;       ///< its place in the colour camera's image
+  Bgr color;                   ///< the RGB-D camera's, averaged over the neighbourhood
+  std::uint8_t source = 0;     ///< 1 + the RGB-D camera's index
+  bool even = false;           ///< the neighbourhood has one colour
+};
 
 /// The scene behind the objects as the RGB-D cameras see it, drawn from the colour camera's
 /// viewpoint. All images have the colour camera's size.
@@ -13,6 +24,9 @@ struct Reconstruction {
   Image<Bgra> color;           ///< alpha 255 where a triangle was drawn, else all 0
   Image<float> depth_m;        ///< z in the colour camera's frame; 0 where alpha is 0
   Image<std::uint8_t> source;  ///< 0 where alpha is 0, else 1 + the RGB-D camera's index
+  /// Thinly over the whole picture, and not only in `region`: what the RGB-D cameras see of
+  /// surfaces, away from objects to remove and from depth edges. A few thousand.
+  std::vector<SceneSample> samples;
 };
 
 /// The smallest angle between a surface and the line of sight at which SDCT still joins

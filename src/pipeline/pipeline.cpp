@@ -11,6 +11,7 @@
 #include "diminish/marker_detector.h"
 #include "diminish/reconstructor.h"
 #include "pose/camera_poses.h"
+#include "reconstruct/scene_sampler.h"
 
 namespace diminish {
 namespace {
@@ -45,7 +46,8 @@ struct Pipeline::Implementation {
         color_lens(rig.color),
         camera_poses(rig, scene),
         occluders(rig, scene),
-        reconstructor(Registry<Reconstructor>::get("cpu")(rig)) {
+        reconstructor(Registry<Reconstructor>::get("cpu")(rig)),
+        sampler(rig) {
     for (const RgbdCamera& camera : rig.rgbd) rgbd_color_lenses.emplace_back(camera.color);
     if (camera_poses.needs_markers() || occluders.needs_markers()) {
       for (std::size_t i = 0; i <= rig.rgbd.size(); ++i) {
@@ -99,6 +101,7 @@ struct Pipeline::Implementation {
   CameraPoses camera_poses;
   OccluderStage occluders;
   std::unique_ptr<Reconstructor> reconstructor;
+  SceneSampler sampler;
   Compositor compositor;
   OcclusionMasks masks;
 };
@@ -141,6 +144,7 @@ void Pipeline::process(const FrameSet& frame, DiminishedFrame& result) {
     const ScopedTimer timer(report.milliseconds, Stage::reconstruction);
     self.reconstructor->reconstruct(frame, report.poses, self.masks, self.region_to_reconstruct(),
                                     self.options, result.reconstruction);
+    self.sampler.sample(frame, report.poses, self.masks, result.reconstruction.samples);
   }
   // 3.4 Compositing, colour correction, inpainting
   self.compositor.composite(frame.color, self.masks, self.options, result);

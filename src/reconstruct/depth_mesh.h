@@ -28,13 +28,25 @@ class DepthMesh {
   /// color: the user's colour camera, into which the vertices are projected.
   DepthMesh(const RgbdCamera& camera, const Intrinsics& color);
 
-  /// One vertex per depth pixel, by rule 1 of sdct.h. The masks are the camera's own.
-  void compute(const RgbdFrame& frame, const RigidTransform& color_from_depth,
-               const Mask& depth_mask, const Mask& color_mask, Image<MeshVertex>& vertices) const;
+  /// The masks are the camera's own.
+  struct Frame {
+    const RgbdFrame& images;
+    const Mask& depth_mask;
+    const Mask& color_mask;
+    FloatTransform to_color;
+  };
+  /// The vertex of a depth pixel, by rule 1 of sdct.h.
+  MeshVertex vertex(const Frame& frame, int column, int row) const;
+  /// Of every depth pixel.
+  void compute(const Frame& frame, Image<MeshVertex>& vertices) const;
+
+  /// The ray (x, y, 1) of a depth pixel, in the depth sensor's frame.
+  const Eigen::Vector2f& ray(int column, int row) const { return rays_(column, row); }
 
  private:
   RgbdCamera camera_;
   Image<Eigen::Vector2f> rays_;
+  FloatTransform to_rgbd_color_;
   Projection color_;
   Projection rgbd_color_;
 };

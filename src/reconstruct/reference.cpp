@@ -25,8 +25,9 @@ class ReferenceReconstructor : public Reconstructor {
     for (std::size_t k = 0; k < meshes_.size(); ++k) {
       drawn_[k] = nullptr;
       if (!frame.rgbd[k].available() || !poses.color_from_depth[k]) continue;
-      meshes_[k].compute(frame.rgbd[k], *poses.color_from_depth[k], masks.rgbd_depth[k],
-                         masks.rgbd_color[k], vertices_);
+      meshes_[k].compute({frame.rgbd[k], masks.rgbd_depth[k], masks.rgbd_color[k],
+                          FloatTransform(*poses.color_from_depth[k])},
+                         vertices_);
       layers_[k].clear(color_.width, color_.height, region);
       draw_mesh(vertices_, frame.rgbd[k].color, threshold_m, region, layers_[k]);
       drawn_[k] = &layers_[k];

@@ -1,0 +1,152 @@
+#include "composite/color_map.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace diminish {
+namespace {
+
+using Terms = Eigen::Matrix<float, 5, 1>;
+
+constexpr int passes = 6;
+/// Residuals below this are noise, in levels.
+constexpr float least_scale = 1.5F;
+/// How many pairs what is not known beforehand weighs.
+constexpr float prior_pairs = 4;
+
+Terms field_terms(const ColorMap& map, float x, float y) {
+  const float u = (x - map.center.x()) / map.half_width;
+  const float v = (y - map.center.y()) / map.half_width;
+  Terms terms;
+  terms << u, v, u * u, u * v, v * v;
+  return terms;
+}
+
+float median(std::vector<float>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+class Fit {
+ public:
+  Fit(const std::vector<ColorPair>& pairs, ColorMapModel model, const Rect& bounds)
+      : pairs_(pairs), model_(model) {
+    map_.half_width = static_cast<float>(bounds.width) / 2;
+    map_.center = {static_cast<float>(bounds.width - 1) / 2, static_cast<float>(bounds.height - 1) / 2};
+  }
+
+  ColorMap run() {
+    if (pairs_.empty()) return map_;
+    start_with_gains();
+    for (int pass = 0; pass < passes; ++pass) {
+      weigh();
+      fit_channels();
+      if (model_ == ColorMapModel::field) fit_field();
+    }
+    return map_;
+  }
+
+ private:
+  void start_with_gains() {
+    for (int c = 0; c < 3; ++c) {
+      values_.clear();
+      for (const ColorPair& pair : pairs_) {
+        values_.push_back(pair.camera[c] / std::max(pair.rgbd[c], 1.F));
+      }
+      gains_[c] = median(values_);
+    }
+    map_.matrix = gains_.asDiagonal();
+  }
+
+  void weigh() {
+    residuals_.clear();
+    for (const ColorPair& pair : pairs_) {
+      const Eigen::Array3f mapped = map_(pair.rgbd, pair.pixel.x(), pair.pixel.y());
+      residuals_.push_back((pair.camera - mapped).matrix().norm());
+    }
+    values_ = residuals_;
+    // Where Tukey's weights end: 4.7 standard deviations.
+    const float end = 4.7F * std::max(least_scale, 0.65F * median(values_));
+    weights_.clear();
+    for (const float residual : residuals_) {
+      const float relative = std::min(1.F, residual / end);
+      weights_.push_back((1 - relative * relative) * (1 - relative * relative));
+    }
+  }
+
+  /// Matrix and offset, the field being as it is. Colours are in units of 128 levels.
+  void fit_channels() {
+    Eigen::Matrix4f squares = Eigen::Matrix4f::Zero();
+    Eigen::Matrix<float, 4, 3> products = Eigen::Matrix<float, 4, 3>::Zero();
+    for (std::size_t i = 0; i < pairs_.size(); ++i) {
+      const ColorPair& pair = pairs_[i];
+      const float field = map_.field_at(pair.pixel.x(), pair.pixel.y());
+      Eigen::Vector4f terms;
+      terms << pair.rgbd.matrix() / unit, 1;
+      const Eigen::Vector4f weighted = weights_[i] * terms;
+      squares += weighted * terms.transpose();
+      products += weighted * (pair.camera.matrix() / (unit * field)).transpose();
+    }
+    for (int c = 0; c < 3; ++c) {
+      if (model_ == ColorMapModel::affine) {
+        const Eigen::Array2i chosen(c, 3);
+        Eigen::Matrix2f own = squares(chosen, chosen);
+        Eigen::Vector2f target = products(chosen, c);
+        own.diagonal().array() += prior_pairs / 16;
+        target[0] += prior_pairs / 16 * gains_[c];
+        const Eigen::Vector2f solution = own.ldlt().solve(target);
+        map_.matrix(c, c) = solution[0];
+        map_.offset[c] = unit * solution[1];
+        continue;
+      }
+      Eigen::Matrix4f own = squares;
+      Eigen::Vector4f target = products.col(c);
+      own.diagonal().array() += prior_pairs / 16;
+      target[c] += prior_pairs / 16 * gains_[c];
+      const Eigen::Vector4f solution = own.ldlt().solve(target);
+      map_.matrix.row(c) = solution.head<3>();
+      map_.offset[c] = unit * solution[3];
+    }
+  }
+
+  void fit_field() {
+    Eigen::Matrix<float, 5, 5> squares = Eigen::Matrix<float, 5, 5>::Identity() * prior_pairs;
+    Terms products = Terms::Zero();
+    for (std::size_t i = 0; i < pairs_.size(); ++i) {
+      const ColorPair& pair = pairs_[i];
+      const Terms terms = field_terms(map_, pair.pixel.x(), pair.pixel.y());
+      const Eigen::Vector3f flat = (map_.matrix * pair.rgbd.matrix() + map_.offset) / unit;
+      const Eigen::Vector3f rest = pair.camera.matrix() / unit - flat;
+      squares += (weights_[i] * flat.squaredNorm()) * terms * terms.transpose();
+      products += (weights_[i] * flat.dot(rest)) * terms;
+    }
+    map_.field = squares.ldlt().solve(products);
+  }
+
+  static constexpr float unit = 128;
+
+  const std::vector<ColorPair>& pairs_;
+  ColorMapModel model_;
+  ColorMap map_;
+  Eigen::Vector3f gains_ = Eigen::Vector3f::Ones();
+  std::vector<float> residuals_, weights_, values_;
+};
+
+}  // namespace
+
+float ColorMap::field_at(float x, float y) const {
+  return std::clamp(1 + field.dot(field_terms(*this, x, y)), least_field, greatest_field);
+}
+
+Eigen::Array3f ColorMap::operator()(const Eigen::Array3f& rgbd, float x, float y) const {
+  return field_at(x, y) * (matrix * rgbd.matrix() + offset).array();
+}
+
+ColorMap fit_color_map(const std::vector<ColorPair>& pairs, ColorMapModel model,
+                       const Rect& bounds) {
+  return Fit(pairs, model, bounds).run();
+}
+
+}  // namespace diminish

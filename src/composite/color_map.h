@@ -1,0 +1,48 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "diminish/image.h"
+
+namespace diminish {
+
+/// One surface in two cameras: mean colours of an even neighbourhood, in levels.
+struct ColorPair {
+  Eigen::Vector2f pixel;  ///< in the colour camera's image
+  Eigen::Array3f rgbd, camera;
+};
+
+/// Brings one RGB-D camera's colours to the colour camera's:
+///
+///   color = field(x, y) (matrix rgbd + offset),   field = 1 + a X + b Y + c X^2 + d X Y + e Y^2
+///
+/// The matrix and the offset stand for white balance, exposure and filters; the field, which is the
+/// same for all channels, for both lenses' vignetting. X and Y are pixel coordinates from the
+/// picture's centre in half widths.
+struct ColorMap {
+  Eigen::Matrix3f matrix = Eigen::Matrix3f::Identity();
+  Eigen::Vector3f offset = Eigen::Vector3f::Zero();  ///< levels
+  Eigen::Matrix<float, 5, 1> field = Eigen::Matrix<float, 5, 1>::Zero();
+  Eigen::Vector2f center = Eigen::Vector2f::Zero();
+  float half_width = 1;
+
+  /// The field is held within these: outside the pairs the polynomial may go anywhere.
+  static constexpr float least_field = 0.5F;
+  static constexpr float greatest_field = 2;
+  float field_at(float x, float y) const;
+  Eigen::Array3f operator()(const Eigen::Array3f& rgbd, float x, float y) const;
+};
+
+/// What a ColorMap may consist of.
+enum class ColorMapModel { affine, field };
+
+/// Fits robustly (iteratively reweighted least squares with Tukey's weights): pairs that do not
+/// show the same surface, being occluded or misregistered, have no say as long as they are fewer
+/// than half. affine: a gain and an offset for each channel. field: everything above.
+/// What few pairs do not determine stays near a gain for each channel; without pairs the map
+/// changes nothing. bounds: the picture's. Cost: 0.1 us a pair.
+ColorMap fit_color_map(const std::vector<ColorPair>& pairs, ColorMapModel model, const Rect& bounds);
+
+}  // namespace diminish

@@ -1,0 +1,143 @@
+#include "composite/map_colors.h"
+
+#include <cstdint>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "composite/map_colors.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+// Included once for every instruction set.
+#ifndef DIMINISH_COMPOSITE_MAP_COLORS_ROW
+#define DIMINISH_COMPOSITE_MAP_COLORS_ROW
+namespace diminish {
+
+/// Consecutive pixels of one row, beginning at column x.
+struct MappedRow {
+  const Bgra* colors;
+  const std::uint8_t* sources;
+  const std::uint8_t* occlusion;
+  const float* correction;  ///< three channels, `channel_step` apart
+  std::ptrdiff_t channel_step;
+  Bgr* picture;
+  int x, y, count;
+};
+
+}  // namespace diminish
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace diminish::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+constexpr int block = 16;
+using Floats = hn::CappedTag<float, block>;
+using Ints = hn::RebindToSigned<Floats>;
+using Bytes = hn::Rebind<std::uint8_t, Floats>;
+using Vector = hn::Vec<Floats>;
+
+HWY_INLINE Vector Set(float value) {
+  return hn::Set(Floats(), value);
+}
+HWY_INLINE Vector ToFloats(hn::Vec<Bytes> bytes) {
+  return hn::ConvertTo(Floats(), hn::PromoteTo(Ints(), bytes));
+}
+
+/// The pixels that are from one camera; `count` is a multiple of 16.
+void MapRow(const ColorMap& map, std::uint8_t source, const MappedRow& row) {
+  const Bytes bytes;
+  const auto lanes = static_cast<int>(hn::Lanes(bytes));
+  const auto wanted = hn::Set(bytes, source);
+  // The field is a quadratic polynomial of the column.
+  const float scale = 1 / map.half_width;
+  const float v = (static_cast<float>(row.y) - map.center.y()) * scale;
+  const Vector constant = Set(1 + map.field[1] * v + map.field[4] * v * v);
+  const Vector linear = Set(map.field[0] + map.field[3] * v);
+  const Vector squared = Set(map.field[2]);
+  for (int i = 0; i < row.count; i += lanes) {
+    const auto chosen = hn::And(hn::Eq(hn::LoadU(bytes, row.sources + i), wanted),
+                                hn::Ne(hn::LoadU(bytes, row.occlusion + i), hn::Zero(bytes)));
+    if (hn::AllFalse(bytes, chosen)) continue;
+    hn::Vec<Bytes> color[4];
+    hn::LoadInterleaved4(bytes, reinterpret_cast<const std::uint8_t*>(row.colors + i), color[0],
+                         color[1], color[2], color[3]);
+    const Vector blue = ToFloats(color[0]);
+    const Vector green = ToFloats(color[1]);
+    const Vector red = ToFloats(color[2]);
+    const Vector first = Set((static_cast<float>(row.x + i) - map.center.x()) * scale);
+    const Vector u = hn::MulAdd(hn::Iota(Floats(), 0), Set(scale), first);
+    Vector field = hn::MulAdd(hn::MulAdd(squared, u, linear), u, constant);
+    field = hn::Min(hn::Max(field, Set(ColorMap::least_field)), Set(ColorMap::greatest_field));
+    auto* pixels = reinterpret_cast<std::uint8_t*>(row.picture + i);
+    hn::Vec<Bytes> old[3], result[3];
+    hn::LoadInterleaved3(bytes, pixels, old[0], old[1], old[2]);
+    for (int c = 0; c < 3; ++c) {
+      Vector sum = hn::MulAdd(Set(map.matrix(c, 0)), blue, Set(map.offset[c]));
+      sum = hn::MulAdd(Set(map.matrix(c, 1)), green, sum);
+      sum = hn::MulAdd(Set(map.matrix(c, 2)), red, sum);
+      sum = hn::MulAdd(field, sum, hn::LoadU(Floats(), row.correction + c * row.channel_step + i));
+      result[c] = hn::IfThenElse(chosen, hn::DemoteTo(bytes, hn::NearestInt(sum)), old[c]);
+    }
+    hn::StoreInterleaved3(result[0], result[1], result[2], bytes, pixels);
+  }
+}
+
+}  // namespace
+}  // namespace diminish::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace diminish {
+namespace {
+
+HWY_EXPORT(MapRow);
+
+void map_row(const std::vector<ColorMap>& maps, const MappedRow& row) {
+  bool present[256] = {};
+  for (int i = 0; i < row.count; ++i) present[row.sources[i]] = true;
+  for (std::size_t source = 1; source < maps.size(); ++source) {
+    if (!present[source]) continue;
+    HWY_DYNAMIC_DISPATCH(MapRow)(maps[source], static_cast<std::uint8_t>(source), row);
+  }
+}
+
+}  // namespace
+
+void map_colors(const std::vector<ColorMap>& maps, const Reconstruction& reconstruction,
+                const Mask& occlusion, int y, const float* correction, Image<Bgr>& picture) {
+  const Rect& region = reconstruction.region;
+  constexpr int block = 16;
+  const int whole = region.width / block * block;
+  MappedRow row{reconstruction.color.row(y) + region.x,
+                reconstruction.source.row(y) + region.x,
+                occlusion.row(y) + region.x,
+                correction,
+                region.width,
+                picture.row(y) + region.x,
+                region.x,
+                y,
+                whole};
+  map_row(maps, row);
+  const int rest = region.width - whole;
+  if (rest == 0) return;
+  // The last pixels of a row, where there may be none to read beyond.
+  Bgra colors[block] = {};
+  std::uint8_t sources[block] = {};
+  std::uint8_t mask[block] = {};
+  float corrections[3 * block] = {};
+  Bgr pixels[block] = {};
+  std::copy_n(row.colors + whole, rest, colors);
+  std::copy_n(row.sources + whole, rest, sources);
+  std::copy_n(row.occlusion + whole, rest, mask);
+  for (int c = 0; c < 3; ++c) {
+    std::copy_n(correction + c * region.width + whole, rest, corrections + c * block);
+  }
+  std::copy_n(row.picture + whole, rest, pixels);
+  map_row(maps, {colors, sources, mask, corrections, block, pixels, region.x + whole, y, block});
+  std::copy_n(pixels, rest, row.picture + whole);
+}
+
+}  // namespace diminish
+#endif

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <vector>
+
+#include "composite/color_map.h"
+#include "diminish/image.h"
+#include "diminish/reconstruction.h"
+
+namespace diminish {
+
+/// Writes to row y of `picture`, wherever an object is to be removed and the reconstruction has a
+/// colour, that colour mapped, plus `correction`.
+/// maps: by Reconstruction::source. correction: as from SoftMembrane::row.
+void map_colors(const std::vector<ColorMap>& maps, const Reconstruction& reconstruction,
+                const Mask& occlusion, int y, const float* correction, Image<Bgr>& picture);
+
+}  // namespace diminish

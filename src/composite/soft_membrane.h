@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "diminish/image.h"
+
+namespace diminish {
+
+/// A smooth correction that follows differences where they are known and fades away from them.
+///
+/// Minimises, over a coarse grid of values m with bilinear interpolation between them,
+///   sum of w (m - difference)^2  +  |gradient m|^2  +  fading |m|^2
+/// so that, other than a membrane through Dirichlet values (Poisson cloning), it takes the average
+/// of noisy differences, and outliers, which get no weight, leave no trace.
+class SoftMembrane {
+ public:
+  static constexpr int cell = 16;  ///< pixels
+
+  void begin(const Rect& region);
+  /// difference: in levels.
+  void add(int x, int y, const Eigen::Array3f& difference);
+  void solve();
+  /// The correction of pixels [region.x, region.right()) of a row: three channels, each
+  /// `region.width` long.
+  void row(int y, float* correction) const;
+
+ private:
+  Rect region_;
+  int columns_ = 0, rows_ = 0;
+  std::vector<float> weights_;
+  std::vector<Eigen::Array3f> sums_, values_;
+};
+
+}  // namespace diminish
