@@ -5,6 +5,7 @@
 
 #include "diminish/image.h"
 #include "diminish/options.h"
+#include "diminish/reconstruction.h"
 #include "diminish/registry.h"
 
 namespace diminish {
@@ -18,9 +19,11 @@ class Inpainter {
   virtual ~Inpainter() = default;
 
   /// Writes a colour to every pixel of `picture` where `missing` is not 0, from the other pixels,
-  /// all of which are background; leaves those alone. Returns whether the pixels were filled with
-  /// something to look at ("none" leaves them black and answers false).
-  virtual bool inpaint(const Mask& missing, const Options& options, Image<Bgr>& picture) = 0;
+  /// none of which shows an object to remove; leaves those alone. reconstruction: what is known of
+  /// the surfaces beside the missing pixels. Returns whether the pixels were filled with something
+  /// to look at ("none" leaves them black and answers false).
+  virtual bool inpaint(const Mask& missing, const Reconstruction& reconstruction,
+                       const Options& options, Image<Bgr>& picture) = 0;
 };
 
 }  // namespace diminish

@@ -14,6 +14,8 @@ struct Options {
   double blob_spread = 1.0;
   double discontinuity_threshold_m = 0.05;
   double depth_agreement_m = 0.03;
+  bool remove_hidden = true;
+  bool remove_flying = true;
   int surroundings_px = 8;
   bool whole_view = false;
   std::string color_correct = "field_membrane";
@@ -56,6 +58,8 @@ void for_each_option(AnyOptions& options, Visit&& visit) {
   visit(OptionInfo{"depth_agreement_m", "metres",
                    "Surfaces of two RGB-D cameras closer than this are one surface", 0, 100},
         options.depth_agreement_m);
+  visit(OptionInfo{"remove_hidden", "", "x"}, options.remove_hidden);
+  visit(OptionInfo{"remove_flying", "", "x"}, options.remove_flying);
   visit(OptionInfo{"surroundings_px", "pixels",
                    "How far around the mask the scene is reconstructed", 1, 10000},
         options.surroundings_px);

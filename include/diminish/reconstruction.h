@@ -17,6 +17,13 @@ struct SceneSample {
   bool even = false;           ///< the neighbourhood has one colour
 };
 
+/// What Reconstruction::surface says of a pixel.
+namespace surface_label {
+inline constexpr std::uint8_t unknown = 0;      ///< nothing was measured there, nor is a plane behind it
+inline constexpr std::uint8_t first_plane = 1;  ///< and further ones: on a plane of the background
+inline constexpr std::uint8_t foreground = 255; ///< measured, in front of the planes
+}  // namespace surface_label
+
 /// The scene behind the objects as the RGB-D cameras see it, drawn from the colour camera's
 /// viewpoint. All images have the colour camera's size.
 struct Reconstruction {
@@ -24,6 +31,8 @@ struct Reconstruction {
   Image<Bgra> color;           ///< alpha 255 where a triangle was drawn, else all 0
   Image<float> depth_m;        ///< z in the colour camera's frame; 0 where alpha is 0
   Image<std::uint8_t> source;  ///< 0 where alpha is 0, else 1 + the RGB-D camera's index
+  /// In `region`: see surface_label. Where nothing was drawn, the plane that would be seen there.
+  Image<std::uint8_t> surface;
   /// Thinly over the whole picture, and not only in `region`: what the RGB-D cameras see of
   /// surfaces, away from objects to remove and from depth edges. A few thousand.
   std::vector<SceneSample> samples;

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <vector>
 
 #include "diminish/frame_set.h"
 #include "diminish/occlusion_masks.h"
@@ -13,6 +14,9 @@
 
 namespace diminish {
 
+/// One for each RGB-D camera, in its own units; 0: nothing to draw.
+using DepthImages = std::vector<Image<std::uint16_t>>;
+
 /// Draws what the RGB-D cameras see, without the objects, from the colour camera's viewpoint.
 /// Registered by name: one per implementation ("reference", ...).
 class Reconstructor {
@@ -22,10 +26,11 @@ class Reconstructor {
 
   virtual ~Reconstructor() = default;
 
-  /// masks: grown already. region: the part to draw, inside the colour image. RGB-D cameras without
-  /// images or without a pose in this frame take no part.
-  virtual void reconstruct(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks,
-                           const Rect& region, const Options& options,
+  /// depths: of each RGB-D camera, what is to be drawn of its depth image. masks: grown already.
+  /// region: the part to draw, inside the colour image. RGB-D cameras without images or without a
+  /// pose in this frame take no part.
+  virtual void reconstruct(const FrameSet& frame, const DepthImages& depths, const Poses& poses,
+                           const OcclusionMasks& masks, const Rect& region, const Options& options,
                            Reconstruction& reconstruction) = 0;
 };
 

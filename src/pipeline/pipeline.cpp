@@ -11,6 +11,8 @@
 #include "diminish/marker_detector.h"
 #include "diminish/reconstructor.h"
 #include "pose/camera_poses.h"
+#include "reconstruct/background_planes.h"
+#include "reconstruct/depth_cleaner.h"
 #include "reconstruct/scene_sampler.h"
 
 namespace diminish {
@@ -47,8 +49,13 @@ struct Pipeline::Implementation {
         camera_poses(rig, scene),
         occluders(rig, scene),
         reconstructor(Registry<Reconstructor>::get("cpu")(rig)),
-        sampler(rig) {
-    for (const RgbdCamera& camera : rig.rgbd) rgbd_color_lenses.emplace_back(camera.color);
+        sampler(rig),
+        background_planes(rig.color) {
+    for (const RgbdCamera& camera : rig.rgbd) {
+      rgbd_color_lenses.emplace_back(camera.color);
+      depth_cleaners.emplace_back(camera);
+    }
+    depths.resize(rig.rgbd.size());
     if (camera_poses.needs_markers() || occluders.needs_markers()) {
       for (std::size_t i = 0; i <= rig.rgbd.size(); ++i) {
         marker_detectors.emplace_back(scene.marker_dictionary);
@@ -70,6 +77,13 @@ struct Pipeline::Implementation {
                                    markers.rgbd[i - 1]);
       }
     });
+  }
+
+  void clean_depths(const FrameSet& frame) {
+    for (std::size_t k = 0; k < rig.rgbd.size(); ++k) {
+      if (!frame.rgbd[k].available()) continue;
+      depth_cleaners[k].clean(frame.rgbd[k].depth, options, depths[k]);
+    }
   }
 
   /// What compositing needs: the objects and their surroundings.
@@ -101,7 +115,10 @@ struct Pipeline::Implementation {
   CameraPoses camera_poses;
   OccluderStage occluders;
   std::unique_ptr<Reconstructor> reconstructor;
+  std::vector<DepthCleaner> depth_cleaners;
+  DepthImages depths;
   SceneSampler sampler;
+  BackgroundPlanes background_planes;
   Compositor compositor;
   OcclusionMasks masks;
 };
@@ -142,9 +159,13 @@ void Pipeline::process(const FrameSet& frame, DiminishedFrame& result) {
   }
   {  // 3.3 Reconstruction of what is behind them
     const ScopedTimer timer(report.milliseconds, Stage::reconstruction);
-    self.reconstructor->reconstruct(frame, report.poses, self.masks, self.region_to_reconstruct(),
+    self.clean_depths(frame);
+    self.sampler.sample(frame, self.depths, report.poses, self.masks,
+                        result.reconstruction.samples);
+    self.reconstructor->reconstruct(frame, self.depths, report.poses, self.masks, self.region_to_reconstruct(),
                                     self.options, result.reconstruction);
-    self.sampler.sample(frame, report.poses, self.masks, result.reconstruction.samples);
+    self.background_planes.find(bounding_box(self.masks.color), result.reconstruction.samples);
+    self.background_planes.label(result.reconstruction);
   }
   // 3.4 Compositing, colour correction, inpainting
   self.compositor.composite(frame.color, self.masks, self.options, result);

@@ -22,7 +22,7 @@ DepthMesh::DepthMesh(const RgbdCamera& camera, const Intrinsics& color)
       rgbd_color_(Lens(camera.color)) {}
 
 MeshVertex DepthMesh::vertex(const Frame& frame, int column, int row) const {
-  const std::uint16_t value = frame.images.depth(column, row);
+  const std::uint16_t value = frame.depth(column, row);
   if (value == 0 || frame.depth_mask(column, row) != 0) return {};
   const float z = static_cast<float>(value) * static_cast<float>(camera_.depth_unit_m);
   const float x = rays_(column, row).x() * z;
@@ -54,7 +54,7 @@ MeshVertex DepthMesh::vertex(const Frame& frame, int column, int row) const {
 }
 
 void DepthMesh::compute(const Frame& frame, Image<MeshVertex>& vertices) const {
-  vertices.resize(frame.images.depth.width(), frame.images.depth.height());
+  vertices.resize(frame.depth.width(), frame.depth.height());
   for (int row = 0; row < vertices.height(); ++row) {
     for (int column = 0; column < vertices.width(); ++column) {
       vertices(column, row) = vertex(frame, column, row);

@@ -30,7 +30,7 @@ class DepthMesh {
 
   /// The masks are the camera's own.
   struct Frame {
-    const RgbdFrame& images;
+    const Image<std::uint16_t>& depth;
     const Mask& depth_mask;
     const Mask& color_mask;
     FloatTransform to_color;

@@ -17,15 +17,15 @@ class ReferenceReconstructor : public Reconstructor {
     drawn_.resize(rig.rgbd.size());
   }
 
-  void reconstruct(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks,
-                   const Rect& region, const Options& options,
+  void reconstruct(const FrameSet& frame, const DepthImages& depths, const Poses& poses,
+                   const OcclusionMasks& masks, const Rect& region, const Options& options,
                    Reconstruction& reconstruction) override {
     clear(region, reconstruction);
     const auto threshold_m = static_cast<float>(options.discontinuity_threshold_m);
     for (std::size_t k = 0; k < meshes_.size(); ++k) {
       drawn_[k] = nullptr;
       if (!frame.rgbd[k].available() || !poses.color_from_depth[k]) continue;
-      meshes_[k].compute({frame.rgbd[k], masks.rgbd_depth[k], masks.rgbd_color[k],
+      meshes_[k].compute({depths[k], masks.rgbd_depth[k], masks.rgbd_color[k],
                           FloatTransform(*poses.color_from_depth[k])},
                          vertices_);
       layers_[k].clear(color_.width, color_.height, region);

@@ -34,32 +34,32 @@ SceneSampler::SceneSampler(const Rig& rig) : color_(rig.color), by_camera_(rig.r
   for (const RgbdCamera& camera : rig.rgbd) meshes_.emplace_back(camera, rig.color);
 }
 
-void SceneSampler::sample(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks,
+void SceneSampler::sample(const FrameSet& frame, const DepthImages& depths, const Poses& poses, const OcclusionMasks& masks,
                           std::vector<SceneSample>& samples) {
   oneapi::tbb::parallel_for(std::size_t{0}, meshes_.size(), [&](std::size_t k) {
     by_camera_[k].clear();
     if (frame.rgbd[k].available() && poses.color_from_depth[k]) {
-      sample_camera(frame, poses, masks, k, by_camera_[k]);
+      sample_camera(frame, depths, poses, masks, k, by_camera_[k]);
     }
   });
   samples.clear();
   for (const auto& part : by_camera_) samples.insert(samples.end(), part.begin(), part.end());
 }
 
-void SceneSampler::sample_camera(const FrameSet& frame, const Poses& poses,
+void SceneSampler::sample_camera(const FrameSet& frame, const DepthImages& depths, const Poses& poses,
                                  const OcclusionMasks& masks, std::size_t k,
                                  std::vector<SceneSample>& samples) const {
   const RgbdFrame& images = frame.rgbd[k];
-  const DepthMesh::Frame mesh_frame{images, masks.rgbd_depth[k], masks.rgbd_color[k],
+  const DepthMesh::Frame mesh_frame{depths[k], masks.rgbd_depth[k], masks.rgbd_color[k],
                                     FloatTransform(*poses.color_from_depth[k])};
-  const int width = images.depth.width();
-  const int height = images.depth.height();
+  const int width = depths[k].width();
+  const int height = depths[k].height();
   const int step = std::max(
       1, static_cast<int>(std::lround(std::sqrt(static_cast<double>(width) * height / wanted_samples))));
   constexpr int rim = even_color_reach_px;
   for (int row = 2 + step / 2; row < height - 2; row += step) {
     for (int column = 2 + step / 2; column < width - 2; column += step) {
-      if (!on_surface(images.depth, column, row)) continue;
+      if (!on_surface(depths[k], column, row)) continue;
       const MeshVertex vertex = meshes_[k].vertex(mesh_frame, column, row);
       if (!vertex.valid()) continue;
       const Eigen::Vector2f pixel = Eigen::Vector2f(static_cast<float>(vertex.x), static_cast<float>(vertex.y)) / sdct::subpixels;

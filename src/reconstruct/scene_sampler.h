@@ -5,7 +5,7 @@
 #include "diminish/frame_set.h"
 #include "diminish/occlusion_masks.h"
 #include "diminish/poses.h"
-#include "diminish/reconstruction.h"
+#include "diminish/reconstructor.h"
 #include "diminish/rig.h"
 #include "reconstruct/depth_mesh.h"
 
@@ -18,11 +18,11 @@ class SceneSampler {
   explicit SceneSampler(const Rig& rig);
 
   /// masks: grown already. Cost: about 0.1 us a sample; `samples` is sorted by `source`.
-  void sample(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks,
+  void sample(const FrameSet& frame, const DepthImages& depths, const Poses& poses, const OcclusionMasks& masks,
               std::vector<SceneSample>& samples);
 
  private:
-  void sample_camera(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks,
+  void sample_camera(const FrameSet& frame, const DepthImages& depths, const Poses& poses, const OcclusionMasks& masks,
                      std::size_t k, std::vector<SceneSample>& samples) const;
 
   Intrinsics color_;

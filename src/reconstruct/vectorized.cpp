@@ -90,8 +90,8 @@ class VectorizedReconstructor : public Reconstructor {
     }
   }
 
-  void reconstruct(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks,
-                   const Rect& region, const Options& options,
+  void reconstruct(const FrameSet& frame, const DepthImages& depths, const Poses& poses,
+                   const OcclusionMasks& masks, const Rect& region, const Options& options,
                    Reconstruction& reconstruction) override {
     clear_outside(region, reconstruction);
     drawn_.clear();
@@ -103,7 +103,7 @@ class VectorizedReconstructor : public Reconstructor {
     oneapi::tbb::parallel_for(
         std::size_t{0}, CameraMesh::parts * drawn_.size(), [&](std::size_t i) {
           const std::size_t k = drawn_[i / CameraMesh::parts].camera;
-          meshes_[k].draw({frame.rgbd[k], masks.rgbd_depth[k], masks.rgbd_color[k],
+          meshes_[k].draw({depths[k], masks.rgbd_depth[k], masks.rgbd_color[k],
                            FloatTransform(*poses.color_from_depth[k]), region},
                           threshold_m, static_cast<int>(i % CameraMesh::parts));
         });

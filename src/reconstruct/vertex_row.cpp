@@ -218,7 +218,7 @@ VertexRows::VertexRows(const RgbdCamera& camera, const Intrinsics& color)
 void VertexRows::project(const Frame& frame, int row, VertexRow& vertices) const {
   const std::ptrdiff_t rays = static_cast<std::ptrdiff_t>(row) * padded_width_;
   HWY_DYNAMIC_DISPATCH(ProjectRow)
-  (constants_, frame.to_color, frame.region, frame.images.depth.row(row), frame.depth_mask.row(row),
+  (constants_, frame.to_color, frame.region, frame.depth.row(row), frame.depth_mask.row(row),
    ray_x_.data() + rays, ray_y_.data() + rays, vertices);
 }
 

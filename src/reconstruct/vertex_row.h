@@ -34,7 +34,7 @@ class VertexRows {
   VertexRows(const RgbdCamera& camera, const Intrinsics& color);
 
   struct Frame {
-    const RgbdFrame& images;
+    const Image<std::uint16_t>& depth;
     const Mask& depth_mask;
     const Mask& color_mask;
     FloatTransform to_color;
