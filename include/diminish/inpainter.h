@@ -10,6 +10,13 @@
 
 namespace diminish {
 
+/// What is to be filled, and what is known of it.
+struct Holes {
+  const Mask& missing;
+  const Mask& occlusion;                 ///< of the objects to remove; holds all of `missing`
+  const Reconstruction& reconstruction;  ///< surfaces beside the missing pixels
+};
+
 /// Fills pixels that no camera sees. Registered by name; the option `inpaint` chooses.
 class Inpainter {
  public:
@@ -18,12 +25,10 @@ class Inpainter {
 
   virtual ~Inpainter() = default;
 
-  /// Writes a colour to every pixel of `picture` where `missing` is not 0, from the other pixels,
-  /// none of which shows an object to remove; leaves those alone. reconstruction: what is known of
-  /// the surfaces beside the missing pixels. Returns whether the pixels were filled with something
-  /// to look at ("none" leaves them black and answers false).
-  virtual bool inpaint(const Mask& missing, const Reconstruction& reconstruction,
-                       const Options& options, Image<Bgr>& picture) = 0;
+  /// Writes a colour to every pixel of `picture` where `holes.missing` is not 0, from the other
+  /// pixels, none of which shows an object to remove; leaves those alone. Returns whether the pixels
+  /// were filled with something to look at ("none" leaves them black and answers false).
+  virtual bool inpaint(const Holes& holes, const Options& options, Image<Bgr>& picture) = 0;
 };
 
 }  // namespace diminish

@@ -13,13 +13,14 @@ struct Options {
   int rgbd_mask_margin_px = 6;
   double blob_spread = 1.0;
   double discontinuity_threshold_m = 0.05;
+  double discontinuity_reach_m = 2;
   double depth_agreement_m = 0.03;
   bool remove_hidden = true;
   bool remove_flying = true;
-  int surroundings_px = 8;
+  int surroundings_px = 16;
   bool whole_view = false;
   std::string color_correct = "field_membrane";
-  std::string inpaint = "harmonic";
+  std::string inpaint = "surfaces";
   int inpaint_radius_px = 5;
 };
 
@@ -55,6 +56,11 @@ void for_each_option(AnyOptions& options, Visit&& visit) {
                    "Depth pixels further apart than this are not joined by a triangle (SDCT)", 1e-4,
                    100},
         options.discontinuity_threshold_m);
+  visit(OptionInfo{"discontinuity_reach_m", "metres",
+                   "Beyond this distance the threshold grows with its square, as sensors' depth "
+                   "resolution does; 0: it is constant, as the paper's",
+                   0, 1000},
+        options.discontinuity_reach_m);
   visit(OptionInfo{"depth_agreement_m", "metres",
                    "Surfaces of two RGB-D cameras closer than this are one surface", 0, 100},
         options.depth_agreement_m);

@@ -13,8 +13,8 @@ constexpr float tolerance_levels = 1.F;
 /// has the least squared gradient of all fillings; it invents no edges.
 class HarmonicInpainting : public Inpainter {
  public:
-  bool inpaint(const Mask& missing, const Reconstruction&, const Options&,
-               Image<Bgr>& picture) override {
+  bool inpaint(const Holes& holes_, const Options&, Image<Bgr>& picture) override {
+    const Mask& missing = holes_.missing;
     const Rect holes = bounding_box(missing);
     if (holes.empty()) return true;
     const Rect window = intersect(grow(holes, 1), picture.bounds());

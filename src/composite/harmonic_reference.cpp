@@ -14,8 +14,8 @@ constexpr float tolerance_levels = 0.1F;
 /// The plain version of HarmonicInpainting (harmonic_inpainting.cpp), solved by LaplaceSolver.
 class HarmonicReference : public Inpainter {
  public:
-  bool inpaint(const Mask& missing, const Reconstruction&, const Options&,
-               Image<Bgr>& picture) override {
+  bool inpaint(const Holes& holes_, const Options&, Image<Bgr>& picture) override {
+    const Mask& missing = holes_.missing;
     const Rect holes = bounding_box(missing);
     if (holes.empty()) return true;
     const auto for_each_pixel = [&](auto&& visit) {

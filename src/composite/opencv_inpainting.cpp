@@ -11,8 +11,8 @@ class OpenCvInpainting : public Inpainter {
  public:
   explicit OpenCvInpainting(int method) : method_(method) {}
 
-  bool inpaint(const Mask& missing, const Reconstruction&, const Options& options,
-               Image<Bgr>& picture) override {
+  bool inpaint(const Holes& holes_, const Options& options, Image<Bgr>& picture) override {
+    const Mask& missing = holes_.missing;
     const Rect holes = bounding_box(missing);
     if (holes.empty()) return true;
     // A hole's pixels depend on what is within the radius, no more.

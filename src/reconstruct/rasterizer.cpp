@@ -97,11 +97,11 @@ void draw_triangle(const MeshVertex& a, const MeshVertex& b, const MeshVertex& c
   }
 }
 
-void draw_mesh(const Image<MeshVertex>& vertices, const Image<Bgr>& texture, float threshold_m,
+void draw_mesh(const Image<MeshVertex>& vertices, const Image<Bgr>& texture, const sdct::Threshold& threshold,
                const Rect& region, Layer& layer) {
   const auto draw = [&](const MeshVertex& a, const MeshVertex& b, const MeshVertex& c) {
     if (a.valid() && b.valid() && c.valid() &&
-        sdct::joined(a.depth_m, b.depth_m, c.depth_m, threshold_m) &&
+        sdct::joined(a.depth_m, b.depth_m, c.depth_m, threshold) &&
         sdct::faces_forward(sdct::doubled_area(a.x, a.y, b.x, b.y, c.x, c.y))) {
       draw_triangle(a, b, c, texture, region, layer);
     }

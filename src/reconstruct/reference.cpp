@@ -21,7 +21,8 @@ class ReferenceReconstructor : public Reconstructor {
                    const OcclusionMasks& masks, const Rect& region, const Options& options,
                    Reconstruction& reconstruction) override {
     clear(region, reconstruction);
-    const auto threshold_m = static_cast<float>(options.discontinuity_threshold_m);
+    const sdct::Threshold threshold(options.discontinuity_threshold_m,
+                                    options.discontinuity_reach_m);
     for (std::size_t k = 0; k < meshes_.size(); ++k) {
       drawn_[k] = nullptr;
       if (!frame.rgbd[k].available() || !poses.color_from_depth[k]) continue;
@@ -29,7 +30,7 @@ class ReferenceReconstructor : public Reconstructor {
                           FloatTransform(*poses.color_from_depth[k])},
                          vertices_);
       layers_[k].clear(color_.width, color_.height, region);
-      draw_mesh(vertices_, frame.rgbd[k].color, threshold_m, region, layers_[k]);
+      draw_mesh(vertices_, frame.rgbd[k].color, threshold, region, layers_[k]);
       drawn_[k] = &layers_[k];
     }
     merge_layers(drawn_, static_cast<float>(options.depth_agreement_m), reconstruction);

@@ -7,6 +7,7 @@
 #include "diminish/error.h"
 #include "diminish/reconstructor.h"
 #include "reconstruct/cell_rasterizer.h"
+#include "reconstruct/sdct.h"
 #include "reconstruct/texture_lookup.h"
 #include "reconstruct/vertex_row.h"
 
@@ -29,7 +30,7 @@ class CameraMesh {
   }
 
   /// Two rows of vertices at a time; cells that cannot touch the region are left out by the block.
-  void draw(const VertexRows::Frame& frame, float threshold_m, int which) {
+  void draw(const VertexRows::Frame& frame, const sdct::Threshold& threshold, int which) {
     const int middle = rows_.height() / 2;
     const int first = which == 0 ? 0 : middle;
     const int last = which == 0 ? middle : rows_.height() - 1;
@@ -51,7 +52,7 @@ class CameraMesh {
           if (!upper.has_colors[i]) rows_.find_colors(frame, y, k, upper);
           if (!lower.has_colors[i]) rows_.find_colors(frame, y + 1, k, lower);
         }
-        draw_cells(upper, lower, block, threshold_m, surface);
+        draw_cells(upper, lower, block, threshold, surface);
       }
     }
   }
@@ -99,13 +100,14 @@ class VectorizedReconstructor : public Reconstructor {
       if (!frame.rgbd[k].available() || !poses.color_from_depth[k]) continue;
       drawn_.push_back({k, 0});
     }
-    const auto threshold_m = static_cast<float>(options.discontinuity_threshold_m);
+    const sdct::Threshold threshold(options.discontinuity_threshold_m,
+                                    options.discontinuity_reach_m);
     oneapi::tbb::parallel_for(
         std::size_t{0}, CameraMesh::parts * drawn_.size(), [&](std::size_t i) {
           const std::size_t k = drawn_[i / CameraMesh::parts].camera;
           meshes_[k].draw({depths[k], masks.rgbd_depth[k], masks.rgbd_color[k],
                            FloatTransform(*poses.color_from_depth[k]), region},
-                          threshold_m, static_cast<int>(i % CameraMesh::parts));
+                          threshold, static_cast<int>(i % CameraMesh::parts));
         });
     for_rows(region.height, [&](Rows rows) {
       for (const Drawn& drawn : drawn_) {
