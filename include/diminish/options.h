@@ -16,6 +16,7 @@ struct Options {
   double discontinuity_reach_m = 2;
   double depth_agreement_m = 0.03;
   bool remove_hidden = true;
+  bool refine_poses = true;
   bool remove_flying = true;
   int surroundings_px = 16;
   bool whole_view = false;
@@ -65,6 +66,7 @@ void for_each_option(AnyOptions& options, Visit&& visit) {
                    "Surfaces of two RGB-D cameras closer than this are one surface", 0, 100},
         options.depth_agreement_m);
   visit(OptionInfo{"remove_hidden", "", "x"}, options.remove_hidden);
+  visit(OptionInfo{"refine_poses", "", "x"}, options.refine_poses);
   visit(OptionInfo{"remove_flying", "", "x"}, options.remove_flying);
   visit(OptionInfo{"surroundings_px", "pixels",
                    "How far around the mask the scene is reconstructed", 1, 10000},

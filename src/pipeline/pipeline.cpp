@@ -11,6 +11,7 @@
 #include "diminish/marker_detector.h"
 #include "diminish/reconstructor.h"
 #include "pose/camera_poses.h"
+#include "pose/pose_refinement.h"
 #include "reconstruct/background_planes.h"
 #include "reconstruct/depth_cleaner.h"
 #include "reconstruct/scene_sampler.h"
@@ -50,6 +51,7 @@ struct Pipeline::Implementation {
         occluders(rig, scene),
         reconstructor(Registry<Reconstructor>::get("cpu")(rig)),
         sampler(rig),
+        pose_refinement(rig.color),
         background_planes(rig.color) {
     for (const RgbdCamera& camera : rig.rgbd) {
       rgbd_color_lenses.emplace_back(camera.color);
@@ -118,6 +120,7 @@ struct Pipeline::Implementation {
   std::vector<DepthCleaner> depth_cleaners;
   DepthImages depths;
   SceneSampler sampler;
+  PoseRefinement pose_refinement;
   BackgroundPlanes background_planes;
   Compositor compositor;
   OcclusionMasks masks;
@@ -162,6 +165,7 @@ void Pipeline::process(const FrameSet& frame, DiminishedFrame& result) {
     self.clean_depths(frame);
     self.sampler.sample(frame, self.depths, report.poses, self.masks,
                         result.reconstruction.samples);
+    if (self.options.refine_poses) self.pose_refinement.refine(frame, self.masks.color, result.reconstruction.samples, report.poses);
     self.reconstructor->reconstruct(frame, self.depths, report.poses, self.masks, self.region_to_reconstruct(),
                                     self.options, result.reconstruction);
     self.background_planes.find(bounding_box(self.masks.color), result.reconstruction.samples);

@@ -78,6 +78,7 @@ void SceneSampler::sample_camera(const FrameSet& frame, const DepthImages& depth
         sample.point_m[axis] = mesh_frame.to_color.apply(axis, x, y, vertex.depth_m);
       }
       sample.pixel = pixel;
+      sample.texture = {vertex.u, vertex.v};
       const auto level = [&](int c) { return static_cast<std::uint8_t>(std::lrint(color.channels[c])); };
       sample.color = {level(0), level(1), level(2)};
       sample.source = static_cast<std::uint8_t>(k + 1);
