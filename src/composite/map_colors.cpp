@@ -45,42 +45,54 @@ HWY_INLINE Vector ToFloats(hn::Vec<Bytes> bytes) {
   return hn::ConvertTo(Floats(), hn::PromoteTo(Ints(), bytes));
 }
 
-/// The pixels that are from one camera; `count` is a multiple of 16.
-void MapRow(const ColorMap& map, std::uint8_t source, const MappedRow& row) {
+/// A vector of pixels from column i of the row on: those that are `chosen`.
+HWY_INLINE void MapPixels(const ColorMap& map, const MappedRow& row, int i,
+                          hn::Mask<Bytes> chosen) {
   const Bytes bytes;
-  const auto lanes = static_cast<int>(hn::Lanes(bytes));
-  const auto wanted = hn::Set(bytes, source);
+  hn::Vec<Bytes> color[4];
+  hn::LoadInterleaved4(bytes, reinterpret_cast<const std::uint8_t*>(row.colors + i), color[0],
+                       color[1], color[2], color[3]);
+  const Vector blue = ToFloats(color[0]);
+  const Vector green = ToFloats(color[1]);
+  const Vector red = ToFloats(color[2]);
   // The field is a quadratic polynomial of the column.
   const float scale = 1 / map.half_width;
   const float v = (static_cast<float>(row.y) - map.center.y()) * scale;
   const Vector constant = Set(1 + map.field[1] * v + map.field[4] * v * v);
   const Vector linear = Set(map.field[0] + map.field[3] * v);
-  const Vector squared = Set(map.field[2]);
+  const Vector first = Set((static_cast<float>(row.x + i) - map.center.x()) * scale);
+  const Vector u = hn::MulAdd(hn::Iota(Floats(), 0), Set(scale), first);
+  Vector field = hn::MulAdd(hn::MulAdd(Set(map.field[2]), u, linear), u, constant);
+  field = hn::Min(hn::Max(field, Set(ColorMap::least_field)), Set(ColorMap::greatest_field));
+  auto* pixels = reinterpret_cast<std::uint8_t*>(row.picture + i);
+  hn::Vec<Bytes> old[3], result[3];
+  hn::LoadInterleaved3(bytes, pixels, old[0], old[1], old[2]);
+  for (int c = 0; c < 3; ++c) {
+    Vector sum = hn::MulAdd(Set(map.matrix(c, 0)), blue, Set(map.offset[c]));
+    sum = hn::MulAdd(Set(map.matrix(c, 1)), green, sum);
+    sum = hn::MulAdd(Set(map.matrix(c, 2)), red, sum);
+    sum = hn::MulAdd(field, sum, hn::LoadU(Floats(), row.correction + c * row.channel_step + i));
+    result[c] = hn::IfThenElse(chosen, hn::DemoteTo(bytes, hn::NearestInt(sum)), old[c]);
+  }
+  hn::StoreInterleaved3(result[0], result[1], result[2], bytes, pixels);
+}
+
+/// `count` is a multiple of 16. maps: by source.
+void MapRow(const ColorMap* maps, const MappedRow& row) {
+  const Bytes bytes;
+  const auto lanes = static_cast<int>(hn::Lanes(bytes));
   for (int i = 0; i < row.count; i += lanes) {
-    const auto chosen = hn::And(hn::Eq(hn::LoadU(bytes, row.sources + i), wanted),
-                                hn::Ne(hn::LoadU(bytes, row.occlusion + i), hn::Zero(bytes)));
-    if (hn::AllFalse(bytes, chosen)) continue;
-    hn::Vec<Bytes> color[4];
-    hn::LoadInterleaved4(bytes, reinterpret_cast<const std::uint8_t*>(row.colors + i), color[0],
-                         color[1], color[2], color[3]);
-    const Vector blue = ToFloats(color[0]);
-    const Vector green = ToFloats(color[1]);
-    const Vector red = ToFloats(color[2]);
-    const Vector first = Set((static_cast<float>(row.x + i) - map.center.x()) * scale);
-    const Vector u = hn::MulAdd(hn::Iota(Floats(), 0), Set(scale), first);
-    Vector field = hn::MulAdd(hn::MulAdd(squared, u, linear), u, constant);
-    field = hn::Min(hn::Max(field, Set(ColorMap::least_field)), Set(ColorMap::greatest_field));
-    auto* pixels = reinterpret_cast<std::uint8_t*>(row.picture + i);
-    hn::Vec<Bytes> old[3], result[3];
-    hn::LoadInterleaved3(bytes, pixels, old[0], old[1], old[2]);
-    for (int c = 0; c < 3; ++c) {
-      Vector sum = hn::MulAdd(Set(map.matrix(c, 0)), blue, Set(map.offset[c]));
-      sum = hn::MulAdd(Set(map.matrix(c, 1)), green, sum);
-      sum = hn::MulAdd(Set(map.matrix(c, 2)), red, sum);
-      sum = hn::MulAdd(field, sum, hn::LoadU(Floats(), row.correction + c * row.channel_step + i));
-      result[c] = hn::IfThenElse(chosen, hn::DemoteTo(bytes, hn::NearestInt(sum)), old[c]);
+    const auto sources = hn::LoadU(bytes, row.sources + i);
+    const auto wanted = hn::AndNot(hn::Eq(sources, hn::Zero(bytes)),
+                                   hn::Ne(hn::LoadU(bytes, row.occlusion + i), hn::Zero(bytes)));
+    // Nearly always there is one camera in a vector.
+    auto left = wanted;
+    while (!hn::AllFalse(bytes, left)) {
+      const std::uint8_t source = row.sources[i + hn::FindFirstTrue(bytes, left)];
+      const auto own = hn::And(left, hn::Eq(sources, hn::Set(bytes, source)));
+      MapPixels(maps[source], row, i, own);
+      left = hn::AndNot(own, left);
     }
-    hn::StoreInterleaved3(result[0], result[1], result[2], bytes, pixels);
   }
 }
 
@@ -95,12 +107,7 @@ namespace {
 HWY_EXPORT(MapRow);
 
 void map_row(const std::vector<ColorMap>& maps, const MappedRow& row) {
-  bool present[256] = {};
-  for (int i = 0; i < row.count; ++i) present[row.sources[i]] = true;
-  for (std::size_t source = 1; source < maps.size(); ++source) {
-    if (!present[source]) continue;
-    HWY_DYNAMIC_DISPATCH(MapRow)(maps[source], static_cast<std::uint8_t>(source), row);
-  }
+  HWY_DYNAMIC_DISPATCH(MapRow)(maps.data(), row);
 }
 
 }  // namespace

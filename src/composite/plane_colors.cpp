@@ -12,20 +12,24 @@ void PlaneColors::collect(const Mask& occlusion, const Reconstruction& reconstru
   cells_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), {});
   for (int y = region_.y; y < region_.bottom(); ++y) {
     Cell* row = cells_.data() + static_cast<std::ptrdiff_t>((y - region_.y) / cell) * columns_;
-    for (int x = region_.x; x < region_.right(); ++x) {
-      Cell& own = row[(x - region_.x) / cell];
-      if (occlusion(x, y) != 0) {
-        own.has_object = true;
-        continue;
+    const std::uint8_t* mask = occlusion.row(y);
+    const std::uint8_t* surface = reconstruction.surface.row(y);
+    const Bgr* colors = picture.row(y);
+    for (int column = 0; column < columns_; ++column) {
+      const int first = region_.x + column * cell;
+      const int last = std::min(first + cell, region_.right());
+      Cell& own = row[column];
+      for (int x = first; x < last; ++x) own.has_object = own.has_object || mask[x] != 0;
+      if (own.has_object) continue;
+      for (int x = first; x < last; ++x) {
+        const int label = surface[x] - surface_label::first_plane;
+        if (label < 0 || label >= planes) continue;
+        Sum& sum = own.sums[label];
+        sum.blue += colors[x].b;
+        sum.green += colors[x].g;
+        sum.red += colors[x].r;
+        ++sum.count;
       }
-      const int label = reconstruction.surface(x, y) - surface_label::first_plane;
-      if (label < 0 || label >= labels) continue;
-      const Bgr& color = picture(x, y);
-      Sum& sum = own.sums[label];
-      sum.blue += color.b;
-      sum.green += color.g;
-      sum.red += color.r;
-      ++sum.count;
     }
   }
   for (int row = 0; row < rows_; ++row) {
@@ -48,7 +52,7 @@ bool PlaneColors::near_object(int column, int row) const {
 
 bool PlaneColors::around(int x, int y, std::uint8_t label, Eigen::Array3f& mean) const {
   const int plane = label - surface_label::first_plane;
-  if (!region_.contains(x, y) || plane < 0 || plane >= labels) return false;
+  if (!region_.contains(x, y) || plane < 0 || plane >= planes) return false;
   const int column = (x - region_.x) / cell;
   const int row = (y - region_.y) / cell;
   Sum total;

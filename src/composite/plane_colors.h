@@ -13,6 +13,9 @@ namespace diminish {
 /// object lies its contact shadow, which must not be spread over what the object hid.
 class PlaneColors {
  public:
+  /// Further ones are not known.
+  static constexpr int planes = 4;
+
   /// occlusion: the objects' mask in `picture`.
   void collect(const Mask& occlusion, const Reconstruction& reconstruction,
                const Image<Bgr>& picture);
@@ -24,14 +27,13 @@ class PlaneColors {
   static constexpr int cell = 4;     ///< pixels
   static constexpr int gap = 2;      ///< cells around an object that are left out
   static constexpr int reach = 5;    ///< cells
-  static constexpr int labels = 4;   ///< planes that are kept apart
 
   struct Sum {
     std::uint32_t blue = 0, green = 0, red = 0, count = 0;
   };
   struct Cell {
     bool has_object = false;
-    Sum sums[labels];
+    Sum sums[planes];
   };
   Cell& cell_at(int column, int row) {
     return cells_[static_cast<std::size_t>(row * columns_ + column)];

@@ -1,3 +1,5 @@
+#include <oneapi/tbb/parallel_for.h>
+
 #include <array>
 #include <vector>
 
@@ -32,14 +34,22 @@ class SurfaceInpainting : public Inpainter {
     window_ = intersect(grow(box, 1), picture.bounds());
     plane_colors_.collect(holes.occlusion, holes.reconstruction, picture);
     collect_states(holes);
-    for (int label = surface_label::first_plane; label < surface_label::foreground; ++label) {
-      const Rect part = boxes_[static_cast<std::size_t>(label)];
-      if (!part.empty()) fill_plane(static_cast<std::uint8_t>(label), part, holes, picture);
-    }
+    for (std::size_t k = 0; k < planes; ++k) give_up_holes_in_foreground(k);
+    // They do not depend on each other: what one fills no other takes for known.
+    oneapi::tbb::parallel_for(std::size_t{0}, solvers_.size(), [&](std::size_t k) {
+      const auto label = static_cast<std::uint8_t>(k);
+      if (boxes_[k].empty()) return;
+      solve(boxes_[k], solvers_[k], holes, picture, [label](const State& state) -> std::uint8_t {
+        if (state.open) return state.label == label ? 1 : 0;
+        const bool is_known = label == surface_label::unknown || state.label == label;
+        return is_known ? MembraneSolver::fixed : 0;
+      });
+    });
     return fill_rest(holes, picture);
   }
 
  private:
+  static constexpr std::size_t planes = PlaneColors::planes;
   /// Of a hole's rim on measured surfaces, at least so much must lie on the hole's plane; else the
   /// hole is rather one in what stands in front of it.
   static constexpr int plane_rim_percent = 60;
@@ -48,14 +58,19 @@ class SurfaceInpainting : public Inpainter {
     states_.resize(window_.width, window_.height);
     boxes_.fill({});
     const Reconstruction& reconstruction = holes.reconstruction;
+    const Rect& drawn = reconstruction.region;
     for (int y = 0; y < window_.height; ++y) {
+      const int row = window_.y + y;
+      const bool is_drawn = row >= drawn.y && row < drawn.bottom();
+      const std::uint8_t* missing = holes.missing.row(row) + window_.x;
+      const std::uint8_t* surface = is_drawn ? reconstruction.surface.row(row) + window_.x : nullptr;
+      State* states = states_.row(y);
       for (int x = 0; x < window_.width; ++x) {
-        const bool drawn = reconstruction.region.contains(window_.x + x, window_.y + y);
-        const std::uint8_t label = drawn ? reconstruction.surface(window_.x + x, window_.y + y)
-                                         : surface_label::unknown;
-        const bool open = holes.missing(window_.x + x, window_.y + y) != 0;
-        states_(x, y) = {label, open};
-        if (open) extend(boxes_[label], x, y);
+        const int column = window_.x + x;
+        std::uint8_t label = surface_label::unknown;
+        if (is_drawn && column >= drawn.x && column < drawn.right()) label = surface[x];
+        states[x] = {label, missing[x] != 0};
+        if (states[x].open) extend(boxes_[label], x, y);
       }
     }
   }
@@ -72,34 +87,28 @@ class SurfaceInpainting : public Inpainter {
     box.height = bottom - box.y;
   }
 
-  void fill_plane(std::uint8_t label, const Rect& holes_box, const Holes& holes,
-                  Image<Bgr>& picture) {
-    give_up_holes_in_foreground(label, holes_box);
-    const Rect part = intersect(grow(holes_box, 1), states_.bounds());
-    solve(part, holes, picture, [label](const State& state) -> std::uint8_t {
-      if (state.label != label) return 0;
-      return state.open ? 1 : MembraneSolver::fixed;
-    });
-  }
-
+  /// What hangs together with no pixel of its own plane.
   bool fill_rest(const Holes& holes, Image<Bgr>& picture) {
     Rect rest;
     for (int y = 0; y < window_.height; ++y) {
+      const State* states = states_.row(y);
       for (int x = 0; x < window_.width; ++x) {
-        if (states_(x, y).open) extend(rest, x, y);
+        if (states[x].open) extend(rest, x, y);
       }
     }
     if (rest.empty()) return true;
-    const Rect part = intersect(grow(rest, 1), states_.bounds());
-    const bool anything_known = solve(part, holes, picture, [](const State& state) -> std::uint8_t {
-      return state.open ? 1 : MembraneSolver::fixed;
-    });
+    const bool anything_known =
+        solve(rest, solvers_[surface_label::unknown], holes, picture,
+              [](const State& state) -> std::uint8_t { return state.open ? 1 : MembraneSolver::fixed; });
     if (!anything_known) picture.fill(bounding_box(holes.missing), {});
     return anything_known;
   }
 
   /// Takes the label from the holes that mostly border on what is in front of their plane.
-  void give_up_holes_in_foreground(std::uint8_t label, const Rect& box) {
+  void give_up_holes_in_foreground(std::size_t plane) {
+    const auto label = static_cast<std::uint8_t>(surface_label::first_plane + plane);
+    const Rect box = boxes_[label];
+    if (box.empty()) return;
     const int words = (box.width + 31) / 32;
     bits_.assign(static_cast<std::size_t>(words) * static_cast<std::size_t>(box.height), 0);
     for (int y = 0; y < box.height; ++y) {
@@ -133,6 +142,8 @@ class SurfaceInpainting : public Inpainter {
         if (100 * rim.plane >= plane_rim_percent * (rim.plane + rim.foreground)) continue;
         State* states = states_.row(box.y + y) + box.x;
         for (int x = run.first; x < run.last; ++x) states[x].label = surface_label::unknown;
+        extend(boxes_[surface_label::unknown], box.x + run.first, box.y + y);
+        extend(boxes_[surface_label::unknown], box.x + run.last - 1, box.y + y);
       }
     }
   }
@@ -151,32 +162,34 @@ class SurfaceInpainting : public Inpainter {
     return own.sum() < shadow * around.sum() ? around : own;
   }
 
-  /// Fills the pixels of `part` (of the window) whose key is 1 and that hang together with a fixed
+  /// Fills the pixels of `box` (of the window) whose key is 1 and that hang together with a fixed
   /// one. Returns whether there was one.
   template <class Key>
-  bool solve(const Rect& part, const Holes& holes, Image<Bgr>& picture, const Key& key) {
-    solver_.begin(part.width, part.height);
+  bool solve(const Rect& box, MembraneSolver& solver, const Holes& holes, Image<Bgr>& picture,
+             const Key& key) {
+    const Rect part = intersect(grow(box, 1), states_.bounds());
+    solver.begin(part.width, part.height);
     for_rows(part.height, [&](Rows rows) {
       for (int row = rows.first; row < rows.last; ++row) {
         const State* states = states_.row(part.y + row) + part.x;
-        std::uint8_t* keys = solver_.keys(row);
+        std::uint8_t* keys = solver.keys(row);
         for (int i = 0; i < part.width; ++i) keys[i] = key(states[i]);
       }
     });
-    solver_.connect();
+    solver.connect();
     const Rect in_picture{window_.x + part.x, window_.y + part.y, part.width, part.height};
     bool anything_known = false;
-    solver_.for_each_fixed([&](int x, int y) {
+    solver.for_each_fixed([&](int x, int y) {
       const Eigen::Array3f color = color_of(in_picture.x + x, in_picture.y + y, holes, picture);
-      solver_.set_fixed(x, y, {color[0], color[1], color[2]});
+      solver.set_fixed(x, y, {color[0], color[1], color[2]});
       anything_known = true;
     });
     if (!anything_known) return false;
-    solver_.take_out_loose_parts();
-    solver_.solve(tolerance_levels);
-    write_solution(solver_, in_picture, picture);
+    solver.take_out_loose_parts();
+    solver.solve(tolerance_levels);
+    write_solution(solver, in_picture, picture);
     for (int y = 0; y < part.height; ++y) {
-      const std::uint8_t* keys = solver_.keys(y);
+      const std::uint8_t* keys = solver.keys(y);
       State* states = states_.row(part.y + y) + part.x;
       for (int i = 0; i < part.width; ++i) states[i].open = states[i].open && keys[i] != 1;
     }
@@ -188,11 +201,11 @@ class SurfaceInpainting : public Inpainter {
     int plane = 0, foreground = 0;
   };
 
-  MembraneSolver solver_;
   PlaneColors plane_colors_;
   Rect window_;  ///< in the picture
   Image<State> states_;
-  std::array<Rect, 256> boxes_;  ///< of the holes in each plane, in the window
+  std::array<Rect, 256> boxes_;  ///< of the holes of each label, in the window
+  std::array<MembraneSolver, surface_label::first_plane + planes> solvers_;  ///< by label
   std::vector<std::uint32_t> bits_;
   ConnectedRuns parts_;
   std::vector<Rim> rims_;

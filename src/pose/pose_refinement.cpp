@@ -12,14 +12,18 @@ namespace diminish {
 namespace {
 
 constexpr int shrinkage = 4;
-constexpr int iterations = 10;
+constexpr int most_iterations = 10;
+/// Metres and radians: smaller steps move no pixel by a tenth.
+constexpr float last_step = 1e-4F;
 constexpr std::size_t fewest_points = 150;
+constexpr std::size_t most_points = 2400;
+
 /// What a marker leaves open, and what is taken for a mistake.
-constexpr double rotation_deviation = 0.5 * std::numbers::pi / 180;
-constexpr double translation_deviation_m = 0.012;
-constexpr double largest_deviations = 4;
+constexpr float rotation_deviation = 0.5F * std::numbers::pi_v<float> / 180;
+constexpr float translation_deviation_m = 0.012F;
+constexpr float largest_deviations = 4;
 /// Neighbouring samples' errors are not independent: they count for less than their number.
-constexpr double independent_share = 0.1;
+constexpr float independent_share = 0.1F;
 
 float brightness(const Bgr& color) {
   return 0.114F * static_cast<float>(color.b) + 0.587F * static_cast<float>(color.g) +
@@ -35,7 +39,7 @@ RigidTransform exponential(const Eigen::Matrix<double, 6, 1>& twist) {
   return result;
 }
 
-double median(std::vector<double>& values) {
+float median(std::vector<float>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
@@ -43,42 +47,40 @@ double median(std::vector<double>& values) {
 
 }  // namespace
 
-PoseRefinement::PoseRefinement(const Intrinsics& color) : lens_(color) {}
+PoseRefinement::PoseRefinement(const Intrinsics& color)
+    : color_(color), projection_(Lens(color)), lines_(256) {}
 
+/// Of each 4x4 pixels the four at even places are enough: they blur as much.
 void PoseRefinement::shrink(const Image<Bgr>& image) {
   small_.resize(image.width() / shrinkage, image.height() / shrinkage);
   for_rows(small_.height(), [&](Rows rows) {
     for (int y = rows.first; y < rows.last; ++y) {
+      const Bgr* upper = image.row(shrinkage * y);
+      const Bgr* lower = image.row(shrinkage * y + 2);
       float* to = small_.row(y);
-      for (int x = 0; x < small_.width(); ++x) {
-        unsigned blue = 0;
-        unsigned green = 0;
-        unsigned red = 0;
-        for (int dy = 0; dy < shrinkage; ++dy) {
-          const Bgr* from = image.row(shrinkage * y + dy) + std::ptrdiff_t{shrinkage} * x;
-          for (int dx = 0; dx < shrinkage; ++dx) {
-            blue += from[dx].b;
-            green += from[dx].g;
-            red += from[dx].r;
-          }
-        }
-        to[x] = (0.114F * static_cast<float>(blue) + 0.587F * static_cast<float>(green) +
-                 0.299F * static_cast<float>(red)) /
-                (shrinkage * shrinkage);
+      for (int x = 0; x < small_.width(); ++x, upper += shrinkage, lower += shrinkage) {
+        const int blue = upper[0].b + upper[2].b + lower[0].b + lower[2].b;
+        const int green = upper[0].g + upper[2].g + lower[0].g + lower[2].g;
+        const int red = upper[0].r + upper[2].r + lower[0].r + lower[2].r;
+        to[x] = 0.0285F * static_cast<float>(blue) + 0.14675F * static_cast<float>(green) +
+                0.07475F * static_cast<float>(red);
       }
     }
   });
 }
 
+/// The brightness around each sample, over about the area of a pixel of the small picture.
 void PoseRefinement::collect(const FrameSet& frame, const std::vector<SceneSample>& samples) {
   constexpr int reach = 2;
   constexpr int spacing = 2;
+  constexpr int rim = reach * spacing;
   points_.clear();
-  for (const SceneSample& sample : samples) {
+  const std::size_t step = (samples.size() + most_points - 1) / most_points;
+  for (std::size_t i = 0; i < samples.size(); i += step) {
+    const SceneSample& sample = samples[i];
     const Image<Bgr>& image = frame.rgbd[sample.source - 1U].color;
     const int u = static_cast<int>(std::lrint(sample.texture.x()));
     const int v = static_cast<int>(std::lrint(sample.texture.y()));
-    constexpr int rim = reach * spacing;
     if (u < rim || v < rim || u >= image.width() - rim || v >= image.height() - rim) continue;
     float sum = 0;
     for (int dy = -rim; dy <= rim; dy += spacing) {
@@ -89,143 +91,160 @@ void PoseRefinement::collect(const FrameSet& frame, const std::vector<SceneSampl
   }
 }
 
+void PoseRefinement::linearise(const RigidTransform& correction, const Mask& occlusion) {
+  const Eigen::Matrix3f rotation = correction.rotation.cast<float>();
+  const Eigen::Vector3f translation = correction.translation.cast<float>();
+  const auto fx = static_cast<float>(color_.fx);
+  const auto fy = static_cast<float>(color_.fy);
+  rows_.clear();
+  for (const Point& point : points_) {
+    const Eigen::Vector3f p = rotation * point.point_m + translation;
+    float px = 0;
+    float py = 0;
+    if (!(p.z() > 0) || !projection_.distort(p.x() / p.z(), p.y() / p.z(), px, py)) continue;
+    // The four pixels that make one of the small picture have their centre one off the corner.
+    const float x = (px - 1) / shrinkage;
+    const float y = (py - 1) / shrinkage;
+    if (!(x >= 1 && y >= 1 && x < static_cast<float>(small_.width() - 2) &&
+          y < static_cast<float>(small_.height() - 2))) {
+      continue;
+    }
+    const int column = static_cast<int>(x);
+    const int row = static_cast<int>(y);
+    const int left = shrinkage * column;
+    const int top = shrinkage * row;
+    constexpr int beyond = 2 * shrinkage - 1;
+    if ((occlusion(left, top) | occlusion(left + beyond, top) | occlusion(left, top + beyond) |
+         occlusion(left + beyond, top + beyond)) != 0) {
+      continue;
+    }
+    const float u = x - static_cast<float>(column);
+    const float v = y - static_cast<float>(row);
+    const float* upper = small_.row(row) + column;
+    const float* lower = small_.row(row + 1) + column;
+    const float seen = (1 - v) * ((1 - u) * upper[0] + u * upper[1]) +
+                       v * ((1 - u) * lower[0] + u * lower[1]);
+    const float du = ((1 - v) * (upper[1] - upper[0]) + v * (lower[1] - lower[0])) / shrinkage;
+    const float dv = ((1 - u) * (lower[0] - upper[0]) + u * (lower[1] - upper[1])) / shrinkage;
+    // The lens' distortion hardly changes the derivative.
+    const Eigen::Vector3f by_point(
+        du * fx / p.z(), dv * fy / p.z(),
+        -(du * fx * p.x() + dv * fy * p.y()) / (p.z() * p.z()));
+    Row next;
+    next.derivative << by_point, p.cross(by_point);
+    next.brightness = point.brightness;
+    next.seen = seen;
+    next.source = point.source;
+    rows_.push_back(next);
+  }
+}
+
+float PoseRefinement::weigh() {
+  struct Sums {
+    double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+  };
+  float scale = 0;
+  for (int pass = 0; pass < 3; ++pass) {
+    Sums sums[256];
+    for (const Row& row : rows_) {
+      Sums& sum = sums[row.source];
+      const double weighted = static_cast<double>(row.weight) * static_cast<double>(row.brightness);
+      sum.n += static_cast<double>(row.weight);
+      sum.x += weighted;
+      sum.y += static_cast<double>(row.weight) * static_cast<double>(row.seen);
+      sum.xx += weighted * static_cast<double>(row.brightness);
+      sum.xy += weighted * static_cast<double>(row.seen);
+    }
+    for (std::size_t i = 0; i < lines_.size(); ++i) {
+      const Sums& sum = sums[i];
+      const double determinant = sum.n * sum.xx - sum.x * sum.x;
+      if (!(determinant > 1)) continue;
+      const double gain = (sum.n * sum.xy - sum.x * sum.y) / determinant;
+      lines_[i] = {static_cast<float>(gain), static_cast<float>((sum.y - gain * sum.x) / sum.n)};
+    }
+    magnitudes_.clear();
+    for (Row& row : rows_) {
+      const Line& line = lines_[row.source];
+      row.residual = row.seen - line.gain * row.brightness - line.offset;
+      magnitudes_.push_back(std::abs(row.residual));
+    }
+    scale = std::max(1.F, 1.48F * median(magnitudes_));
+    // Tukey's weights.
+    for (Row& row : rows_) {
+      const float relative = std::min(1.F, std::abs(row.residual) / (4.7F * scale));
+      row.weight = (1 - relative * relative) * (1 - relative * relative);
+    }
+  }
+  return scale;
+}
+
 bool PoseRefinement::refine(const FrameSet& frame, const Mask& occlusion,
                             std::vector<SceneSample>& samples, Poses& poses) {
-  if (frame.color.width() < 8 * shrinkage || frame.color.height() < 8 * shrinkage) return false;
+  constexpr int smallest_side = 8 * shrinkage;
+  if (std::min(frame.color.width(), frame.color.height()) < smallest_side) return false;
+  if (samples.size() < fewest_points) return false;
   shrink(frame.color);
   collect(frame, samples);
-  if (points_.size() < fewest_points) return false;
+  std::fill(lines_.begin(), lines_.end(), Line{});
 
-  struct Row {
-    Pose derivative;
-    double brightness, seen;
-    std::uint8_t source;
-  };
-  std::vector<Row> rows;
-  std::vector<double> residuals, magnitudes;
-  std::vector<double> gains(256, 1.0), offsets(256, 0.0);
+  Twist prior;
+  prior << Eigen::Vector3f::Constant(1 / (translation_deviation_m * translation_deviation_m)),
+      Eigen::Vector3f::Constant(1 / (rotation_deviation * rotation_deviation));
   RigidTransform correction;
-  const Intrinsics& camera = lens_.intrinsics();
-  double first_cost = 0;
-  double last_cost = 0;
-  Pose total = Pose::Zero();
-  for (int iteration = 0; iteration <= iterations; ++iteration) {
-    rows.clear();
-    for (const Point& point : points_) {
-      const Eigen::Vector3d p = correction * point.point_m.cast<double>();
-      const auto pixel = lens_.project(p);
-      if (!pixel) continue;
-      const double x = (pixel->x() + 0.5) / shrinkage - 0.5;
-      const double y = (pixel->y() + 0.5) / shrinkage - 0.5;
-      if (!(x >= 1 && y >= 1 && x < small_.width() - 2 && y < small_.height() - 2)) continue;
-      const int column = static_cast<int>(x);
-      const int row = static_cast<int>(y);
-      constexpr int half = shrinkage;
-      const int px = static_cast<int>(pixel->x());
-      const int py = static_cast<int>(pixel->y());
-      const Rect& bounds = occlusion.bounds();
-      if (occlusion(px, py) != 0 || occlusion(std::max(px - half, 0), py) != 0 ||
-          occlusion(std::min(px + half, bounds.width - 1), py) != 0 ||
-          occlusion(px, std::max(py - half, 0)) != 0 ||
-          occlusion(px, std::min(py + half, bounds.height - 1)) != 0) {
-        continue;
-      }
-      const double u = x - column;
-      const double v = y - row;
-      const double a = small_(column, row);
-      const double b = small_(column + 1, row);
-      const double c = small_(column, row + 1);
-      const double d = small_(column + 1, row + 1);
-      const double value = (1 - v) * ((1 - u) * a + u * b) + v * ((1 - u) * c + u * d);
-      const double du = ((1 - v) * (b - a) + v * (d - c)) / shrinkage;
-      const double dv = ((1 - u) * (c - a) + u * (d - b)) / shrinkage;
-      // The lens' distortion hardly changes the derivative.
-      const Eigen::Vector3d by_point(du * camera.fx / p.z(), dv * camera.fy / p.z(),
-                                     -(du * camera.fx * p.x() + dv * camera.fy * p.y()) /
-                                         (p.z() * p.z()));
-      Row next;
-      next.derivative << by_point, p.cross(by_point);
-      next.brightness = point.brightness;
-      next.seen = value;
-      next.source = point.source;
-      rows.push_back(next);
+  Twist total = Twist::Zero();
+  float first_cost = 0;
+  float cost = 0;
+  for (int iteration = 0;; ++iteration) {
+    linearise(correction, occlusion);
+    if (rows_.size() < fewest_points) return false;
+    const float scale = weigh();
+    Eigen::Matrix<float, 6, 6> squares = Eigen::Matrix<float, 6, 6>::Zero();
+    Twist products = Twist::Zero();
+    cost = 0;
+    for (const Row& row : rows_) {
+      squares += (row.weight * row.derivative) * row.derivative.transpose();
+      products -= (row.weight * row.residual) * row.derivative;
+      // Of one scale, so that iterations compare (Geman & McClure 1985).
+      constexpr float same_scale = 400;
+      const float squared = row.residual * row.residual;
+      cost += squared / (squared + same_scale);
     }
-    if (rows.size() < fewest_points) return false;
-    // Gain and offset of each camera: robustly, by the residuals as they were.
-    double scale = 0;
-    std::vector<double> weights(rows.size(), 1.0);
-    for (int pass = 0; pass < 3; ++pass) {
-      double n[256] = {}, sx[256] = {}, sy[256] = {}, sxx[256] = {}, sxy[256] = {};
-      for (std::size_t i = 0; i < rows.size(); ++i) {
-        const std::size_t s = rows[i].source;
-        n[s] += weights[i];
-        sx[s] += weights[i] * rows[i].brightness;
-        sy[s] += weights[i] * rows[i].seen;
-        sxx[s] += weights[i] * rows[i].brightness * rows[i].brightness;
-        sxy[s] += weights[i] * rows[i].brightness * rows[i].seen;
-      }
-      for (std::size_t s = 0; s < 256; ++s) {
-        const double determinant = n[s] * sxx[s] - sx[s] * sx[s];
-        if (!(determinant > 1)) continue;
-        gains[s] = (n[s] * sxy[s] - sx[s] * sy[s]) / determinant;
-        offsets[s] = (sy[s] - gains[s] * sx[s]) / n[s];
-      }
-      residuals.clear();
-      magnitudes.clear();
-      for (const Row& row : rows) {
-        residuals.push_back(row.seen - gains[row.source] * row.brightness - offsets[row.source]);
-        magnitudes.push_back(std::abs(residuals.back()));
-      }
-      scale = std::max(1.0, 1.48 * median(magnitudes));
-      for (std::size_t i = 0; i < rows.size(); ++i) {
-        const double q = std::min(1.0, std::abs(residuals[i]) / (4.7 * scale));
-        weights[i] = (1 - q * q) * (1 - q * q);
-      }
-    }
-    Eigen::Matrix<double, 6, 6> squares = Eigen::Matrix<double, 6, 6>::Zero();
-    Pose products = Pose::Zero();
-    double cost = 0;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      squares += weights[i] * rows[i].derivative * rows[i].derivative.transpose();
-      products -= weights[i] * residuals[i] * rows[i].derivative;
-      // The robust cost, of a fixed scale, so that iterations compare.
-      const double r = residuals[i] * residuals[i];
-      cost += r / (r + 400);
-    }
-    cost /= static_cast<double>(rows.size());
+    cost /= static_cast<float>(rows_.size());
     if (iteration == 0) first_cost = cost;
-    last_cost = cost;
-    if (iteration == iterations) break;
-    Pose prior;
-    prior << Eigen::Vector3d::Constant(1 / (translation_deviation_m * translation_deviation_m)),
-        Eigen::Vector3d::Constant(1 / (rotation_deviation * rotation_deviation));
-    prior *= scale * scale / independent_share;
-    squares.diagonal() += prior;
-    products -= prior.cwiseProduct(total);
-    const Pose step = squares.ldlt().solve(products);
+    if (iteration == most_iterations) break;
+    const Twist held = prior * (scale * scale / independent_share);
+    squares.diagonal() += held;
+    products -= held.cwiseProduct(total);
+    const Twist step = squares.ldlt().solve(products);
+    if (step.cwiseAbs().maxCoeff() < last_step) break;
     total += step;
-    correction = exponential(step) * correction;
-    if (step.head<3>().norm() < 2e-5 && step.tail<3>().norm() < 2e-5) break;
+    correction = exponential(step.cast<double>()) * correction;
   }
-  if (getenv("DBG"))
-    printf("refine: %zu points, cost %.4f -> %.4f, moved %.1f mm %.2f deg\n", rows.size(), first_cost,
-           last_cost, 1000 * total.head<3>().norm(), total.tail<3>().norm() * 57.3);
-  if (!(last_cost < first_cost) ||
+  if (!(cost < first_cost) ||
       total.head<3>().norm() > largest_deviations * translation_deviation_m ||
       total.tail<3>().norm() > largest_deviations * rotation_deviation) {
     return false;
   }
+  apply(correction, samples, poses);
+  return true;
+}
+
+void PoseRefinement::apply(const RigidTransform& correction, std::vector<SceneSample>& samples,
+                           Poses& poses) const {
   for (auto& pose : poses.color_from_depth) {
     if (pose) pose = correction * *pose;
   }
   if (poses.color_from_world) poses.color_from_world = correction * *poses.color_from_world;
+  const Eigen::Matrix3f rotation = correction.rotation.cast<float>();
+  const Eigen::Vector3f translation = correction.translation.cast<float>();
   for (SceneSample& sample : samples) {
-    const Eigen::Vector3d p = correction * sample.point_m.cast<double>();
-    const auto pixel = lens_.project(p);
-    sample.point_m = p.cast<float>();
-    sample.pixel = pixel ? Eigen::Vector2f(pixel->cast<float>()) : Eigen::Vector2f(-1e6F, -1e6F);
+    const Eigen::Vector3f p = rotation * sample.point_m + translation;
+    sample.point_m = p;
+    if (!(p.z() > 0) || !projection_.distort(p.x() / p.z(), p.y() / p.z(), sample.pixel.x(),
+                                             sample.pixel.y())) {
+      sample.pixel.setConstant(-1);
+    }
   }
-  return true;
 }
 
 }  // namespace diminish
