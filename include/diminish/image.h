@@ -46,6 +46,20 @@ inline Rect grow(const Rect& rect, int margin) {
   return {rect.x - margin, rect.y - margin, rect.width + 2 * margin, rect.height + 2 * margin};
 }
 
+/// Makes `rect` the smallest that also holds the pixel (x, y).
+inline void extend(Rect& rect, int x, int y) {
+  if (rect.empty()) {
+    rect = {x, y, 1, 1};
+    return;
+  }
+  const int right = std::max(rect.right(), x + 1);
+  const int bottom = std::max(rect.bottom(), y + 1);
+  rect.x = std::min(rect.x, x);
+  rect.y = std::min(rect.y, y);
+  rect.width = right - rect.x;
+  rect.height = bottom - rect.y;
+}
+
 /// A row-major image without padding. Pixel centres are at integer coordinates.
 /// `resize` keeps its memory, so that an image that is used again does not allocate.
 template <class Pixel>

@@ -74,19 +74,6 @@ class SurfaceInpainting : public Inpainter {
       }
     }
   }
-  static void extend(Rect& box, int x, int y) {
-    if (box.empty()) {
-      box = {x, y, 1, 1};
-      return;
-    }
-    const int right = std::max(box.right(), x + 1);
-    const int bottom = std::max(box.bottom(), y + 1);
-    box.x = std::min(box.x, x);
-    box.y = std::min(box.y, y);
-    box.width = right - box.x;
-    box.height = bottom - box.y;
-  }
-
   /// What hangs together with no pixel of its own plane.
   bool fill_rest(const Holes& holes, Image<Bgr>& picture) {
     Rect rest;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/parallel_invoke.h>
 
 #include <vector>
 
@@ -82,16 +83,31 @@ struct Pipeline::Implementation {
   }
 
   void clean_depths(const FrameSet& frame) {
-    for (std::size_t k = 0; k < rig.rgbd.size(); ++k) {
-      if (!frame.rgbd[k].available()) continue;
-      depth_cleaners[k].clean(frame.rgbd[k].depth, options, depths[k]);
-    }
+    oneapi::tbb::parallel_for(std::size_t{0}, rig.rgbd.size(), [&](std::size_t k) {
+      if (!frame.rgbd[k].available()) return;
+      depth_cleaners[k].clean(frame.rgbd[k].depth, sampler.part(k), options, depths[k]);
+    });
   }
 
-  /// What compositing needs: the objects and their surroundings.
-  Rect region_to_reconstruct() const {
-    if (options.whole_view) return rig.color.bounds();
-    return intersect(grow(bounding_box(masks.color), options.surroundings_px), rig.color.bounds());
+  void reconstruct(const FrameSet& frame, const Rect& objects, Poses& poses,
+                   Reconstruction& reconstruction) {
+    const Rect region =
+        options.whole_view
+            ? rig.color.bounds()
+            : intersect(grow(objects, options.surroundings_px), rig.color.bounds());
+    sampler.sample(frame, poses, masks, region, reconstruction.samples);
+    oneapi::tbb::parallel_invoke(
+        [&] {
+          if (!options.refine_poses) return;
+          pose_refinement.refine(frame, masks.color, reconstruction.samples, poses);
+        },
+        [&] { clean_depths(frame); });
+    oneapi::tbb::parallel_invoke(
+        [&] { background_planes.find(objects, reconstruction.samples); },
+        [&] {
+          reconstructor->reconstruct(frame, depths, poses, masks, region, options, reconstruction);
+        });
+    background_planes.label(reconstruction);
   }
 
   static void begin(const FrameSet& frame, DiminishedFrame& result) {
@@ -162,14 +178,7 @@ void Pipeline::process(const FrameSet& frame, DiminishedFrame& result) {
   }
   {  // 3.3 Reconstruction of what is behind them
     const ScopedTimer timer(report.milliseconds, Stage::reconstruction);
-    self.clean_depths(frame);
-    self.sampler.sample(frame, self.depths, report.poses, self.masks,
-                        result.reconstruction.samples);
-    if (self.options.refine_poses) self.pose_refinement.refine(frame, self.masks.color, result.reconstruction.samples, report.poses);
-    self.reconstructor->reconstruct(frame, self.depths, report.poses, self.masks, self.region_to_reconstruct(),
-                                    self.options, result.reconstruction);
-    self.background_planes.find(bounding_box(self.masks.color), result.reconstruction.samples);
-    self.background_planes.label(result.reconstruction);
+    self.reconstruct(frame, bounding_box(self.masks.color), report.poses, result.reconstruction);
   }
   // 3.4 Compositing, colour correction, inpainting
   self.compositor.composite(frame.color, self.masks, self.options, result);

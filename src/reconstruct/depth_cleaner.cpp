@@ -19,98 +19,109 @@ float noise_m(float depth_m) {
   return 0.008F + 0.004F * depth_m * depth_m;
 }
 
-/// The place of the frontmost of what was passed so far.
+/// The frontmost of what was passed so far: its place in the colour image, and its depth.
 struct Front {
   float place, depth_m;
 };
 
 }  // namespace
 
-DepthCleaner::DepthCleaner(const RgbdCamera& camera)
-    : camera_(camera), rays_(Lens(camera.depth).rays()) {}
+DepthCleaner::DepthCleaner(const RgbdCamera& camera) : camera_(camera) {
+  const Image<Eigen::Vector2f> rays = Lens(camera.depth).rays();
+  ray_side_.resize(rays.width(), rays.height());
+  ray_ahead_.resize(rays.width(), rays.height());
+  const FloatTransform to_color(camera.color_from_depth);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const float x = rays.data()[i].x();
+    const float y = rays.data()[i].y();
+    ray_side_.data()[i] = to_color.r[0][0] * x + to_color.r[0][1] * y + to_color.r[0][2];
+    ray_ahead_.data()[i] = to_color.r[2][0] * x + to_color.r[2][1] * y + to_color.r[2][2];
+  }
+}
 
-void DepthCleaner::clean(const Image<std::uint16_t>& depth, const Options& options,
-                         Image<std::uint16_t>& cleaned) {
+void DepthCleaner::clean(const Image<std::uint16_t>& depth, const Rect& part,
+                         const Options& options, Image<std::uint16_t>& cleaned) {
   const auto threshold_m = static_cast<float>(options.discontinuity_threshold_m);
-  cleaned.resize(depth.width(), depth.height());
-  for_rows(depth.height(), [&](Rows rows) {
+  cleaned = depth;
+  for_rows(part.height, [&](Rows rows) {
     Row& row = rows_[rows.first == 0 ? 0 : 1];
     row.depth_m.resize(static_cast<std::size_t>(depth.width()));
     row.place.resize(static_cast<std::size_t>(depth.width()));
-    for (int y = rows.first; y < rows.last; ++y) {
-      std::copy_n(depth.row(y), depth.width(), cleaned.row(y));
-      if (options.remove_flying) remove_flying(depth, y, cleaned);
-      if (options.remove_hidden) remove_hidden(y, threshold_m, row, cleaned);
+    for (int y = part.y + rows.first; y < part.y + rows.last; ++y) {
+      if (options.remove_flying) remove_flying(depth, part, y, cleaned);
+      if (options.remove_hidden) remove_hidden(part, y, threshold_m, row, cleaned);
     }
   });
 }
 
-/// Along a row of the depth image the places in the colour image increase, but where something near
-/// reaches over what is behind it.
-void DepthCleaner::remove_hidden(int y, float threshold_m, Row& row,
+/// A pixel beside a depth edge stays if it continues the surface on its other side.
+void DepthCleaner::remove_flying(const Image<std::uint16_t>& depth, const Rect& part, int y,
                                  Image<std::uint16_t>& cleaned) const {
-  const FloatTransform to_color(camera_.color_from_depth);
+  constexpr int reach = 2;
+  if (y < reach || y >= depth.height() - reach) return;
   const auto unit_m = static_cast<float>(camera_.depth_unit_m);
-  std::uint16_t* values = cleaned.row(y);
-  const Eigen::Vector2f* rays = rays_.row(y);
-  const int width = cleaned.width();
-  for (int x = 0; x < width; ++x) {
-    const float z = static_cast<float>(values[x]) * unit_m;
-    const float inverse = 1 / std::max(z, 1e-3F);
-    const float side = to_color.r[0][0] * rays[x].x() + to_color.r[0][1] * rays[x].y() +
-                       to_color.r[0][2] + to_color.t[0] * inverse;
-    const float ahead = to_color.r[2][0] * rays[x].x() + to_color.r[2][1] * rays[x].y() +
-                        to_color.r[2][2] + to_color.t[2] * inverse;
-    row.depth_m[static_cast<std::size_t>(x)] = z;
-    row.place[static_cast<std::size_t>(x)] = side / std::max(ahead, 1e-3F);
-  }
-  const auto margin = margin_px / static_cast<float>(camera_.depth.fx);
-  constexpr float far_left = -std::numeric_limits<float>::infinity();
-  Front front{far_left, 0};
-  for (int x = 0; x < width; ++x) {
-    const auto i = static_cast<std::size_t>(x);
-    if (values[x] == 0) continue;
-    if (front.place > row.place[i] - margin && front.depth_m < row.depth_m[i] - threshold_m) {
-      values[x] = 0;
-    } else if (row.place[i] > front.place) {
-      front = {row.place[i], row.depth_m[i]};
-    }
-  }
-  front = {-far_left, 0};
-  for (int x = width - 1; x >= 0; --x) {
-    const auto i = static_cast<std::size_t>(x);
-    if (values[x] == 0) continue;
-    if (front.place < row.place[i] + margin && front.depth_m < row.depth_m[i] - threshold_m) {
-      values[x] = 0;
-    } else if (row.place[i] < front.place) {
-      front = {row.place[i], row.depth_m[i]};
+  const std::ptrdiff_t pitch = depth.width();
+  const std::uint16_t* row = depth.row(y);
+  const int last = std::min(depth.width() - reach, part.right());
+  for (int x = std::max(reach, part.x); x < last; ++x) {
+    if (row[x] == 0) continue;
+    const float z = static_cast<float>(row[x]) * unit_m;
+    const float noise = noise_m(z);
+    const auto is_beyond_edge = [&](std::ptrdiff_t offset) {
+      const float other = static_cast<float>(row[x + offset]) * unit_m;
+      return other > 0 && std::abs(other - z) > 2.5F * noise;
+    };
+    const auto continues = [&](std::ptrdiff_t offset) {
+      const float first = static_cast<float>(row[x + offset]) * unit_m;
+      const float second = static_cast<float>(row[x + 2 * offset]) * unit_m;
+      if (first == 0) return false;
+      const float continued = second > 0 ? 2 * first - second : first;
+      return std::abs(continued - z) <= 2.5F * noise || std::abs(first - z) <= 1.5F * noise;
+    };
+    for (const std::ptrdiff_t offset : {std::ptrdiff_t{1}, std::ptrdiff_t{-1}, pitch, -pitch}) {
+      if (is_beyond_edge(offset) && !continues(-offset)) {
+        cleaned(x, y) = 0;
+        break;
+      }
     }
   }
 }
 
-/// A pixel beside a depth edge stays if it continues the surface on its other side.
-void DepthCleaner::remove_flying(const Image<std::uint16_t>& depth, int y,
+/// Along a row of the depth image the places in the colour image increase, but where something near
+/// reaches over what is behind it.
+void DepthCleaner::remove_hidden(const Rect& part, int y, float threshold_m, Row& row,
                                  Image<std::uint16_t>& cleaned) const {
-  if (y < 2 || y >= depth.height() - 2) return;
   const auto unit_m = static_cast<float>(camera_.depth_unit_m);
-  const std::ptrdiff_t pitch = depth.width();
-  const std::uint16_t* row = depth.row(y);
-  std::uint16_t* result = cleaned.row(y);
-  for (int x = 2; x < depth.width() - 2; ++x) {
-    if (row[x] == 0) continue;
-    const float z = static_cast<float>(row[x]) * unit_m;
-    const float noise = noise_m(z);
-    for (const std::ptrdiff_t step : {std::ptrdiff_t{1}, std::ptrdiff_t{-1}, pitch, -pitch}) {
-      const auto at = [&](std::ptrdiff_t steps) {
-        return static_cast<float>(row[x + steps * step]) * unit_m;
-      };
-      const float across = at(1);
-      if (across > 0 && std::abs(across - z) <= 2.5F * noise) continue;
-      const float first = at(-1);
-      const float second = at(-2);
-      const float continued = second > 0 ? 2 * first - second : first;
-      const bool continues = first > 0 && (std::abs(continued - z) <= 2.5F * noise || std::abs(first - z) <= 1.5F * noise);
-      if (!continues && across > 0) result[x] = 0;
+  const auto side_m = static_cast<float>(camera_.color_from_depth.translation.x());
+  const auto ahead_m = static_cast<float>(camera_.color_from_depth.translation.z());
+  std::uint16_t* values = cleaned.row(y);
+  const float* side = ray_side_.row(y);
+  const float* ahead = ray_ahead_.row(y);
+  float* depth_m = row.depth_m.data();
+  float* place = row.place.data();
+  for (int x = part.x; x < part.right(); ++x) {
+    const float z = static_cast<float>(values[x]) * unit_m;
+    depth_m[x] = z;
+    place[x] = (side[x] * z + side_m) / std::max(ahead[x] * z + ahead_m, 1e-3F);
+  }
+  const auto margin = margin_px / static_cast<float>(camera_.depth.fx);
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  Front front{-infinity, 0};
+  for (int x = part.x; x < part.right(); ++x) {
+    if (values[x] == 0) continue;
+    if (front.place > place[x] - margin && front.depth_m < depth_m[x] - threshold_m) {
+      values[x] = 0;
+    } else if (place[x] > front.place) {
+      front = {place[x], depth_m[x]};
+    }
+  }
+  front = {infinity, 0};
+  for (int x = part.right() - 1; x >= part.x; --x) {
+    if (values[x] == 0) continue;
+    if (front.place < place[x] + margin && front.depth_m < depth_m[x] - threshold_m) {
+      values[x] = 0;
+    } else if (place[x] < front.place) {
+      front = {place[x], depth_m[x]};
     }
   }
 }

@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "diminish/frame_set.h"
 #include "diminish/image.h"
 #include "diminish/options.h"
 #include "diminish/rig.h"
@@ -11,26 +10,30 @@
 namespace diminish {
 
 /// Takes out of an RGB-D camera's depth images what would show wrong things:
+/// - flying pixels: measurements on depth edges that lie between the surfaces;
 /// - pixels that the camera's own colour sensor, some centimetres beside the depth sensor, does not
-///   see because something nearer is in front of them: they would get its colour;
-/// - flying pixels: measurements on depth edges that lie between the surfaces.
+///   see because something nearer is in front of them: they would get its colour. (Only where it
+///   is beside, not above: sensors are built that way.)
 class DepthCleaner {
  public:
   explicit DepthCleaner(const RgbdCamera& camera);
 
-  void clean(const Image<std::uint16_t>& depth, const Options& options,
+  /// Only in `part`; the rest is copied. Cost: 5 ns a pixel.
+  void clean(const Image<std::uint16_t>& depth, const Rect& part, const Options& options,
              Image<std::uint16_t>& cleaned);
 
  private:
   struct Row {
     std::vector<float> depth_m, place;
   };
-  void remove_hidden(int y, float threshold_m, Row& row, Image<std::uint16_t>& cleaned) const;
-  void remove_flying(const Image<std::uint16_t>& depth, int y,
-                         Image<std::uint16_t>& cleaned) const;
+  void remove_flying(const Image<std::uint16_t>& depth, const Rect& part, int y,
+                     Image<std::uint16_t>& cleaned) const;
+  void remove_hidden(const Rect& part, int y, float threshold_m, Row& row,
+                     Image<std::uint16_t>& cleaned) const;
 
   RgbdCamera camera_;
-  Image<Eigen::Vector2f> rays_;
+  /// A pixel's ray (x, y, 1), turned into the colour sensor's frame: its x and z.
+  Image<float> ray_side_, ray_ahead_;
   Row rows_[2];
 };
 

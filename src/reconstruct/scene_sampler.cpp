@@ -18,9 +18,10 @@ constexpr double wanted_samples = 4000;
 /// on an edge, or on a surface seen edge-on.
 constexpr float edge = 0.03F;
 
+constexpr int reach = 2;
+
 bool on_surface(const Image<std::uint16_t>& depth, int column, int row) {
   const auto own = static_cast<float>(depth(column, row));
-  constexpr int reach = 2;
   for (const auto& [dx, dy] : {std::pair{-reach, 0}, {reach, 0}, {0, -reach}, {0, reach}}) {
     const auto other = static_cast<float>(depth(column + dx, row + dy));
     if (!(std::abs(other - own) <= edge * own)) return false;
@@ -30,39 +31,52 @@ bool on_surface(const Image<std::uint16_t>& depth, int column, int row) {
 
 }  // namespace
 
-SceneSampler::SceneSampler(const Rig& rig) : color_(rig.color), by_camera_(rig.rgbd.size()) {
-  for (const RgbdCamera& camera : rig.rgbd) meshes_.emplace_back(camera, rig.color);
+SceneSampler::SceneSampler(const Rig& rig) {
+  for (const RgbdCamera& camera : rig.rgbd) {
+    by_camera_.push_back({DepthMesh(camera, rig.color), {}, {}});
+  }
 }
 
-void SceneSampler::sample(const FrameSet& frame, const DepthImages& depths, const Poses& poses, const OcclusionMasks& masks,
-                          std::vector<SceneSample>& samples) {
-  oneapi::tbb::parallel_for(std::size_t{0}, meshes_.size(), [&](std::size_t k) {
-    by_camera_[k].clear();
-    if (frame.rgbd[k].available() && poses.color_from_depth[k]) {
-      sample_camera(frame, depths, poses, masks, k, by_camera_[k]);
-    }
+void SceneSampler::sample(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks,
+                          const Rect& region, std::vector<SceneSample>& samples) {
+  oneapi::tbb::parallel_for(std::size_t{0}, by_camera_.size(), [&](std::size_t k) {
+    Camera& camera = by_camera_[k];
+    camera.samples.clear();
+    camera.part = {};
+    if (!frame.rgbd[k].available() || !poses.color_from_depth[k]) return;
+    sample_camera(frame.rgbd[k],
+                  {frame.rgbd[k].depth, masks.rgbd_depth[k], masks.rgbd_color[k],
+                   FloatTransform(*poses.color_from_depth[k])},
+                  region, static_cast<std::uint8_t>(k + 1), camera);
   });
   samples.clear();
-  for (const auto& part : by_camera_) samples.insert(samples.end(), part.begin(), part.end());
+  for (const Camera& camera : by_camera_) {
+    samples.insert(samples.end(), camera.samples.begin(), camera.samples.end());
+  }
 }
 
-void SceneSampler::sample_camera(const FrameSet& frame, const DepthImages& depths, const Poses& poses,
-                                 const OcclusionMasks& masks, std::size_t k,
-                                 std::vector<SceneSample>& samples) const {
-  const RgbdFrame& images = frame.rgbd[k];
-  const DepthMesh::Frame mesh_frame{depths[k], masks.rgbd_depth[k], masks.rgbd_color[k],
-                                    FloatTransform(*poses.color_from_depth[k])};
-  const int width = depths[k].width();
-  const int height = depths[k].height();
-  const int step = std::max(
-      1, static_cast<int>(std::lround(std::sqrt(static_cast<double>(width) * height / wanted_samples))));
+void SceneSampler::sample_camera(const RgbdFrame& images, const DepthMesh::Frame& frame,
+                                 const Rect& region, std::uint8_t source, Camera& camera) const {
+  const int width = images.depth.width();
+  const int height = images.depth.height();
+  const int step =
+      std::max(1, static_cast<int>(std::lround(
+                      std::sqrt(static_cast<double>(width) * height / wanted_samples))));
   constexpr int rim = even_color_reach_px;
-  for (int row = 2 + step / 2; row < height - 2; row += step) {
-    for (int column = 2 + step / 2; column < width - 2; column += step) {
-      if (!on_surface(depths[k], column, row)) continue;
-      const MeshVertex vertex = meshes_[k].vertex(mesh_frame, column, row);
+  // In the picture: more than a step of samples, and what refinement may move.
+  constexpr int margin = 64;
+  const Rect around = grow(region, margin);
+  for (int row = reach + step / 2; row < height - reach; row += step) {
+    for (int column = reach + step / 2; column < width - reach; column += step) {
+      const MeshVertex vertex = camera.mesh.vertex(frame, column, row);
       if (!vertex.valid()) continue;
-      const Eigen::Vector2f pixel = Eigen::Vector2f(static_cast<float>(vertex.x), static_cast<float>(vertex.y)) / sdct::subpixels;
+      SceneSample sample;
+      sample.pixel = Eigen::Vector2f(static_cast<float>(vertex.x), static_cast<float>(vertex.y)) /
+                     sdct::subpixels;
+      if (around.contains(vertex.x / sdct::subpixels, vertex.y / sdct::subpixels)) {
+        extend(camera.part, column, row);
+      }
+      if (!on_surface(images.depth, column, row)) continue;
       const int u = static_cast<int>(std::lrint(vertex.u));
       const int v = static_cast<int>(std::lrint(vertex.v));
       if (u < rim || u >= images.color.width() - rim || v < rim ||
@@ -70,22 +84,23 @@ void SceneSampler::sample_camera(const FrameSet& frame, const DepthImages& depth
         continue;
       }
       const EvenColor color = even_color(images.color, u, v);
-      const Eigen::Vector2f& ray = meshes_[k].ray(column, row);
+      const auto level = [&](int c) {
+        return static_cast<std::uint8_t>(std::lrint(color.channels[c]));
+      };
+      const Eigen::Vector2f& ray = camera.mesh.ray(column, row);
       const float x = ray.x() * vertex.depth_m;
       const float y = ray.y() * vertex.depth_m;
-      SceneSample sample;
-      for (int axis = 0; axis < 3; ++axis) {
-        sample.point_m[axis] = mesh_frame.to_color.apply(axis, x, y, vertex.depth_m);
-      }
-      sample.pixel = pixel;
+      sample.point_m = {frame.to_color.apply(0, x, y, vertex.depth_m),
+                        frame.to_color.apply(1, x, y, vertex.depth_m),
+                        frame.to_color.apply(2, x, y, vertex.depth_m)};
       sample.texture = {vertex.u, vertex.v};
-      const auto level = [&](int c) { return static_cast<std::uint8_t>(std::lrint(color.channels[c])); };
       sample.color = {level(0), level(1), level(2)};
-      sample.source = static_cast<std::uint8_t>(k + 1);
+      sample.source = source;
       sample.even = color.even;
-      samples.push_back(sample);
+      camera.samples.push_back(sample);
     }
   }
+  camera.part = intersect(grow(camera.part, 2 * step), images.depth.bounds());
 }
 
 }  // namespace diminish

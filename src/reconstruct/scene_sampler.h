@@ -5,7 +5,7 @@
 #include "diminish/frame_set.h"
 #include "diminish/occlusion_masks.h"
 #include "diminish/poses.h"
-#include "diminish/reconstructor.h"
+#include "diminish/reconstruction.h"
 #include "diminish/rig.h"
 #include "reconstruct/depth_mesh.h"
 
@@ -17,17 +17,24 @@ class SceneSampler {
  public:
   explicit SceneSampler(const Rig& rig);
 
-  /// masks: grown already. Cost: about 0.1 us a sample; `samples` is sorted by `source`.
-  void sample(const FrameSet& frame, const DepthImages& depths, const Poses& poses, const OcclusionMasks& masks,
-              std::vector<SceneSample>& samples);
+  /// masks: grown already. region: of the colour camera's picture, to be drawn later. `samples` is
+  /// sorted by `source`. Cost: about 0.1 us a sample.
+  void sample(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks,
+              const Rect& region, std::vector<SceneSample>& samples);
+
+  /// The part of an RGB-D camera's depth image that shows the region, generously.
+  const Rect& part(std::size_t camera) const { return by_camera_[camera].part; }
 
  private:
-  void sample_camera(const FrameSet& frame, const DepthImages& depths, const Poses& poses, const OcclusionMasks& masks,
-                     std::size_t k, std::vector<SceneSample>& samples) const;
+  struct Camera {
+    DepthMesh mesh;
+    std::vector<SceneSample> samples;
+    Rect part;
+  };
+  void sample_camera(const RgbdFrame& images, const DepthMesh::Frame& frame, const Rect& region,
+                     std::uint8_t source, Camera& camera) const;
 
-  Intrinsics color_;
-  std::vector<DepthMesh> meshes_;
-  std::vector<std::vector<SceneSample>> by_camera_;
+  std::vector<Camera> by_camera_;
 };
 
 }  // namespace diminish
