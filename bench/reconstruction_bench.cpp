@@ -17,13 +17,14 @@ void reconstruct(benchmark::State& state, const char* name, bool whole_view) {
   DiminishedFrame result;
   open_recording(recording, options)->next(frame);
   Pipeline(recording.rig, recording.scene, options).process(frame, result);
+  const DepthImages depths = testing::depths_of(frame);
   const OcclusionMasks masks = testing::empty_masks(recording.rig);
   const Rect region = whole_view ? recording.rig.color.bounds() : result.reconstruction.region;
   const auto fast = Registry<Reconstructor>::get("cpu")(recording.rig);
   const auto plain = Registry<Reconstructor>::get("reference")(recording.rig);
   Reconstruction reconstruction;
   const auto run = [&](Reconstructor& reconstructor) {
-    reconstructor.reconstruct(frame, result.report.poses, masks, region, options, reconstruction);
+    reconstructor.reconstruct(frame, depths, result.report.poses, masks, region, options, reconstruction);
   };
   run_beside_peer(
       state, [&] { run(*fast); }, [&] { run(*plain); });

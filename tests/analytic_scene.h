@@ -11,6 +11,7 @@
 #include "diminish/intrinsics.h"
 #include "diminish/occlusion_masks.h"
 #include "diminish/poses.h"
+#include "diminish/reconstructor.h"
 #include "diminish/rig.h"
 
 namespace diminish::testing {
@@ -152,6 +153,13 @@ inline OcclusionMasks empty_masks(const Rig& rig) {
     masks.rgbd_depth.emplace_back(camera.depth.width, camera.depth.height, std::uint8_t{0});
   }
   return masks;
+}
+
+/// The depth images as they are.
+inline DepthImages depths_of(const FrameSet& frame) {
+  DepthImages depths;
+  for (const RgbdFrame& rgbd : frame.rgbd) depths.push_back(rgbd.depth);
+  return depths;
 }
 
 }  // namespace diminish::testing

@@ -51,7 +51,8 @@ TEST(VectorTargets, AgreeOnWholeFrames) {
         worst = std::max({worst, std::abs(a.b - b.b), std::abs(a.g - b.g), std::abs(a.r - b.r)});
       }
     }
-    EXPECT_LE(worst, 1);
+    // A seen pixel may be rounded otherwise, and then what is filled from it, once more.
+    EXPECT_LE(worst, 2);
     ++targets;
   }
   EXPECT_GE(targets, 1);

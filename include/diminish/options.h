@@ -12,12 +12,12 @@ struct Options {
   int mask_margin_px = 3;
   int rgbd_mask_margin_px = 6;
   double blob_spread = 1.0;
+  bool refine_poses = true;
+  bool remove_flying = true;
+  bool remove_hidden = true;
   double discontinuity_threshold_m = 0.05;
   double discontinuity_reach_m = 2;
   double depth_agreement_m = 0.03;
-  bool remove_hidden = true;
-  bool refine_poses = true;
-  bool remove_flying = true;
   int surroundings_px = 16;
   bool whole_view = false;
   std::string color_correct = "field_membrane";
@@ -53,6 +53,15 @@ void for_each_option(AnyOptions& options, Visit&& visit) {
   visit(OptionInfo{"blob_spread", "standard deviations",
                    "How far a blob's mean colour may be from the training images' mean", 0.01, 100},
         options.blob_spread);
+  visit(OptionInfo{"refine_poses", "",
+                   "Correct the colour camera's pose until its picture and the RGB-D cameras' agree"},
+        options.refine_poses);
+  visit(OptionInfo{"remove_flying", "",
+                   "Leave out depth pixels that lie between two surfaces"},
+        options.remove_flying);
+  visit(OptionInfo{"remove_hidden", "",
+                   "Leave out depth pixels that the RGB-D camera's colour sensor does not see"},
+        options.remove_hidden);
   visit(OptionInfo{"discontinuity_threshold_m", "metres",
                    "Depth pixels further apart than this are not joined by a triangle (SDCT)", 1e-4,
                    100},
@@ -65,9 +74,6 @@ void for_each_option(AnyOptions& options, Visit&& visit) {
   visit(OptionInfo{"depth_agreement_m", "metres",
                    "Surfaces of two RGB-D cameras closer than this are one surface", 0, 100},
         options.depth_agreement_m);
-  visit(OptionInfo{"remove_hidden", "", "x"}, options.remove_hidden);
-  visit(OptionInfo{"refine_poses", "", "x"}, options.refine_poses);
-  visit(OptionInfo{"remove_flying", "", "x"}, options.remove_flying);
   visit(OptionInfo{"surroundings_px", "pixels",
                    "How far around the mask the scene is reconstructed", 1, 10000},
         options.surroundings_px);

@@ -33,6 +33,7 @@ struct Reconstruction {
   Image<float> depth_m;        ///< z in the colour camera's frame; 0 where alpha is 0
   Image<std::uint8_t> source;  ///< 0 where alpha is 0, else 1 + the RGB-D camera's index
   /// In `region`: see surface_label. Where nothing was drawn, the plane that would be seen there.
+  /// Empty where planes were not looked for.
   Image<std::uint8_t> surface;
   /// Thinly over the whole picture, and not only in `region`: what the RGB-D cameras see of
   /// surfaces, away from objects to remove and from depth edges. A few thousand.

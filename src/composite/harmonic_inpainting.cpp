@@ -13,11 +13,11 @@ constexpr float tolerance_levels = 1.F;
 /// has the least squared gradient of all fillings; it invents no edges.
 class HarmonicInpainting : public Inpainter {
  public:
-  bool inpaint(const Holes& holes_, const Options&, Image<Bgr>& picture) override {
-    const Mask& missing = holes_.missing;
-    const Rect holes = bounding_box(missing);
-    if (holes.empty()) return true;
-    const Rect window = intersect(grow(holes, 1), picture.bounds());
+  bool inpaint(const Holes& holes, const Options&, Image<Bgr>& picture) override {
+    const Mask& missing = holes.missing;
+    const Rect box = bounding_box(missing);
+    if (box.empty()) return true;
+    const Rect window = intersect(grow(box, 1), picture.bounds());
     solver_.begin(window.width, window.height);
     for_rows(window.height, [&](Rows rows) {
       for (int row = rows.first; row < rows.last; ++row) {
@@ -36,7 +36,7 @@ class HarmonicInpainting : public Inpainter {
       anything_known = true;
     });
     if (!anything_known) {
-      picture.fill(holes, {});
+      picture.fill(box, {});
       return false;
     }
     solver_.solve(tolerance_levels);

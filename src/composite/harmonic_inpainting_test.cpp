@@ -12,7 +12,7 @@ namespace {
 Image<Bgr> inpaint(const Image<Bgr>& picture, const Mask& missing,
                    const char* method = "harmonic") {
   Image<Bgr> filled = picture;
-  EXPECT_TRUE(Registry<Inpainter>::get(method)()->inpaint(missing, {}, {}, filled));
+  EXPECT_TRUE(Registry<Inpainter>::get(method)()->inpaint({missing, missing, {}}, {}, filled));
   return filled;
 }
 

@@ -14,19 +14,19 @@ constexpr float tolerance_levels = 0.1F;
 /// The plain version of HarmonicInpainting (harmonic_inpainting.cpp), solved by LaplaceSolver.
 class HarmonicReference : public Inpainter {
  public:
-  bool inpaint(const Holes& holes_, const Options&, Image<Bgr>& picture) override {
-    const Mask& missing = holes_.missing;
-    const Rect holes = bounding_box(missing);
-    if (holes.empty()) return true;
+  bool inpaint(const Holes& holes, const Options&, Image<Bgr>& picture) override {
+    const Mask& missing = holes.missing;
+    const Rect box = bounding_box(missing);
+    if (box.empty()) return true;
     const auto for_each_pixel = [&](auto&& visit) {
-      for (int y = holes.y; y < holes.bottom(); ++y) {
-        for (int x = holes.x; x < holes.right(); ++x) {
-          if (missing(x, y) != 0) visit(x, y, solver_.index(x - holes.x, y - holes.y));
+      for (int y = box.y; y < box.bottom(); ++y) {
+        for (int x = box.x; x < box.right(); ++x) {
+          if (missing(x, y) != 0) visit(x, y, solver_.index(x - box.x, y - box.y));
         }
       }
     };
-    solver_.begin(holes.width, holes.height);
-    for_each_pixel([&](int x, int y, int) { solver_.add(x - holes.x, y - holes.y); });
+    solver_.begin(box.width, box.height);
+    for_each_pixel([&](int x, int y, int) { solver_.add(x - box.x, y - box.y); });
     solver_.connect();
     bool anything_known = false;
     for_each_pixel([&](int x, int y, int index) {

@@ -6,8 +6,8 @@ namespace {
 /// Unknown pixels stay unknown: black.
 class NoInpainting : public Inpainter {
  public:
-  bool inpaint(const Holes& holes_, const Options&, Image<Bgr>& picture) override {
-    const Mask& missing = holes_.missing;
+  bool inpaint(const Holes& holes, const Options&, Image<Bgr>& picture) override {
+    const Mask& missing = holes.missing;
     for (int y = 0; y < missing.height(); ++y) {
       for (int x = 0; x < missing.width(); ++x) {
         if (missing(x, y) != 0) picture(x, y) = {};

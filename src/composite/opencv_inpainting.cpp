@@ -11,12 +11,12 @@ class OpenCvInpainting : public Inpainter {
  public:
   explicit OpenCvInpainting(int method) : method_(method) {}
 
-  bool inpaint(const Holes& holes_, const Options& options, Image<Bgr>& picture) override {
-    const Mask& missing = holes_.missing;
-    const Rect holes = bounding_box(missing);
-    if (holes.empty()) return true;
+  bool inpaint(const Holes& holes, const Options& options, Image<Bgr>& picture) override {
+    const Mask& missing = holes.missing;
+    const Rect box = bounding_box(missing);
+    if (box.empty()) return true;
     // A hole's pixels depend on what is within the radius, no more.
-    const Rect part = intersect(grow(holes, options.inpaint_radius_px + 2), picture.bounds());
+    const Rect part = intersect(grow(box, options.inpaint_radius_px + 2), picture.bounds());
     if (count_nonzero(missing, part) == static_cast<std::size_t>(part.width) * part.height) {
       picture.fill(part, {});
       return false;

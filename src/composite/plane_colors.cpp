@@ -6,7 +6,7 @@ namespace diminish {
 
 void PlaneColors::collect(const Mask& occlusion, const Reconstruction& reconstruction,
                           const Image<Bgr>& picture) {
-  region_ = intersect(reconstruction.region, picture.bounds());
+  region_ = intersect(reconstruction.region, reconstruction.surface.bounds());
   columns_ = (region_.width + cell - 1) / cell;
   rows_ = (region_.height + cell - 1) / cell;
   cells_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), {});

@@ -58,7 +58,7 @@ class SurfaceInpainting : public Inpainter {
     states_.resize(window_.width, window_.height);
     boxes_.fill({});
     const Reconstruction& reconstruction = holes.reconstruction;
-    const Rect& drawn = reconstruction.region;
+    const Rect drawn = intersect(reconstruction.region, reconstruction.surface.bounds());
     for (int y = 0; y < window_.height; ++y) {
       const int row = window_.y + y;
       const bool is_drawn = row >= drawn.y && row < drawn.bottom();
@@ -141,8 +141,7 @@ class SurfaceInpainting : public Inpainter {
     const Eigen::Array3f own = to_channels(picture(x, y));
     if (holes.occlusion(x, y) != 0) return own;
     Eigen::Array3f around;
-    const Rect& region = holes.reconstruction.region;
-    if (!region.contains(x, y) ||
+    if (!plane_colors_.covers(x, y) ||
         !plane_colors_.around(x, y, holes.reconstruction.surface(x, y), around)) {
       return own;
     }

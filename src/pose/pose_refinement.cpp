@@ -11,7 +11,8 @@
 namespace diminish {
 namespace {
 
-constexpr int shrinkage = 4;
+/// What a picture is shrunk to, to blur what is misplaced by a few pixels into one another.
+constexpr int small_width = 320;
 constexpr int most_iterations = 10;
 /// Metres and radians: smaller steps move no pixel by a tenth.
 constexpr float last_step = 1e-4F;
@@ -48,20 +49,24 @@ float median(std::vector<float>& values) {
 }  // namespace
 
 PoseRefinement::PoseRefinement(const Intrinsics& color)
-    : color_(color), projection_(Lens(color)), lines_(256) {}
+    : color_(color),
+      projection_(Lens(color)),
+      shrinkage_(std::max(1, (color.width + small_width / 2) / small_width)),
+      lines_(256) {}
 
-/// Of each 4x4 pixels the four at even places are enough: they blur as much.
+/// Of the square of pixels that makes one, four are enough: they blur as much.
 void PoseRefinement::shrink(const Image<Bgr>& image) {
-  small_.resize(image.width() / shrinkage, image.height() / shrinkage);
+  small_.resize(image.width() / shrinkage_, image.height() / shrinkage_);
+  const int apart = shrinkage_ / 2;
   for_rows(small_.height(), [&](Rows rows) {
     for (int y = rows.first; y < rows.last; ++y) {
-      const Bgr* upper = image.row(shrinkage * y);
-      const Bgr* lower = image.row(shrinkage * y + 2);
+      const Bgr* upper = image.row(shrinkage_ * y);
+      const Bgr* lower = image.row(shrinkage_ * y + apart);
       float* to = small_.row(y);
-      for (int x = 0; x < small_.width(); ++x, upper += shrinkage, lower += shrinkage) {
-        const int blue = upper[0].b + upper[2].b + lower[0].b + lower[2].b;
-        const int green = upper[0].g + upper[2].g + lower[0].g + lower[2].g;
-        const int red = upper[0].r + upper[2].r + lower[0].r + lower[2].r;
+      for (int x = 0; x < small_.width(); ++x, upper += shrinkage_, lower += shrinkage_) {
+        const int blue = upper[0].b + upper[apart].b + lower[0].b + lower[apart].b;
+        const int green = upper[0].g + upper[apart].g + lower[0].g + lower[apart].g;
+        const int red = upper[0].r + upper[apart].r + lower[0].r + lower[apart].r;
         to[x] = 0.0285F * static_cast<float>(blue) + 0.14675F * static_cast<float>(green) +
                 0.07475F * static_cast<float>(red);
       }
@@ -72,8 +77,8 @@ void PoseRefinement::shrink(const Image<Bgr>& image) {
 /// The brightness around each sample, over about the area of a pixel of the small picture.
 void PoseRefinement::collect(const FrameSet& frame, const std::vector<SceneSample>& samples) {
   constexpr int reach = 2;
-  constexpr int spacing = 2;
-  constexpr int rim = reach * spacing;
+  const int spacing = shrinkage_ / 2;
+  const int rim = reach * spacing;
   points_.clear();
   const std::size_t step = (samples.size() + most_points - 1) / most_points;
   for (std::size_t i = 0; i < samples.size(); i += step) {
@@ -83,8 +88,10 @@ void PoseRefinement::collect(const FrameSet& frame, const std::vector<SceneSampl
     const int v = static_cast<int>(std::lrint(sample.texture.y()));
     if (u < rim || v < rim || u >= image.width() - rim || v >= image.height() - rim) continue;
     float sum = 0;
-    for (int dy = -rim; dy <= rim; dy += spacing) {
-      for (int dx = -rim; dx <= rim; dx += spacing) sum += brightness(image(u + dx, v + dy));
+    for (int j = -reach; j <= reach; ++j) {
+      for (int i = -reach; i <= reach; ++i) {
+        sum += brightness(image(u + i * spacing, v + j * spacing));
+      }
     }
     constexpr float taps = (2 * reach + 1) * (2 * reach + 1);
     points_.push_back({sample.point_m, sum / taps, sample.source});
@@ -96,24 +103,26 @@ void PoseRefinement::linearise(const RigidTransform& correction, const Mask& occ
   const Eigen::Vector3f translation = correction.translation.cast<float>();
   const auto fx = static_cast<float>(color_.fx);
   const auto fy = static_cast<float>(color_.fy);
+  const auto shrinkage = static_cast<float>(shrinkage_);
+  // Of the four pixels that make one of the small picture.
+  const float center = static_cast<float>(shrinkage_ / 2) / 2;
   rows_.clear();
   for (const Point& point : points_) {
     const Eigen::Vector3f p = rotation * point.point_m + translation;
     float px = 0;
     float py = 0;
     if (!(p.z() > 0) || !projection_.distort(p.x() / p.z(), p.y() / p.z(), px, py)) continue;
-    // The four pixels that make one of the small picture have their centre one off the corner.
-    const float x = (px - 1) / shrinkage;
-    const float y = (py - 1) / shrinkage;
+    const float x = (px - center) / shrinkage;
+    const float y = (py - center) / shrinkage;
     if (!(x >= 1 && y >= 1 && x < static_cast<float>(small_.width() - 2) &&
           y < static_cast<float>(small_.height() - 2))) {
       continue;
     }
     const int column = static_cast<int>(x);
     const int row = static_cast<int>(y);
-    const int left = shrinkage * column;
-    const int top = shrinkage * row;
-    constexpr int beyond = 2 * shrinkage - 1;
+    const int left = shrinkage_ * column;
+    const int top = shrinkage_ * row;
+    const int beyond = 2 * shrinkage_ - 1;
     if ((occlusion(left, top) | occlusion(left + beyond, top) | occlusion(left, top + beyond) |
          occlusion(left + beyond, top + beyond)) != 0) {
       continue;
@@ -180,7 +189,7 @@ float PoseRefinement::weigh() {
 
 bool PoseRefinement::refine(const FrameSet& frame, const Mask& occlusion,
                             std::vector<SceneSample>& samples, Poses& poses) {
-  constexpr int smallest_side = 8 * shrinkage;
+  const int smallest_side = 8 * shrinkage_;
   if (std::min(frame.color.width(), frame.color.height()) < smallest_side) return false;
   if (samples.size() < fewest_points) return false;
   shrink(frame.color);

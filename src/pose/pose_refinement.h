@@ -17,7 +17,7 @@ namespace diminish {
 ///
 /// Direct alignment: brightness at the samples' projections must equal, but for gain and offset,
 /// what the RGB-D camera saw there (Gauss-Newton on 6 degrees of freedom with robust weights, as in
-/// Kerl, Sturm & Cremers 2013), in a picture of a quarter of the size. The pose that was measured
+/// Kerl, Sturm & Cremers 2013), in a picture shrunk to a width of about 320 pixels. The pose that was measured
 /// is held to within its uncertainty.
 class PoseRefinement {
  public:
@@ -56,6 +56,7 @@ class PoseRefinement {
 
   Intrinsics color_;
   Projection projection_;
+  int shrinkage_;
   Image<float> small_;
   std::vector<Point> points_;
   std::vector<Row> rows_;

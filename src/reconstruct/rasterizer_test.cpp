@@ -137,14 +137,14 @@ TEST(DrawMesh, TearsWhereDepthsStepAndWhereVerticesAreMissing) {
   }
   Canvas canvas(60, 40);
   const Image<Bgr> texture(4, 4);
-  draw_mesh(vertices, texture, 0.05F, canvas.region, canvas.layer);
+  draw_mesh(vertices, texture, sdct::Threshold(0.05F, 0), canvas.region, canvas.layer);
   EXPECT_NE(canvas.layer.color(15, 5).a, 0);
   EXPECT_EQ(canvas.layer.color(25, 5).a, 0) << "a step of 6 cm must be torn at a threshold of 5";
   EXPECT_NE(canvas.layer.color(35, 5).a, 0);
 
   canvas.layer.clear(60, 40, canvas.region);
   vertices(1, 1) = {};
-  draw_mesh(vertices, texture, 0.1F, canvas.region, canvas.layer);
+  draw_mesh(vertices, texture, sdct::Threshold(0.1F, 0), canvas.region, canvas.layer);
   EXPECT_NE(canvas.layer.color(25, 5).a, 0) << "joined at a threshold of 10 cm";
   EXPECT_EQ(canvas.layer.color(8, 8).a, 0) << "no triangle without its vertex";
 }
@@ -155,7 +155,7 @@ TEST(DrawMesh, LeavesOutSurfacesSeenFromBehind) {
     for (int x = 0; x < 2; ++x) vertices(x, y) = vertex(30 - 20 * x, 20 * y);  // mirrored
   }
   Canvas canvas(60, 40);
-  draw_mesh(vertices, Image<Bgr>(4, 4), 0.05F, canvas.region, canvas.layer);
+  draw_mesh(vertices, Image<Bgr>(4, 4), sdct::Threshold(0.05F, 0), canvas.region, canvas.layer);
   for (const Bgra& pixel : canvas.layer.color) EXPECT_EQ(pixel.a, 0);
 }
 
