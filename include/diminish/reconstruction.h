@@ -10,9 +10,9 @@ namespace diminish {
 
 /// A point on a surface that an RGB-D camera sees and the colour camera may see, too.
 struct SceneSample {
-  Eigen::Vector3f point_m;     ///< in the colour camera's frame
-  Eigen::Vector2f pixel;       ///< its place in the colour camera's image
-  Eigen::Vector2f texture;     ///< its place in the RGB-D camera's colour image
+  Eigen::Vector3f point_m = Eigen::Vector3f::Zero();     ///< in the colour camera's frame
+  Eigen::Vector2f pixel = Eigen::Vector2f::Zero();       ///< its place in the colour camera's image
+  Eigen::Vector2f texture = Eigen::Vector2f::Zero();     ///< its place in the RGB-D camera's colour image
   Bgr color;                   ///< the RGB-D camera's, averaged over the neighbourhood
   std::uint8_t source = 0;     ///< 1 + the RGB-D camera's index
   bool even = false;           ///< the neighbourhood has one colour

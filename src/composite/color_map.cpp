@@ -9,7 +9,7 @@ namespace {
 
 using Terms = Eigen::Matrix<float, 5, 1>;
 
-constexpr int passes = 6;
+constexpr int passes = 12;
 /// Residuals below this are noise, in levels.
 constexpr float least_scale = 1.5F;
 /// How many pairs what is not known beforehand weighs.

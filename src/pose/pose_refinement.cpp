@@ -89,8 +89,8 @@ void PoseRefinement::collect(const FrameSet& frame, const std::vector<SceneSampl
     if (u < rim || v < rim || u >= image.width() - rim || v >= image.height() - rim) continue;
     float sum = 0;
     for (int j = -reach; j <= reach; ++j) {
-      for (int i = -reach; i <= reach; ++i) {
-        sum += brightness(image(u + i * spacing, v + j * spacing));
+      for (int k = -reach; k <= reach; ++k) {
+        sum += brightness(image(u + k * spacing, v + j * spacing));
       }
     }
     constexpr float taps = (2 * reach + 1) * (2 * reach + 1);
@@ -140,7 +140,8 @@ void PoseRefinement::linearise(const RigidTransform& correction, const Mask& occ
         du * fx / p.z(), dv * fy / p.z(),
         -(du * fx * p.x() + dv * fy * p.y()) / (p.z() * p.z()));
     Row next;
-    next.derivative << by_point, p.cross(by_point);
+    next.derivative.head<3>() = by_point;
+    next.derivative.tail<3>() = p.cross(by_point);
     next.brightness = point.brightness;
     next.seen = seen;
     next.source = point.source;
@@ -197,8 +198,8 @@ bool PoseRefinement::refine(const FrameSet& frame, const Mask& occlusion,
   std::fill(lines_.begin(), lines_.end(), Line{});
 
   Twist prior;
-  prior << Eigen::Vector3f::Constant(1 / (translation_deviation_m * translation_deviation_m)),
-      Eigen::Vector3f::Constant(1 / (rotation_deviation * rotation_deviation));
+  prior.head<3>().setConstant(1 / (translation_deviation_m * translation_deviation_m));
+  prior.tail<3>().setConstant(1 / (rotation_deviation * rotation_deviation));
   RigidTransform correction;
   Twist total = Twist::Zero();
   float first_cost = 0;

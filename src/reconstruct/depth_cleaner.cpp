@@ -75,8 +75,10 @@ void DepthCleaner::remove_flying(const Image<std::uint16_t>& depth, const Rect& 
       const float first = static_cast<float>(row[x + offset]) * unit_m;
       const float second = static_cast<float>(row[x + 2 * offset]) * unit_m;
       if (first == 0) return false;
-      const float continued = second > 0 ? 2 * first - second : first;
-      return std::abs(continued - z) <= 2.5F * noise || std::abs(first - z) <= 1.5F * noise;
+      if (std::abs(first - z) <= 1.5F * noise) return true;
+      // Along a plane 1/z changes evenly.
+      const float inverse = second > 0 ? 2 / first - 1 / second : 1 / first;
+      return std::abs(1 - inverse * z) * z <= 2.5F * noise;
     };
     for (const std::ptrdiff_t offset : {std::ptrdiff_t{1}, std::ptrdiff_t{-1}, pitch, -pitch}) {
       if (is_beyond_edge(offset) && !continues(-offset)) {

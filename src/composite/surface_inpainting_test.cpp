@@ -1,0 +1,115 @@
+#include <gtest/gtest.h>
+
+#include "diminish/inpainter.h"
+
+namespace diminish {
+namespace {
+
+constexpr std::uint8_t wall = surface_label::first_plane;
+constexpr std::uint8_t table = wall + 1;
+const Bgr wall_color{120, 130, 140};
+const Bgr table_color{40, 90, 160};
+const Bgr box_color{200, 30, 30};
+
+/// A wall above a table, a box in front, and an object to remove that hides all three.
+struct Room {
+  Image<Bgr> picture{200, 160};
+  Mask occlusion{200, 160, 0};
+  Mask missing{200, 160, 0};
+  Reconstruction reconstruction;
+
+  Room() {
+    reconstruction.region = picture.bounds();
+    reconstruction.surface.resize(200, 160);
+    for (int y = 0; y < 160; ++y) {
+      for (int x = 0; x < 200; ++x) {
+        const bool box = x < 70 && y > 30;
+        picture(x, y) = box ? box_color : y < 90 ? wall_color : table_color;
+        reconstruction.surface(x, y) = box ? surface_label::foreground : y < 90 ? wall : table;
+      }
+    }
+    remove({60, 20, 100, 110});
+  }
+  void remove(const Rect& object) {
+    occlusion.fill(object, 255);
+    for (int y = object.y; y < object.bottom(); ++y) {
+      for (int x = object.x; x < object.right(); ++x) {
+        if (x < 70 && y > 30) continue;  // the box's part is seen by an RGB-D camera
+        missing(x, y) = 255;
+        picture(x, y) = {0, 255, 0};
+        reconstruction.surface(x, y) = y < 90 ? wall : table;
+      }
+    }
+  }
+  Image<Bgr> fill(const char* method = "surfaces") const {
+    Image<Bgr> filled = picture;
+    EXPECT_TRUE(Registry<Inpainter>::get(method)()->inpaint({missing, occlusion, reconstruction},
+                                                            {}, filled));
+    return filled;
+  }
+};
+
+TEST(SurfaceInpainting, FillsEachPlaneFromItself) {
+  const Room room;
+  const Image<Bgr> filled = room.fill();
+  for (int y = 20; y < 130; ++y) {
+    for (int x = 60; x < 160; ++x) {
+      if (room.missing(x, y) == 0) continue;
+      EXPECT_EQ(filled(x, y), y < 90 ? wall_color : table_color) << x << ' ' << y;
+    }
+  }
+  EXPECT_NE(room.fill("harmonic")(75, 60), wall_color) << "the box would bleed";
+}
+
+TEST(SurfaceInpainting, LeavesEverythingElseAlone) {
+  const Room room;
+  const Image<Bgr> filled = room.fill();
+  for (int y = 0; y < 160; ++y) {
+    for (int x = 0; x < 200; ++x) {
+      if (room.missing(x, y) != 0) continue;
+      ASSERT_EQ(filled(x, y), room.picture(x, y));
+    }
+  }
+}
+
+// The object darkened the table beside it.
+TEST(SurfaceInpainting, DoesNotSpreadAContactShadow) {
+  Room room;
+  for (int y = 130; y < 134; ++y) {
+    for (int x = 55; x < 165; ++x) room.picture(x, y) = {10, 20, 35};
+  }
+  const Image<Bgr> filled = room.fill();
+  EXPECT_EQ(filled(110, 125), table_color);
+  EXPECT_EQ(filled(110, 131), room.picture(110, 131)) << "it stays where the camera sees it";
+}
+
+// A hole that borders on what is in front of its plane is rather a hole in that.
+TEST(SurfaceInpainting, AHoleInTheForegroundIsFilledFromAround) {
+  Room room;
+  room.occlusion.fill({20, 60, 20, 20}, 255);
+  for (int y = 60; y < 80; ++y) {
+    for (int x = 20; x < 40; ++x) {
+      room.missing(x, y) = 255;
+      room.picture(x, y) = {0, 255, 0};
+      room.reconstruction.surface(x, y) = wall;
+    }
+  }
+  EXPECT_EQ(room.fill()(30, 70), box_color);
+}
+
+// Without planes it is the harmonic filling.
+TEST(SurfaceInpainting, EqualsHarmonicWithoutPlanes) {
+  Room room;
+  room.reconstruction.surface = {};
+  EXPECT_EQ(room.fill(), room.fill("harmonic"));
+}
+
+TEST(SurfaceInpainting, SaysThatNothingIsKnown) {
+  Image<Bgr> picture(40, 30, {9, 9, 9});
+  const Mask all(40, 30, 255);
+  EXPECT_FALSE(Registry<Inpainter>::get("surfaces")()->inpaint({all, all, {}}, {}, picture));
+  EXPECT_EQ(picture(20, 15), Bgr{});
+}
+
+}  // namespace
+}  // namespace diminish
