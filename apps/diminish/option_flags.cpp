@@ -6,6 +6,7 @@
 
 #include "diminish/color_corrector.h"
 #include "diminish/inpainter.h"
+#include "diminish/view_mode.h"
 
 namespace diminish {
 namespace {
@@ -20,6 +21,7 @@ std::string flag_name(const OptionInfo& info) {
 std::string choices(const Options& options, const std::string& value) {
   if (&value == &options.color_correct) return Registry<ColorCorrector>::known();
   if (&value == &options.inpaint) return Registry<Inpainter>::known();
+  if (&value == &options.mode) return Registry<ViewMode>::known();
   return {};
 }
 
@@ -29,7 +31,8 @@ void add_option_flags(CLI::App& command, Options& options) {
   for_each_option(options, [&](const OptionInfo& info, auto& value) {
     using Value = std::decay_t<decltype(value)>;
     if constexpr (std::is_same_v<Value, bool>) {
-      command.add_flag(flag_name(info), value, info.help)->group("Options of the pipeline");
+      const std::string off = value ? ",!--no-" + flag_name(info).substr(2) : "";
+      command.add_flag(flag_name(info) + off, value, info.help)->group("Options of the pipeline");
     } else {
       auto* flag = command.add_option(flag_name(info), value, info.help)
                        ->capture_default_str()

@@ -24,3 +24,4 @@
 #include "diminish/reconstructor.h"
 #include "diminish/rig.h"
 #include "diminish/scene.h"
+#include "diminish/view_mode.h"

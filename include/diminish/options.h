@@ -23,6 +23,8 @@ struct Options {
   std::string color_correct = "field_membrane";
   std::string inpaint = "surfaces";
   int inpaint_radius_px = 5;
+  std::string mode = "remove";
+  double transparency = 0.5;
 };
 
 /// An option's description. The range is inclusive and means nothing for texts and switches.
@@ -86,6 +88,10 @@ void for_each_option(AnyOptions& options, Visit&& visit) {
         options.inpaint);
   visit(OptionInfo{"inpaint_radius_px", "pixels", "Neighbourhood of telea and ns", 1, 100},
         options.inpaint_radius_px);
+  visit(OptionInfo{"mode", "method", "How the background is shown"}, options.mode);
+  visit(OptionInfo{"transparency", "",
+                   "Of the object, in the mode half: 0 shows it as it is, 1 not at all", 0, 1},
+        options.transparency);
 }
 
 /// Throws Error that names the option and what was given, if a value is out of range or names no

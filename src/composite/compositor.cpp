@@ -97,6 +97,10 @@ void Compositor::composite(const Image<Bgr>& camera, const OcclusionMasks& masks
                    provenance::unknown);
     }
   }
+  if (result.report.mask_pixels > 0) {
+    const ScopedTimer timer(milliseconds, Stage::compositing);
+    view_mode(options.mode).show(camera, options, result);
+  }
 }
 
 ColorCorrector& Compositor::corrector(const std::string& name) {
@@ -108,6 +112,12 @@ ColorCorrector& Compositor::corrector(const std::string& name) {
 Inpainter& Compositor::inpainter(const std::string& name) {
   auto& found = inpainters_[name];
   if (!found) found = Registry<Inpainter>::get(name)();
+  return *found;
+}
+
+const ViewMode& Compositor::view_mode(const std::string& name) {
+  auto& found = view_modes_[name];
+  if (!found) found = Registry<ViewMode>::get(name)();
   return *found;
 }
 

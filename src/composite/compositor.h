@@ -8,6 +8,7 @@
 #include "diminish/diminished_frame.h"
 #include "diminish/inpainter.h"
 #include "diminish/options.h"
+#include "diminish/view_mode.h"
 
 namespace diminish {
 
@@ -23,9 +24,11 @@ class Compositor {
  private:
   ColorCorrector& corrector(const std::string& name);
   Inpainter& inpainter(const std::string& name);
+  const ViewMode& view_mode(const std::string& name);
 
   std::map<std::string, std::unique_ptr<ColorCorrector>> correctors_;
   std::map<std::string, std::unique_ptr<Inpainter>> inpainters_;
+  std::map<std::string, std::unique_ptr<ViewMode>> view_modes_;
   Mask missing_;
   Rect missing_box_;
 };

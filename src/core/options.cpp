@@ -8,6 +8,7 @@
 #include "diminish/color_corrector.h"
 #include "diminish/error.h"
 #include "diminish/inpainter.h"
+#include "diminish/view_mode.h"
 
 namespace diminish {
 namespace {
@@ -41,6 +42,7 @@ void check(const Options& options) {
   });
   check_registered<ColorCorrector>("color_correct", options.color_correct);
   check_registered<Inpainter>("inpaint", options.inpaint);
+  check_registered<ViewMode>("mode", options.mode);
 }
 
 }  // namespace diminish

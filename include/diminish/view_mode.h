@@ -1,0 +1,28 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "diminish/diminished_frame.h"
+#include "diminish/image.h"
+#include "diminish/options.h"
+#include "diminish/registry.h"
+
+namespace diminish {
+
+/// How the hidden background is shown: people look through objects for different reasons.
+/// Registered by name; the option `mode` chooses.
+class ViewMode {
+ public:
+  static constexpr const char* kind = "view mode";
+  using Factory = std::function<std::unique_ptr<ViewMode>()>;
+
+  virtual ~ViewMode() = default;
+
+  /// camera: the colour camera's image, with the object. `result` shows the background in its place;
+  /// changes `result.picture` inside `result.mask`, and nothing else.
+  virtual void show(const Image<Bgr>& camera, const Options& options,
+                    DiminishedFrame& result) const = 0;
+};
+
+}  // namespace diminish

@@ -1,0 +1,113 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "composite/channels.h"
+#include "core/rows.h"
+#include "diminish/view_mode.h"
+
+namespace diminish {
+namespace {
+
+/// Sets each pixel of the mask to color(x, y).
+template <class Color>
+void replace_in_mask(DiminishedFrame& result, const Color& color) {
+  for_rows(result.mask.height(), [&](Rows rows) {
+    for (int y = rows.first; y < rows.last; ++y) {
+      const std::uint8_t* mask = result.mask.row(y);
+      Bgr* picture = result.picture.row(y);
+      for (int x = 0; x < result.mask.width(); ++x) {
+        if (mask[x] != 0) picture[x] = color(x, y);
+      }
+    }
+  });
+}
+
+Bgr blend(const Bgr& a, const Bgr& b, float share_of_b) {
+  return to_color((1 - share_of_b) * to_channels(a) + share_of_b * to_channels(b));
+}
+
+class Remove : public ViewMode {
+ public:
+  void show(const Image<Bgr>&, const Options&, DiminishedFrame&) const override {}
+};
+
+/// The object as if it were of glass.
+class Half : public ViewMode {
+ public:
+  void show(const Image<Bgr>& camera, const Options& options,
+            DiminishedFrame& result) const override {
+    const auto opacity = static_cast<float>(1 - options.transparency);
+    replace_in_mask(result, [&](int x, int y) {
+      return blend(result.picture(x, y), camera(x, y), opacity);
+    });
+  }
+};
+
+/// The background, with the object's edges on top.
+class XRay : public ViewMode {
+ public:
+  void show(const Image<Bgr>& camera, const Options&, DiminishedFrame& result) const override {
+    constexpr float full = 60;  // levels of brightness from one pixel to the next but one
+    const Bgr edge_color{255, 255, 255};
+    const auto brightness = [&](int x, int y) {
+      const Bgr& color = camera(std::clamp(x, 0, camera.width() - 1),
+                                std::clamp(y, 0, camera.height() - 1));
+      return static_cast<float>(color.b + 2 * color.g + color.r) / 4;
+    };
+    replace_in_mask(result, [&](int x, int y) {
+      const float across = brightness(x + 1, y) - brightness(x - 1, y);
+      const float down = brightness(x, y + 1) - brightness(x, y - 1);
+      const float strength = std::min(1.F, std::hypot(across, down) / full);
+      return blend(result.picture(x, y), edge_color, strength < 0.2F ? 0.F : 0.8F * strength);
+    });
+  }
+};
+
+/// The background, with a line where the object is.
+class Outline : public ViewMode {
+ public:
+  void show(const Image<Bgr>&, const Options&, DiminishedFrame& result) const override {
+    constexpr int width_px = 2;
+    const Bgr line_color{0, 220, 255};
+    const auto is_beside_mask = [&](int x, int y) {
+      const Rect bounds = result.mask.bounds();
+      for (const auto& [dx, dy] : neighbour_offsets) {
+        for (int i = 1; i <= width_px; ++i) {
+          const int px = x + i * dx;
+          const int py = y + i * dy;
+          if (bounds.contains(px, py) && result.mask(px, py) == 0) return true;
+        }
+      }
+      return false;
+    };
+    replace_in_mask(result, [&](int x, int y) {
+      return is_beside_mask(x, y) ? line_color : result.picture(x, y);
+    });
+  }
+};
+
+/// What was seen and what was invented: the former in green, the latter in magenta, hatched.
+class Provenance : public ViewMode {
+ public:
+  void show(const Image<Bgr>&, const Options&, DiminishedFrame& result) const override {
+    constexpr float tint = 0.35F;
+    constexpr int period_px = 8;
+    replace_in_mask(result, [&](int x, int y) -> Bgr {
+      const Bgr& color = result.picture(x, y);
+      if (result.provenance(x, y) < provenance::inpainted) return blend(color, {0, 200, 0}, tint);
+      const bool is_line = (x + y) % period_px < 2;
+      return is_line ? Bgr{255, 0, 255} : blend(color, {255, 0, 255}, tint);
+    });
+  }
+};
+
+template <class Mode>
+bool add(const char* name) {
+  return Registry<ViewMode>::add(name, [] { return std::make_unique<Mode>(); });
+}
+const bool registered = add<Remove>("remove") && add<Half>("half") && add<XRay>("xray") &&
+                        add<Outline>("outline") && add<Provenance>("provenance");
+
+}  // namespace
+}  // namespace diminish
