@@ -15,6 +15,7 @@ struct Options {
   bool refine_poses = true;
   bool remove_flying = true;
   bool remove_hidden = true;
+  bool smooth_depth = true;
   double discontinuity_threshold_m = 0.05;
   double discontinuity_reach_m = 2;
   double depth_agreement_m = 0.03;
@@ -64,6 +65,8 @@ void for_each_option(AnyOptions& options, Visit&& visit) {
   visit(OptionInfo{"remove_hidden", "",
                    "Leave out depth pixels that the RGB-D camera's colour sensor does not see"},
         options.remove_hidden);
+  visit(OptionInfo{"smooth_depth", "", "Average depth over neighbouring pixels of the same surface"},
+        options.smooth_depth);
   visit(OptionInfo{"discontinuity_threshold_m", "metres",
                    "Depth pixels further apart than this are not joined by a triangle (SDCT)", 1e-4,
                    100},

@@ -14,6 +14,9 @@ namespace {
 /// blurred.
 constexpr float margin_px = 1;
 
+/// Pixels on both sides that are averaged.
+constexpr int smoothing_reach = 2;
+
 /// What a depth may be off by, without being between two surfaces.
 float noise_m(float depth_m) {
   return 0.008F + 0.004F * depth_m * depth_m;
@@ -52,6 +55,49 @@ void DepthCleaner::clean(const Image<std::uint16_t>& depth, const Rect& part,
       if (options.remove_hidden) remove_hidden(part, y, threshold_m, row, cleaned);
     }
   });
+  if (options.smooth_depth) smooth(part, cleaned);
+}
+
+/// First along rows, then along columns.
+void DepthCleaner::smooth(const Rect& part, Image<std::uint16_t>& cleaned) {
+  half_smooth_ = cleaned;
+  const auto by_rows = [&](const auto& visit) {
+    for_rows(part.height, [&](Rows rows) {
+      for (int y = part.y + rows.first; y < part.y + rows.last; ++y) visit(y);
+    });
+  };
+  constexpr int reach = smoothing_reach;
+  const int left = std::max(part.x, reach);
+  const int right = std::min(part.right(), cleaned.width() - reach);
+  by_rows([&](int y) {
+    const std::uint16_t* from = cleaned.row(y);
+    for (int x = left; x < right; ++x) half_smooth_(x, y) = smoothed(from + x, 1);
+  });
+  by_rows([&](int y) {
+    if (y < reach || y >= cleaned.height() - reach) return;
+    const std::uint16_t* from = half_smooth_.row(y);
+    for (int x = left; x < right; ++x) cleaned(x, y) = smoothed(from + x, cleaned.width());
+  });
+}
+
+/// The mean of pairs on both sides that lie on the same surface: on a slanted one, too, theirs is
+/// the depth in the middle.
+std::uint16_t DepthCleaner::smoothed(const std::uint16_t* pixel, std::ptrdiff_t step) const {
+  if (*pixel == 0) return 0;
+  const auto unit_m = static_cast<float>(camera_.depth_unit_m);
+  const auto own = static_cast<float>(*pixel);
+  const float limit = noise_m(own * unit_m) / unit_m;
+  float sum = own;
+  float count = 1;
+  for (int k = 1; k <= smoothing_reach; ++k) {
+    const std::uint16_t before = pixel[-k * step];
+    const std::uint16_t after = pixel[k * step];
+    const float pair = static_cast<float>(before) + static_cast<float>(after);
+    if (before == 0 || after == 0 || std::abs(pair / 2 - own) > limit) break;
+    sum += pair;
+    count += 2;
+  }
+  return static_cast<std::uint16_t>(sum / count + 0.5F);
 }
 
 /// A pixel beside a depth edge stays if it continues the surface on its other side.

@@ -14,6 +14,8 @@ namespace diminish {
 /// - pixels that the camera's own colour sensor, some centimetres beside the depth sensor, does not
 ///   see because something nearer is in front of them: they would get its colour. (Only where it
 ///   is beside, not above: sensors are built that way.)
+/// and averages what is left over neighbouring pixels of the same surface: seen from the side, noise
+/// in depth is noise in place.
 class DepthCleaner {
  public:
   explicit DepthCleaner(const RgbdCamera& camera);
@@ -28,6 +30,8 @@ class DepthCleaner {
   };
   void remove_flying(const Image<std::uint16_t>& depth, const Rect& part, int y,
                      Image<std::uint16_t>& cleaned) const;
+  void smooth(const Rect& part, Image<std::uint16_t>& cleaned);
+  std::uint16_t smoothed(const std::uint16_t* pixel, std::ptrdiff_t step) const;
   void remove_hidden(const Rect& part, int y, float threshold_m, Row& row,
                      Image<std::uint16_t>& cleaned) const;
 
@@ -35,6 +39,7 @@ class DepthCleaner {
   /// A pixel's ray (x, y, 1), turned into the colour sensor's frame: its x and z.
   Image<float> ray_side_, ray_ahead_;
   Row rows_[2];
+  Image<std::uint16_t> half_smooth_;
 };
 
 }  // namespace diminish
