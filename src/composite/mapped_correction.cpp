@@ -18,6 +18,9 @@ bool is_exposed(const Eigen::Array3f& levels) {
   return (levels >= 6).all() && (levels <= 245).all();
 }
 
+/// Of each RGB-D camera: more make the map no better.
+constexpr std::size_t most_pairs = 2000;
+
 /// Maps each RGB-D camera's colours to the colour camera's by what both see anywhere in the picture,
 /// in this frame. Unlike Poisson cloning it needs nothing to be right at the mask's rim, where
 /// poses, depth edges and the object's own shadow do the most harm.
@@ -49,11 +52,14 @@ class MappedCorrection : public ColorCorrector {
     for (std::size_t first = 0; first < samples.size();) {
       const std::uint8_t source = samples[first].source;
       pairs_.clear();
-      std::size_t i = first;
-      for (; i < samples.size() && samples[i].source == source; ++i) {
-        add_pair(camera, occlusion, samples[i]);
-      }
-      first = i;
+      const auto last = std::find_if(samples.begin() + static_cast<std::ptrdiff_t>(first),
+                                     samples.end(), [&](const SceneSample& sample) {
+                                       return sample.source != source;
+                                     });
+      const auto end = static_cast<std::size_t>(last - samples.begin());
+      const std::size_t step = (end - first + most_pairs - 1) / most_pairs;
+      for (std::size_t i = first; i < end; i += step) add_pair(camera, occlusion, samples[i]);
+      first = end;
       maps_[source] = fit_color_map(pairs_, model_, camera.bounds());
     }
   }

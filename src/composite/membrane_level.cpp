@@ -26,6 +26,14 @@ void collect(const MembraneLevel& level, Wanted wanted, std::vector<MembraneLeve
   rows.push_back(static_cast<int>(spans.size()));
 }
 
+/// More than needed, so that the next frame's window, a little larger or smaller, is laid out in the
+/// same way, and only what changes has to be cleared.
+int tiles_for(int cells, int tile) {
+  constexpr int at_a_time = 4;
+  const int needed = (cells + tile - 1) / tile;
+  return (needed + at_a_time - 1) / at_a_time * at_a_time;
+}
+
 }  // namespace
 
 void AlignedFloats::require(std::size_t count) {
@@ -36,8 +44,8 @@ void AlignedFloats::require(std::size_t count) {
 }
 
 void MembraneLevel::begin(int width_, int height_) {
-  const int columns = (width_ + tile_width - 1) / tile_width;
-  const int tiles_high = (height_ + tile_height - 1) / tile_height;
+  const int columns = tiles_for(width_, tile_width);
+  const int tiles_high = tiles_for(height_, tile_height);
   std::swap(blocks, old_blocks_);
   std::swap(stored, old_stored_);
   std::swap(stored_rows, old_stored_rows_);

@@ -149,41 +149,41 @@ void PoseRefinement::linearise(const RigidTransform& correction, const Mask& occ
   }
 }
 
-float PoseRefinement::weigh() {
+void PoseRefinement::fit_lines() {
   struct Sums {
     double n = 0, x = 0, y = 0, xx = 0, xy = 0;
   };
-  float scale = 0;
-  for (int pass = 0; pass < 3; ++pass) {
-    Sums sums[256];
-    for (const Row& row : rows_) {
-      Sums& sum = sums[row.source];
-      const double weighted = static_cast<double>(row.weight) * static_cast<double>(row.brightness);
-      sum.n += static_cast<double>(row.weight);
-      sum.x += weighted;
-      sum.y += static_cast<double>(row.weight) * static_cast<double>(row.seen);
-      sum.xx += weighted * static_cast<double>(row.brightness);
-      sum.xy += weighted * static_cast<double>(row.seen);
-    }
-    for (std::size_t i = 0; i < lines_.size(); ++i) {
-      const Sums& sum = sums[i];
-      const double determinant = sum.n * sum.xx - sum.x * sum.x;
-      if (!(determinant > 1)) continue;
-      const double gain = (sum.n * sum.xy - sum.x * sum.y) / determinant;
-      lines_[i] = {static_cast<float>(gain), static_cast<float>((sum.y - gain * sum.x) / sum.n)};
-    }
-    magnitudes_.clear();
-    for (Row& row : rows_) {
-      const Line& line = lines_[row.source];
-      row.residual = row.seen - line.gain * row.brightness - line.offset;
-      magnitudes_.push_back(std::abs(row.residual));
-    }
-    scale = std::max(1.F, 1.48F * median(magnitudes_));
-    // Tukey's weights.
-    for (Row& row : rows_) {
-      const float relative = std::min(1.F, std::abs(row.residual) / (4.7F * scale));
-      row.weight = (1 - relative * relative) * (1 - relative * relative);
-    }
+  Sums sums[256];
+  for (const Row& row : rows_) {
+    Sums& sum = sums[row.source];
+    const double weighted = static_cast<double>(row.weight) * static_cast<double>(row.brightness);
+    sum.n += static_cast<double>(row.weight);
+    sum.x += weighted;
+    sum.y += static_cast<double>(row.weight) * static_cast<double>(row.seen);
+    sum.xx += weighted * static_cast<double>(row.brightness);
+    sum.xy += weighted * static_cast<double>(row.seen);
+  }
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    const Sums& sum = sums[i];
+    const double determinant = sum.n * sum.xx - sum.x * sum.x;
+    if (!(determinant > 1)) continue;
+    const double gain = (sum.n * sum.xy - sum.x * sum.y) / determinant;
+    lines_[i] = {static_cast<float>(gain), static_cast<float>((sum.y - gain * sum.x) / sum.n)};
+  }
+}
+
+float PoseRefinement::weigh() {
+  magnitudes_.clear();
+  for (Row& row : rows_) {
+    const Line& line = lines_[row.source];
+    row.residual = row.seen - line.gain * row.brightness - line.offset;
+    magnitudes_.push_back(std::abs(row.residual));
+  }
+  const float scale = std::max(1.F, 1.48F * median(magnitudes_));
+  // Tukey's weights.
+  for (Row& row : rows_) {
+    const float relative = std::min(1.F, std::abs(row.residual) / (4.7F * scale));
+    row.weight = (1 - relative * relative) * (1 - relative * relative);
   }
   return scale;
 }
@@ -207,7 +207,14 @@ bool PoseRefinement::refine(const FrameSet& frame, const Mask& occlusion,
   for (int iteration = 0;; ++iteration) {
     linearise(correction, occlusion);
     if (rows_.size() < fewest_points) return false;
-    const float scale = weigh();
+    // Later on the lines hardly change.
+    const int passes = iteration == 0 ? 3 : 1;
+    float scale = 0;
+    for (int pass = 0; pass < passes; ++pass) {
+      if (iteration > 0) weigh();
+      fit_lines();
+      scale = weigh();
+    }
     Eigen::Matrix<float, 6, 6> squares = Eigen::Matrix<float, 6, 6>::Zero();
     Twist products = Twist::Zero();
     cost = 0;

