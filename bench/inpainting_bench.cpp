@@ -55,7 +55,10 @@ void harmonic_beside_telea(benchmark::State& state, const Image<Bgr>& truth, con
   const Options options;
   cv::Mat filled;
   run_beside_peer(
-      state, [&] { inpainter->inpaint({missing, missing, {}}, options, ours); },
+      state,
+      [&] {
+        inpainter->inpaint({missing, missing, {}}, options, ours);
+      },
       [&] { cv::inpaint(as_mat(picture), as_mat(missing), filled, 5, cv::INPAINT_TELEA); });
   copy_from(filled, teleas);
   Registry<Inpainter>::get("harmonic_reference")()->inpaint({missing, missing, {}}, options, exact);

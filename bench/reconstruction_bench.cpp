@@ -24,7 +24,8 @@ void reconstruct(benchmark::State& state, const char* name, bool whole_view) {
   const auto plain = Registry<Reconstructor>::get("reference")(recording.rig);
   Reconstruction reconstruction;
   const auto run = [&](Reconstructor& reconstructor) {
-    reconstructor.reconstruct(frame, depths, result.report.poses, masks, region, options, reconstruction);
+    reconstructor.reconstruct(frame, depths, result.report.poses, masks, region, options,
+                              reconstruction);
   };
   run_beside_peer(
       state, [&] { run(*fast); }, [&] { run(*plain); });

@@ -1,5 +1,7 @@
 #include <gmock/gmock.h>
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <csignal>
 #include <nlohmann/json.hpp>
@@ -131,10 +133,40 @@ TEST_F(ProgramTest, AnInterruptedRunLeavesWholeFiles) {
   EXPECT_EQ(names.count("result/000004.png"), 0U);
 }
 
+TEST_F(ProgramTest, ReportsOnOnePage) {
+  fs::create_directories(recording.path("truth/background"));
+  fs::create_directories(recording.path("truth/mask"));
+  for (const char* name : {"0", "1", "2"}) {
+    const std::string file = std::string(name) + ".png";
+    fs::copy_file(recording.path("color/" + file), recording.path("truth/background/" + file));
+    fs::copy_file(recording.path("masks/color/" + file), recording.path("truth/mask/" + file));
+  }
+  ASSERT_EQ(run().exit_code, 0);
+  const auto outcome = Program::run({"report", recording.folder(), recording.out()});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const std::string page = read_text_file(out("report.html"), 1 << 24);
+  // Three frames; input and result twice each, and the truth.
+  std::size_t pictures = 0;
+  for (std::size_t at = page.find("data:image"); at != std::string::npos;
+       at = page.find("data:image", at + 1)) {
+    ++pictures;
+  }
+  EXPECT_EQ(pictures, 15U);
+  EXPECT_THAT(page, testing::Not(HasSubstr("http"))) << "it must need nothing else";
+  ASSERT_EQ(Program::run({"score", recording.folder(), recording.out()}).exit_code, 0);
+  const auto score = nlohmann::json::parse(read_text_file(out("score.json"), 1 << 20));
+  EXPECT_THAT(page, HasSubstr(fmt::format("PSNR {:.2f} dB",
+                                          score["mean"]["inside"]["psnr_db"].get<double>())));
+  EXPECT_THAT(page, HasSubstr("13256"));
+  EXPECT_EQ(
+      Program::run({"report", recording.folder(), recording.path("nowhere").string()}).exit_code,
+      1);
+}
+
 TEST_F(ProgramTest, ExplainsItself) {
   const auto help = Program::run({"--help"});
   EXPECT_EQ(help.exit_code, 0);
-  for (const char* command : {"run", "score", "train-color"}) {
+  for (const char* command : {"run", "score", "report", "train-color"}) {
     EXPECT_THAT(help.out, HasSubstr(command));
   }
   const auto run_help = Program::run({"run", "--help"});

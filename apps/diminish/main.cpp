@@ -27,6 +27,7 @@ int main(int argc, char** argv) {
   try {
     diminish::add_run(program, exit_code);
     diminish::add_score(program, exit_code);
+    diminish::add_report(program, exit_code);
     diminish::add_train_color(program, exit_code);
     diminish::add_bench(program, exit_code);
     program.parse(argc, argv);

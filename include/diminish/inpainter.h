@@ -26,8 +26,8 @@ class Inpainter {
   virtual ~Inpainter() = default;
 
   /// Writes a colour to every pixel of `picture` where `holes.missing` is not 0, from the other
-  /// pixels, none of which shows an object to remove; leaves those alone. Returns whether the pixels
-  /// were filled with something to look at ("none" leaves them black and answers false).
+  /// pixels, none of which shows an object to remove; leaves those alone. Returns whether the
+  /// pixels were filled with something to look at ("none" leaves them black and answers false).
   virtual bool inpaint(const Holes& holes, const Options& options, Image<Bgr>& picture) = 0;
 };
 

@@ -56,17 +56,18 @@ void for_each_option(AnyOptions& options, Visit&& visit) {
   visit(OptionInfo{"blob_spread", "standard deviations",
                    "How far a blob's mean colour may be from the training images' mean", 0.01, 100},
         options.blob_spread);
-  visit(OptionInfo{"refine_poses", "",
-                   "Correct the colour camera's pose until its picture and the RGB-D cameras' agree"},
-        options.refine_poses);
-  visit(OptionInfo{"remove_flying", "",
-                   "Leave out depth pixels that lie between two surfaces"},
+  visit(
+      OptionInfo{"refine_poses", "",
+                 "Correct the colour camera's pose until its picture and the RGB-D cameras' agree"},
+      options.refine_poses);
+  visit(OptionInfo{"remove_flying", "", "Leave out depth pixels that lie between two surfaces"},
         options.remove_flying);
   visit(OptionInfo{"remove_hidden", "",
                    "Leave out depth pixels that the RGB-D camera's colour sensor does not see"},
         options.remove_hidden);
-  visit(OptionInfo{"smooth_depth", "", "Average depth over neighbouring pixels of the same surface"},
-        options.smooth_depth);
+  visit(
+      OptionInfo{"smooth_depth", "", "Average depth over neighbouring pixels of the same surface"},
+      options.smooth_depth);
   visit(OptionInfo{"discontinuity_threshold_m", "metres",
                    "Depth pixels further apart than this are not joined by a triangle (SDCT)", 1e-4,
                    100},

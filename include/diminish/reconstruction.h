@@ -10,19 +10,21 @@ namespace diminish {
 
 /// A point on a surface that an RGB-D camera sees and the colour camera may see, too.
 struct SceneSample {
-  Eigen::Vector3f point_m = Eigen::Vector3f::Zero();     ///< in the colour camera's frame
-  Eigen::Vector2f pixel = Eigen::Vector2f::Zero();       ///< its place in the colour camera's image
-  Eigen::Vector2f texture = Eigen::Vector2f::Zero();     ///< its place in the RGB-D camera's colour image
-  Bgr color;                   ///< the RGB-D camera's, averaged over the neighbourhood
-  std::uint8_t source = 0;     ///< 1 + the RGB-D camera's index
-  bool even = false;           ///< the neighbourhood has one colour
+  Eigen::Vector3f point_m = Eigen::Vector3f::Zero();  ///< in the colour camera's frame
+  Eigen::Vector2f pixel = Eigen::Vector2f::Zero();    ///< its place in the colour camera's image
+  Eigen::Vector2f texture =
+      Eigen::Vector2f::Zero();  ///< its place in the RGB-D camera's colour image
+  Bgr color;                    ///< the RGB-D camera's, averaged over the neighbourhood
+  std::uint8_t source = 0;      ///< 1 + the RGB-D camera's index
+  bool even = false;            ///< the neighbourhood has one colour
 };
 
 /// What Reconstruction::surface says of a pixel.
 namespace surface_label {
-inline constexpr std::uint8_t unknown = 0;      ///< nothing was measured there, nor is a plane behind it
-inline constexpr std::uint8_t first_plane = 1;  ///< and further ones: on a plane of the background
-inline constexpr std::uint8_t foreground = 255; ///< measured, in front of the planes
+inline constexpr std::uint8_t unknown =
+    0;  ///< nothing was measured there, nor is a plane behind it
+inline constexpr std::uint8_t first_plane = 1;   ///< and further ones: on a plane of the background
+inline constexpr std::uint8_t foreground = 255;  ///< measured, in front of the planes
 }  // namespace surface_label
 
 /// The scene behind the objects as the RGB-D cameras see it, drawn from the colour camera's

@@ -19,8 +19,8 @@ class ViewMode {
 
   virtual ~ViewMode() = default;
 
-  /// camera: the colour camera's image, with the object. `result` shows the background in its place;
-  /// changes `result.picture` inside `result.mask`, and nothing else.
+  /// camera: the colour camera's image, with the object. `result` shows the background in its
+  /// place; changes `result.picture` inside `result.mask`, and nothing else.
   virtual void show(const Image<Bgr>& camera, const Options& options,
                     DiminishedFrame& result) const = 0;
 };

@@ -34,7 +34,8 @@ class Fit {
   Fit(const std::vector<ColorPair>& pairs, ColorMapModel model, const Rect& bounds)
       : pairs_(pairs), model_(model) {
     map_.half_width = static_cast<float>(bounds.width) / 2;
-    map_.center = {static_cast<float>(bounds.width - 1) / 2, static_cast<float>(bounds.height - 1) / 2};
+    map_.center = {static_cast<float>(bounds.width - 1) / 2,
+                   static_cast<float>(bounds.height - 1) / 2};
   }
 
   ColorMap run() {

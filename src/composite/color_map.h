@@ -43,6 +43,7 @@ enum class ColorMapModel { affine, field };
 /// than half. affine: a gain and an offset for each channel. field: everything above.
 /// What few pairs do not determine stays near a gain for each channel; without pairs the map
 /// changes nothing. bounds: the picture's. Cost: 0.1 us a pair.
-ColorMap fit_color_map(const std::vector<ColorPair>& pairs, ColorMapModel model, const Rect& bounds);
+ColorMap fit_color_map(const std::vector<ColorPair>& pairs, ColorMapModel model,
+                       const Rect& bounds);
 
 }  // namespace diminish

@@ -45,7 +45,8 @@ float worst_difference(const ColorMap& a, const ColorMap& b) {
   for (float y = 0; y < 480; y += 40) {
     for (float x = 0; x < 640; x += 40) {
       for (const Eigen::Array3f& color :
-           {Eigen::Array3f(40, 60, 170), Eigen::Array3f(120, 120, 120), Eigen::Array3f(170, 50, 30)}) {
+           {Eigen::Array3f(40, 60, 170), Eigen::Array3f(120, 120, 120),
+            Eigen::Array3f(170, 50, 30)}) {
         worst = std::max(worst, (a(color, x, y) - b(color, x, y)).abs().maxCoeff());
       }
     }
@@ -75,7 +76,8 @@ TEST(ColorMap, ChangesNothingWithoutPairsAndLittleForUnseenColorsWithFew) {
   // Three grey surfaces at one place say nothing of colours, nor of the field.
   std::vector<ColorPair> pairs;
   for (const float level : {80.F, 100.F, 120.F}) {
-    pairs.push_back({{300, 200}, Eigen::Array3f::Constant(level), Eigen::Array3f::Constant(1.1F * level)});
+    pairs.push_back(
+        {{300, 200}, Eigen::Array3f::Constant(level), Eigen::Array3f::Constant(1.1F * level)});
   }
   const ColorMap found = fit_color_map(pairs, ColorMapModel::field, bounds);
   const Eigen::Array3f red(30, 30, 200);
@@ -127,8 +129,8 @@ TEST(MapColors, DoesWhatTheMapSays) {
       }
       ++changed;
       const Bgra& c = p.reconstruction.color(x, y);
-      Eigen::Array3f expected = maps[source](Eigen::Array3f(c.b, c.g, c.r), static_cast<float>(x),
-                                             static_cast<float>(y));
+      Eigen::Array3f expected =
+          maps[source](Eigen::Array3f(c.b, c.g, c.r), static_cast<float>(x), static_cast<float>(y));
       for (int k = 0; k < 3; ++k) {
         expected[k] += correction[static_cast<std::size_t>(k * region.width + x - region.x)];
       }
@@ -190,8 +192,9 @@ struct TwoLooks {
       for (int x = 0; x < 400; ++x) {
         const Bgr exact = color(x, y);
         const Bgr& shown = picture(x, y);
-        worst = std::max({worst, std::abs(double(exact.b) - shown.b),
-                          std::abs(double(exact.g) - shown.g), std::abs(double(exact.r) - shown.r)});
+        worst =
+            std::max({worst, std::abs(double(exact.b) - shown.b),
+                      std::abs(double(exact.g) - shown.g), std::abs(double(exact.r) - shown.r)});
       }
     }
     return worst;

@@ -92,7 +92,8 @@ void Compositor::composite(const Image<Bgr>& camera, const OcclusionMasks& masks
   }
   if (result.report.missing_pixels > 0) {
     const ScopedTimer timer(milliseconds, Stage::inpainting);
-    if (!inpainter(options.inpaint).inpaint({missing_, masks.color, result.reconstruction}, options, result.picture)) {
+    if (!inpainter(options.inpaint)
+             .inpaint({missing_, masks.color, result.reconstruction}, options, result.picture)) {
       std::replace(result.provenance.begin(), result.provenance.end(), provenance::inpainted,
                    provenance::unknown);
     }

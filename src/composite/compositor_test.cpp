@@ -112,7 +112,8 @@ TEST_F(Compositing, InpaintsAsOpenCvDoesOnTheWholePicture) {
     cv::Mat expected;
     cv::inpaint(as_mat(camera), as_mat(missing), expected, options.inpaint_radius_px, method);
     Image<Bgr> picture = camera;
-    EXPECT_TRUE(Registry<Inpainter>::get(name)()->inpaint({missing, missing, {}}, options, picture));
+    EXPECT_TRUE(
+        Registry<Inpainter>::get(name)()->inpaint({missing, missing, {}}, options, picture));
     for (int y = 0; y < 90; ++y) {
       for (int x = 0; x < 120; ++x) {
         const cv::Vec3b& pixel = expected.at<cv::Vec3b>(y, x);

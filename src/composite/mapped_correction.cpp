@@ -21,9 +21,9 @@ bool is_exposed(const Eigen::Array3f& levels) {
 /// Of each RGB-D camera: more make the map no better.
 constexpr std::size_t most_pairs = 2000;
 
-/// Maps each RGB-D camera's colours to the colour camera's by what both see anywhere in the picture,
-/// in this frame. Unlike Poisson cloning it needs nothing to be right at the mask's rim, where
-/// poses, depth edges and the object's own shadow do the most harm.
+/// Maps each RGB-D camera's colours to the colour camera's by what both see anywhere in the
+/// picture, in this frame. Unlike Poisson cloning it needs nothing to be right at the mask's rim,
+/// where poses, depth edges and the object's own shadow do the most harm.
 class MappedCorrection : public ColorCorrector {
  public:
   MappedCorrection(ColorMapModel model, bool with_membrane)
@@ -52,10 +52,9 @@ class MappedCorrection : public ColorCorrector {
     for (std::size_t first = 0; first < samples.size();) {
       const std::uint8_t source = samples[first].source;
       pairs_.clear();
-      const auto last = std::find_if(samples.begin() + static_cast<std::ptrdiff_t>(first),
-                                     samples.end(), [&](const SceneSample& sample) {
-                                       return sample.source != source;
-                                     });
+      const auto last =
+          std::find_if(samples.begin() + static_cast<std::ptrdiff_t>(first), samples.end(),
+                       [&](const SceneSample& sample) { return sample.source != source; });
       const auto end = static_cast<std::size_t>(last - samples.begin());
       const std::size_t step = (end - first + most_pairs - 1) / most_pairs;
       for (std::size_t i = first; i < end; i += step) add_pair(camera, occlusion, samples[i]);
@@ -78,7 +77,8 @@ class MappedCorrection : public ColorCorrector {
       }
     }
     const EvenColor color = even_color(camera, x, y);
-    const ColorPair pair{sample.pixel, to_channels(sample.color),
+    const ColorPair pair{sample.pixel,
+                         to_channels(sample.color),
                          {color.channels[0], color.channels[1], color.channels[2]}};
     if (color.even && is_exposed(pair.rgbd) && is_exposed(pair.camera)) pairs_.push_back(pair);
   }
@@ -93,9 +93,8 @@ class MappedCorrection : public ColorCorrector {
         const std::uint8_t source = reconstruction.source(x, y);
         if (occlusion(x, y) != 0 || source == 0) continue;
         const Bgra& color = reconstruction.color(x, y);
-        const Eigen::Array3f mapped =
-            maps_[source](to_channels({color.b, color.g, color.r}), static_cast<float>(x),
-                           static_cast<float>(y));
+        const Eigen::Array3f mapped = maps_[source](to_channels({color.b, color.g, color.r}),
+                                                    static_cast<float>(x), static_cast<float>(y));
         membrane_.add(x, y, to_channels(camera(x, y)) - mapped);
       }
     }

@@ -26,8 +26,8 @@ void collect(const MembraneLevel& level, Wanted wanted, std::vector<MembraneLeve
   rows.push_back(static_cast<int>(spans.size()));
 }
 
-/// More than needed, so that the next frame's window, a little larger or smaller, is laid out in the
-/// same way, and only what changes has to be cleared.
+/// More than needed, so that the next frame's window, a little larger or smaller, is laid out in
+/// the same way, and only what changes has to be cleared.
 int tiles_for(int cells, int tile) {
   constexpr int at_a_time = 4;
   const int needed = (cells + tile - 1) / tile;

@@ -35,7 +35,8 @@ void PlaneColors::collect(const Mask& occlusion, const Reconstruction& reconstru
   for (int row = 0; row < rows_; ++row) {
     for (int column = 0; column < columns_; ++column) {
       if (near_object(column, row)) {
-        std::fill(std::begin(cell_at(column, row).sums), std::end(cell_at(column, row).sums), Sum{});
+        std::fill(std::begin(cell_at(column, row).sums), std::end(cell_at(column, row).sums),
+                  Sum{});
       }
     }
   }

@@ -26,9 +26,9 @@ class PlaneColors {
   bool around(int x, int y, std::uint8_t label, Eigen::Array3f& mean) const;
 
  private:
-  static constexpr int cell = 4;     ///< pixels
-  static constexpr int gap = 2;      ///< cells around an object that are left out
-  static constexpr int reach = 5;    ///< cells
+  static constexpr int cell = 4;   ///< pixels
+  static constexpr int gap = 2;    ///< cells around an object that are left out
+  static constexpr int reach = 5;  ///< cells
 
   struct Sum {
     std::uint32_t blue = 0, green = 0, red = 0, count = 0;

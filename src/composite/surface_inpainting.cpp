@@ -63,7 +63,8 @@ class SurfaceInpainting : public Inpainter {
       const int row = window_.y + y;
       const bool is_drawn = row >= drawn.y && row < drawn.bottom();
       const std::uint8_t* missing = holes.missing.row(row) + window_.x;
-      const std::uint8_t* surface = is_drawn ? reconstruction.surface.row(row) + window_.x : nullptr;
+      const std::uint8_t* surface =
+          is_drawn ? reconstruction.surface.row(row) + window_.x : nullptr;
       State* states = states_.row(y);
       for (int x = 0; x < window_.width; ++x) {
         const int column = window_.x + x;
@@ -84,9 +85,9 @@ class SurfaceInpainting : public Inpainter {
       }
     }
     if (rest.empty()) return true;
-    const bool anything_known =
-        solve(rest, solvers_[surface_label::unknown], holes, picture,
-              [](const State& state) -> std::uint8_t { return state.open ? 1 : MembraneSolver::fixed; });
+    const bool anything_known = solve(
+        rest, solvers_[surface_label::unknown], holes, picture,
+        [](const State& state) -> std::uint8_t { return state.open ? 1 : MembraneSolver::fixed; });
     if (!anything_known) picture.fill(bounding_box(holes.missing), {});
     return anything_known;
   }

@@ -38,9 +38,8 @@ class Half : public ViewMode {
   void show(const Image<Bgr>& camera, const Options& options,
             DiminishedFrame& result) const override {
     const auto opacity = static_cast<float>(1 - options.transparency);
-    replace_in_mask(result, [&](int x, int y) {
-      return blend(result.picture(x, y), camera(x, y), opacity);
-    });
+    replace_in_mask(
+        result, [&](int x, int y) { return blend(result.picture(x, y), camera(x, y), opacity); });
   }
 };
 
@@ -51,8 +50,8 @@ class XRay : public ViewMode {
     constexpr float full = 60;  // levels of brightness from one pixel to the next but one
     const Bgr edge_color{255, 255, 255};
     const auto brightness = [&](int x, int y) {
-      const Bgr& color = camera(std::clamp(x, 0, camera.width() - 1),
-                                std::clamp(y, 0, camera.height() - 1));
+      const Bgr& color =
+          camera(std::clamp(x, 0, camera.width() - 1), std::clamp(y, 0, camera.height() - 1));
       return static_cast<float>(color.b + 2 * color.g + color.r) / 4;
     };
     replace_in_mask(result, [&](int x, int y) {

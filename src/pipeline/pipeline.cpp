@@ -91,10 +91,9 @@ struct Pipeline::Implementation {
 
   void reconstruct(const FrameSet& frame, const Rect& objects, Poses& poses,
                    Reconstruction& reconstruction) {
-    const Rect region =
-        options.whole_view
-            ? rig.color.bounds()
-            : intersect(grow(objects, options.surroundings_px), rig.color.bounds());
+    const Rect region = options.whole_view
+                            ? rig.color.bounds()
+                            : intersect(grow(objects, options.surroundings_px), rig.color.bounds());
     sampler.sample(frame, poses, masks, region, reconstruction.samples);
     oneapi::tbb::parallel_invoke(
         [&] {
@@ -102,11 +101,11 @@ struct Pipeline::Implementation {
           pose_refinement.refine(frame, masks.color, reconstruction.samples, poses);
         },
         [&] { clean_depths(frame); });
-    oneapi::tbb::parallel_invoke(
-        [&] { background_planes.find(objects, reconstruction.samples); },
-        [&] {
-          reconstructor->reconstruct(frame, depths, poses, masks, region, options, reconstruction);
-        });
+    oneapi::tbb::parallel_invoke([&] { background_planes.find(objects, reconstruction.samples); },
+                                 [&] {
+                                   reconstructor->reconstruct(frame, depths, poses, masks, region,
+                                                              options, reconstruction);
+                                 });
     background_planes.label(reconstruction);
   }
 

@@ -131,14 +131,13 @@ void PoseRefinement::linearise(const RigidTransform& correction, const Mask& occ
     const float v = y - static_cast<float>(row);
     const float* upper = small_.row(row) + column;
     const float* lower = small_.row(row + 1) + column;
-    const float seen = (1 - v) * ((1 - u) * upper[0] + u * upper[1]) +
-                       v * ((1 - u) * lower[0] + u * lower[1]);
+    const float seen =
+        (1 - v) * ((1 - u) * upper[0] + u * upper[1]) + v * ((1 - u) * lower[0] + u * lower[1]);
     const float du = ((1 - v) * (upper[1] - upper[0]) + v * (lower[1] - lower[0])) / shrinkage;
     const float dv = ((1 - u) * (lower[0] - upper[0]) + u * (lower[1] - upper[1])) / shrinkage;
     // The lens' distortion hardly changes the derivative.
-    const Eigen::Vector3f by_point(
-        du * fx / p.z(), dv * fy / p.z(),
-        -(du * fx * p.x() + dv * fy * p.y()) / (p.z() * p.z()));
+    const Eigen::Vector3f by_point(du * fx / p.z(), dv * fy / p.z(),
+                                   -(du * fx * p.x() + dv * fy * p.y()) / (p.z() * p.z()));
     Row next;
     next.derivative.head<3>() = by_point;
     next.derivative.tail<3>() = p.cross(by_point);
@@ -257,8 +256,8 @@ void PoseRefinement::apply(const RigidTransform& correction, std::vector<SceneSa
   for (SceneSample& sample : samples) {
     const Eigen::Vector3f p = rotation * sample.point_m + translation;
     sample.point_m = p;
-    if (!(p.z() > 0) || !projection_.distort(p.x() / p.z(), p.y() / p.z(), sample.pixel.x(),
-                                             sample.pixel.y())) {
+    if (!(p.z() > 0) ||
+        !projection_.distort(p.x() / p.z(), p.y() / p.z(), sample.pixel.x(), sample.pixel.y())) {
       sample.pixel.setConstant(-1);
     }
   }

@@ -17,8 +17,8 @@ namespace diminish {
 ///
 /// Direct alignment: brightness at the samples' projections must equal, but for gain and offset,
 /// what the RGB-D camera saw there (Gauss-Newton on 6 degrees of freedom with robust weights, as in
-/// Kerl, Sturm & Cremers 2013), in a picture shrunk to a width of about 320 pixels. The pose that was measured
-/// is held to within its uncertainty.
+/// Kerl, Sturm & Cremers 2013), in a picture shrunk to a width of about 320 pixels. The pose that
+/// was measured is held to within its uncertainty.
 class PoseRefinement {
  public:
   explicit PoseRefinement(const Intrinsics& color);

@@ -21,12 +21,14 @@ RigidTransform small_motion() {
 
 class PoseRefinementTest : public ::testing::Test {
  protected:
-  PoseRefinementTest() : frame({}, {Eigen::Vector3d(-0.45, 0.3, 0.9)}), masks(testing::empty_masks(frame.rig)) {}
+  PoseRefinementTest()
+      : frame({}, {Eigen::Vector3d(-0.45, 0.3, 0.9)}), masks(testing::empty_masks(frame.rig)) {}
 
   /// Mean distance, in pixels, of what the RGB-D camera sees from where the colour camera sees it.
   double error_px(const Poses& poses) const {
     const Lens lens(frame.rig.color);
-    const RigidTransform moved = *poses.color_from_depth[0] * frame.poses.color_from_depth[0]->inverse();
+    const RigidTransform moved =
+        *poses.color_from_depth[0] * frame.poses.color_from_depth[0]->inverse();
     double sum = 0;
     int count = 0;
     for (int y = 20; y < 256; y += 20) {
@@ -59,14 +61,17 @@ TEST_F(PoseRefinementTest, FindsBackToTheTruePose) {
   ASSERT_TRUE(refine(poses));
   EXPECT_LT(error_px(poses), before / 4);
   // Both move together: where the RGB-D camera is in the world has not changed.
-  const RigidTransform depth_from_world = poses.color_from_depth[0]->inverse() * *poses.color_from_world;
-  EXPECT_LT((depth_from_world.translation - frame.poses.depth_from_world[0]->translation).norm(), 1e-9);
+  const RigidTransform depth_from_world =
+      poses.color_from_depth[0]->inverse() * *poses.color_from_world;
+  EXPECT_LT((depth_from_world.translation - frame.poses.depth_from_world[0]->translation).norm(),
+            1e-9);
 }
 
 // Gain and offset are the cameras' business.
 TEST_F(PoseRefinementTest, DoesNotMindAnotherExposure) {
   for (Bgr& pixel : frame.frame.rgbd[0].color) {
-    pixel = {static_cast<std::uint8_t>(pixel.b / 2 + 30), static_cast<std::uint8_t>(pixel.g / 2 + 30),
+    pixel = {static_cast<std::uint8_t>(pixel.b / 2 + 30),
+             static_cast<std::uint8_t>(pixel.g / 2 + 30),
              static_cast<std::uint8_t>(pixel.r / 2 + 30)};
   }
   Poses poses = frame.poses;

@@ -60,7 +60,7 @@ BackgroundPlane fit(const BackgroundPlane& plane, const std::vector<Eigen::Vecto
   if (count < 3) return plane;
   const Eigen::Vector3d mean = sum / count;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(squares / count -
-                                                             mean * mean.transpose());
+                                                              mean * mean.transpose());
   return facing_camera(solver.eigenvectors().col(0).cast<float>(), mean.cast<float>());
 }
 
@@ -96,8 +96,7 @@ void BackgroundPlanes::label(Reconstruction& reconstruction) const {
 }
 
 /// Those around the objects: a plane far away says nothing about what is behind them.
-void BackgroundPlanes::choose_points(const Rect& objects,
-                                     const std::vector<SceneSample>& samples) {
+void BackgroundPlanes::choose_points(const Rect& objects, const std::vector<SceneSample>& samples) {
   const int margin = std::max(100, std::max(objects.width, objects.height) / 2);
   const Rect around = grow(objects, margin);
   points_.clear();
@@ -108,12 +107,13 @@ void BackgroundPlanes::choose_points(const Rect& objects,
   }
 }
 
-/// The plane that most of the points that are on no plane yet lie on, and hardly any behind (RANSAC,
-/// Fischler & Bolles 1981).
+/// The plane that most of the points that are on no plane yet lie on, and hardly any behind
+/// (RANSAC, Fischler & Bolles 1981).
 bool BackgroundPlanes::next_plane(BackgroundPlane& plane) {
   if (rest_.size() < fewest_points) return false;
-  const auto wanted =
-      std::max<std::size_t>(fewest_points / 2, static_cast<std::size_t>(smallest_support * static_cast<double>(points_.size())));
+  const auto wanted = std::max<std::size_t>(
+      fewest_points / 2,
+      static_cast<std::size_t>(smallest_support * static_cast<double>(points_.size())));
   Random random;
   std::size_t most = 0;
   const std::size_t stride = std::max<std::size_t>(1, rest_.size() / 500);

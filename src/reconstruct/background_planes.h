@@ -16,9 +16,7 @@ struct BackgroundPlane {
   float distance_m;
 
   /// Positive in front of the plane.
-  float height_m(const Eigen::Vector3f& point_m) const {
-    return normal.dot(point_m) - distance_m;
-  }
+  float height_m(const Eigen::Vector3f& point_m) const { return normal.dot(point_m) - distance_m; }
   /// 1 / z where the ray (x, y, 1) meets the plane; not positive where it does not.
   float inverse_depth(float x, float y) const {
     return (normal.x() * x + normal.y() * y + normal.z()) / distance_m;

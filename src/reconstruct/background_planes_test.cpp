@@ -55,21 +55,23 @@ TEST_F(OnAnalyticScene, FindsTheWallAndLabelsWhatLiesOnIt) {
   const RigidTransform& color_from_world = *frame.poses.color_from_world;
   const Eigen::Vector3d normal = color_from_world.rotation * Eigen::Vector3d::UnitZ();
   EXPECT_LT((planes.planes()[0].normal.cast<double>() - normal).norm(), 0.003);
-  EXPECT_NEAR(planes.planes()[0].height_m((color_from_world * Eigen::Vector3d(0.1, 0.2, 0)).cast<float>()), 0, 0.002);
+  EXPECT_NEAR(
+      planes.planes()[0].height_m((color_from_world * Eigen::Vector3d(0.1, 0.2, 0)).cast<float>()),
+      0, 0.002);
 
   Reconstruction reconstruction;
   reconstruction.region = frame.rig.color.bounds();
   reconstruction.source.resize(320, 256, 1);
   reconstruction.depth_m.resize(320, 256);
   Image<std::uint8_t> expected(320, 256);
-  scene.render(Lens(frame.rig.color), color_from_world,
-               [&](int x, int y, const AnalyticScene::Hit& hit) {
-                 const bool measured = (x / 16 + y / 16) % 2 == 0;
-                 expected(x, y) = measured && hit.on_box ? surface_label::foreground
-                                                         : surface_label::first_plane;
-                 reconstruction.depth_m(x, y) =
-                     measured ? static_cast<float>((color_from_world * hit.point).z()) : 0.F;
-               });
+  scene.render(
+      Lens(frame.rig.color), color_from_world, [&](int x, int y, const AnalyticScene::Hit& hit) {
+        const bool measured = (x / 16 + y / 16) % 2 == 0;
+        expected(x, y) =
+            measured && hit.on_box ? surface_label::foreground : surface_label::first_plane;
+        reconstruction.depth_m(x, y) =
+            measured ? static_cast<float>((color_from_world * hit.point).z()) : 0.F;
+      });
   planes.label(reconstruction);
   int wrong = 0;
   for (std::size_t i = 0; i < expected.size(); ++i) {

@@ -46,15 +46,15 @@ struct Corner {
   }
 };
 
-HWY_INLINE LaneMask Joined(const Corner& a, const Corner& b, const Corner& c, const sdct::Threshold& threshold) {
+HWY_INLINE LaneMask Joined(const Corner& a, const Corner& b, const Corner& c,
+                           const sdct::Threshold& threshold) {
   const Vector most = hn::Max(hn::Max(a.depth, b.depth), c.depth);
   const Vector least = hn::Min(hn::Min(a.depth, b.depth), c.depth);
   const Floats d;
   const Vector relative = hn::Mul(least, hn::Set(d, threshold.inverse_reach));
   const Vector limit = hn::Mul(hn::Max(hn::Set(d, 1.F), hn::Mul(relative, relative)),
                                hn::Set(d, threshold.constant_m));
-  return hn::And(hn::And(a.valid, b.valid),
-                 hn::And(c.valid, hn::Lt(hn::Sub(most, least), limit)));
+  return hn::And(hn::And(a.valid, b.valid), hn::And(c.valid, hn::Lt(hn::Sub(most, least), limit)));
 }
 
 /// Edge functions from a to b, an edge of each cell. Coordinates: relative to the cell's first
@@ -260,8 +260,8 @@ HWY_INLINE unsigned Bits(LaneMask mask) {
   return bits[0] & ((1U << hn::Lanes(Floats())) - 1U);
 }
 
-void DrawCells(const VertexRow& upper, const VertexRow& lower, int block, const sdct::Threshold& threshold,
-               SurfaceBuffer& surface) {
+void DrawCells(const VertexRow& upper, const VertexRow& lower, int block,
+               const sdct::Threshold& threshold, SurfaceBuffer& surface) {
   const Floats d;
   const Ints di;
   const auto lanes = static_cast<int>(hn::Lanes(d));
@@ -406,8 +406,8 @@ int count_drawn(const SurfaceBuffer& surface, int y) {
   return count;
 }
 
-void draw_cells(const VertexRow& upper, const VertexRow& lower, int block, const sdct::Threshold& threshold,
-                SurfaceBuffer& surface) {
+void draw_cells(const VertexRow& upper, const VertexRow& lower, int block,
+                const sdct::Threshold& threshold, SurfaceBuffer& surface) {
   HWY_DYNAMIC_DISPATCH(DrawCells)(upper, lower, block, threshold, surface);
 }
 

@@ -32,7 +32,7 @@ int count_drawn(const SurfaceBuffer& surface, int y);
 /// Draws the cells between 16 vertices of two neighbouring rows and the vertices beside and below
 /// them (rules 2 to 5 of sdct.h). Edges and planes of neighbouring cells are set up together; then
 /// each cell is drawn as one quadrilateral, a vector of pixels at a time.
-void draw_cells(const VertexRow& upper, const VertexRow& lower, int block, const sdct::Threshold& threshold,
-                SurfaceBuffer& surface);
+void draw_cells(const VertexRow& upper, const VertexRow& lower, int block,
+                const sdct::Threshold& threshold, SurfaceBuffer& surface);
 
 }  // namespace diminish

@@ -14,8 +14,8 @@ namespace diminish {
 /// - pixels that the camera's own colour sensor, some centimetres beside the depth sensor, does not
 ///   see because something nearer is in front of them: they would get its colour. (Only where it
 ///   is beside, not above: sensors are built that way.)
-/// and averages what is left over neighbouring pixels of the same surface: seen from the side, noise
-/// in depth is noise in place.
+/// and averages what is left over neighbouring pixels of the same surface: seen from the side,
+/// noise in depth is noise in place.
 class DepthCleaner {
  public:
   explicit DepthCleaner(const RgbdCamera& camera);

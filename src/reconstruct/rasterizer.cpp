@@ -97,8 +97,8 @@ void draw_triangle(const MeshVertex& a, const MeshVertex& b, const MeshVertex& c
   }
 }
 
-void draw_mesh(const Image<MeshVertex>& vertices, const Image<Bgr>& texture, const sdct::Threshold& threshold,
-               const Rect& region, Layer& layer) {
+void draw_mesh(const Image<MeshVertex>& vertices, const Image<Bgr>& texture,
+               const sdct::Threshold& threshold, const Rect& region, Layer& layer) {
   const auto draw = [&](const MeshVertex& a, const MeshVertex& b, const MeshVertex& c) {
     if (a.valid() && b.valid() && c.valid() &&
         sdct::joined(a.depth_m, b.depth_m, c.depth_m, threshold) &&

@@ -27,7 +27,7 @@ void draw_triangle(const MeshVertex& a, const MeshVertex& b, const MeshVertex& c
 
 /// Draws the mesh of `vertices` inside `region` (rules 2 and 3). Cost: one pass over the cells, and
 /// over the pixels of each triangle's bounding box.
-void draw_mesh(const Image<MeshVertex>& vertices, const Image<Bgr>& texture, const sdct::Threshold& threshold,
-               const Rect& region, Layer& layer);
+void draw_mesh(const Image<MeshVertex>& vertices, const Image<Bgr>& texture,
+               const sdct::Threshold& threshold, const Rect& region, Layer& layer);
 
 }  // namespace diminish

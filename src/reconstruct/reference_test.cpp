@@ -22,7 +22,8 @@ Reconstruction reconstruct(const AnalyticFrame& scene, const OcclusionMasks& mas
                            const Options& options = {}) {
   Reconstruction result;
   Registry<Reconstructor>::get(AnyReconstructor::GetParam())(scene.rig)->reconstruct(
-      scene.frame, testing::depths_of(scene.frame), scene.poses, masks, scene.rig.color.bounds(), options, result);
+      scene.frame, testing::depths_of(scene.frame), scene.poses, masks, scene.rig.color.bounds(),
+      options, result);
   return result;
 }
 
@@ -181,9 +182,10 @@ TEST_P(AnyReconstructor, DrawsTheRegionAndNothingElse) {
   const Rect region{40, 50, 100, 90};
   Reconstruction part;
   // Twice, so that what an earlier frame left behind would show.
-  reconstructor->reconstruct(frame.frame, testing::depths_of(frame.frame), frame.poses, empty_masks(frame.rig), {0, 0, 200, 200}, {},
-                             part);
-  reconstructor->reconstruct(frame.frame, testing::depths_of(frame.frame), frame.poses, empty_masks(frame.rig), region, {}, part);
+  reconstructor->reconstruct(frame.frame, testing::depths_of(frame.frame), frame.poses,
+                             empty_masks(frame.rig), {0, 0, 200, 200}, {}, part);
+  reconstructor->reconstruct(frame.frame, testing::depths_of(frame.frame), frame.poses,
+                             empty_masks(frame.rig), region, {}, part);
   for (int y = 0; y < whole.color.height(); ++y) {
     for (int x = 0; x < whole.color.width(); ++x) {
       const Bgra expected = region.contains(x, y) ? whole.color(x, y) : Bgra{};

@@ -59,9 +59,8 @@ void SceneSampler::sample_camera(const RgbdFrame& images, const DepthMesh::Frame
                                  const Rect& region, std::uint8_t source, Camera& camera) const {
   const int width = images.depth.width();
   const int height = images.depth.height();
-  const int step =
-      std::max(1, static_cast<int>(std::lround(
-                      std::sqrt(static_cast<double>(width) * height / wanted_samples))));
+  const int step = std::max(1, static_cast<int>(std::lround(std::sqrt(static_cast<double>(width) *
+                                                                      height / wanted_samples))));
   constexpr int rim = even_color_reach_px;
   // In the picture: more than a step of samples, and what refinement may move.
   constexpr int margin = 64;

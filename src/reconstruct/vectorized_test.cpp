@@ -94,10 +94,10 @@ TEST(VectorizedReconstructor, DrawsLargeCells) {
   Reconstruction a;
   Reconstruction b;
   const Rect region = frame.rig.color.bounds();
-  Registry<Reconstructor>::get("cpu")(frame.rig)->reconstruct(frame.frame, testing::depths_of(frame.frame), frame.poses, masks,
-                                                              region, {}, a);
-  Registry<Reconstructor>::get("reference")(frame.rig)->reconstruct(frame.frame, testing::depths_of(frame.frame), frame.poses, masks,
-                                                                    region, {}, b);
+  Registry<Reconstructor>::get("cpu")(frame.rig)->reconstruct(
+      frame.frame, testing::depths_of(frame.frame), frame.poses, masks, region, {}, a);
+  Registry<Reconstructor>::get("reference")(frame.rig)->reconstruct(
+      frame.frame, testing::depths_of(frame.frame), frame.poses, masks, region, {}, b);
   expect_same(a, b);
 }
 

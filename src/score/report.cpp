@@ -1,0 +1,203 @@
+#include "diminish/report.h"
+
+#include <fmt/format.h>
+
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "core/text.h"
+#include "diminish/diminished_frame.h"
+#include "diminish/error.h"
+#include "diminish/score.h"
+#include "score/csv_table.h"
+#include "score/html.h"
+#include "score/run_folder.h"
+#include "sink/partial_file.h"
+#include "sink/run_statistics.h"
+
+namespace diminish {
+namespace {
+
+constexpr std::size_t most_pictures = 8;
+
+constexpr const char* head = R"(<!doctype html>
+<html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width">
+<title>diminish report</title>
+<style>
+body { font: 15px/1.5 system-ui, sans-serif; margin: 2em auto; max-width: 1000px; padding: 0 1em; color: #222 }
+table { border-collapse: collapse } td, th { padding: .2em .8em; text-align: right; border-bottom: 1px solid #ddd }
+td:first-child, th:first-child { text-align: left }
+.plots { display: flex; flex-wrap: wrap; gap: 1em } figure { margin: 0; width: 300px }
+figcaption span { color: #888; float: right } svg { width: 100%; background: #f6f6f6 }
+polyline { fill: none; stroke: #06c; stroke-width: 1.5 } circle { fill: #06c }
+.slider { position: relative; line-height: 0 } .slider img { width: 100% }
+.slider img + img { position: absolute; left: 0; top: 0; clip-path: inset(0 0 0 50%) }
+input[type=range] { width: 100% } .bar { display: flex; height: 1.6em; color: #fff; text-align: center }
+</style>
+)";
+
+constexpr const char* script = R"(<script>
+document.querySelectorAll('.compare').forEach(c => {
+  const left = c.querySelector('img'), right = c.querySelector('img + img');
+  c.querySelector('input').oninput = e => right.style.clipPath = `inset(0 0 0 ${e.target.value}%)`;
+  c.querySelectorAll('select').forEach((s, i) => s.onchange = () =>
+    (i ? right : left).src = c.querySelector(`[data-name=${s.value}]`).src);
+});
+</script>
+)";
+
+using Figure = std::function<std::optional<double>(const FrameScore&)>;
+
+std::string plots(const std::vector<FrameScore>& frames) {
+  const auto quality = [](std::optional<Quality> FrameScore::*part,
+                          double Quality::*figure) -> Figure {
+    return [=](const FrameScore& frame) {
+      return frame.*part ? std::optional((*(frame.*part)).*figure) : std::nullopt;
+    };
+  };
+  std::vector<std::pair<std::string, Figure>> figures = {
+      {"PSNR inside, dB", quality(&FrameScore::inside, &Quality::psnr_db)},
+      {"SSIM inside", quality(&FrameScore::inside, &Quality::ssim)},
+      {"PSNR of seen pixels, dB", quality(&FrameScore::valid, &Quality::psnr_db)},
+      {"PSNR of invented pixels, dB", quality(&FrameScore::missing, &Quality::psnr_db)},
+      {"coverage", [](const FrameScore& frame) { return frame.coverage; }},
+      {"mask IoU", [](const FrameScore& frame) { return frame.mask_iou; }}};
+  std::map<std::string, bool> poses;
+  for (const FrameScore& frame : frames) {
+    for (const auto& [name, error] : frame.poses) poses[name] = true;
+  }
+  for (const auto& [name, present] : poses) {
+    figures.emplace_back(name + ", degrees off",
+                         [name = name](const FrameScore& frame) -> std::optional<double> {
+                           const auto found = frame.poses.find(name);
+                           if (found == frame.poses.end()) return std::nullopt;
+                           return found->second.rotation_deg;
+                         });
+  }
+  std::string text = "<div class=plots>\n";
+  for (const auto& [title, figure] : figures) {
+    std::vector<std::optional<double>> values;
+    for (const FrameScore& frame : frames) values.push_back(figure(frame));
+    text += html::plot(title, values);
+  }
+  return text + "</div>\n";
+}
+
+std::string time_plots(const std::vector<CsvRow>& rows) {
+  std::string text = "<div class=plots>\n";
+  for (const char* stage : stage_names) {
+    std::vector<std::optional<double>> values;
+    for (const CsvRow& row : rows) {
+      const auto found = row.find(std::string(stage) + "_ms");
+      values.push_back(found != row.end() && !found->second.empty()
+                           ? std::optional(std::stod(found->second))
+                           : std::nullopt);
+    }
+    text += html::plot(std::string(stage) + ", ms", values);
+  }
+  return text + "</div>\n";
+}
+
+std::string table_2(const nlohmann::json& summary) {
+  std::string text = "<table><tr><th>Operation, ms<th>avg<th>min<th>max<th>paper</tr>\n";
+  const auto& times = summary.at("milliseconds");
+  for (const PaperRow& row : paper_table()) {
+    const auto& time = times.at(row.stage < stage_count ? stage_names[row.stage] : "total");
+    text += fmt::format("<tr><td>{}<td>{:.2f}<td>{:.2f}<td>{:.2f}<td>{}</tr>\n", row.operation,
+                        time.at("avg").get<double>(), time.at("min").get<double>(),
+                        time.at("max").get<double>(), row.paper_ms);
+  }
+  return text + "</table>\n";
+}
+
+std::string provenance_bar(const nlohmann::json& summary) {
+  const auto& pixels = summary.at("pixels");
+  const auto mask = pixels.at("mask").get<double>();
+  if (!(mask > 0)) return {};
+  const double seen = 100 * pixels.at("valid").get<double>() / mask;
+  return fmt::format(
+      "<div class=bar><div style='width:{0:.1f}%;background:#283'>seen {0:.1f} %</div>"
+      "<div style='width:{1:.1f}%;background:#a2a'>invented {1:.1f} %</div></div>\n",
+      seen, 100 - seen);
+}
+
+std::string comparison(const RunFolder& folder, const FrameScore& frame) {
+  constexpr int surroundings_px = 40;
+  const cv::Mat input = folder.input(frame.name);
+  const cv::Mat result = folder.result(frame.name);
+  const cv::Mat truth = folder.truth(frame.name);
+  const cv::Mat mask = folder.mask(frame.name);
+  if (input.empty() || result.empty() || truth.empty() || mask.empty()) return {};
+  cv::Rect part = cv::boundingRect(mask);
+  if (part.empty()) part = {0, 0, mask.cols, mask.rows};
+  part = cv::Rect(part.x - surroundings_px, part.y - surroundings_px,
+                  part.width + 2 * surroundings_px, part.height + 2 * surroundings_px) &
+         cv::Rect(0, 0, mask.cols, mask.rows);
+  std::string text = fmt::format("<h3>{}</h3><div class=compare>", html::escaped(frame.name));
+  const std::string before = html::data_uri(input(part));
+  const std::string after = html::data_uri(result(part));
+  text += fmt::format("<div class=slider><img alt='' src='{}'><img alt='' src='{}'></div>", before,
+                      after);
+  text += "<input type=range value=50 aria-label='before and after'>";
+  for (const char* selected : {"input", "result"}) {
+    text += "<select>";
+    for (const std::string name : {"input", "result", "truth"}) {
+      text += fmt::format("<option{}>{}</option>", name == selected ? " selected" : "", name);
+    }
+    text += "</select> ";
+  }
+  const auto hidden = [&](const char* name, const std::string& source) {
+    text += fmt::format("<img hidden alt='' data-name={} src='{}'>", name, source);
+  };
+  hidden("input", before);
+  hidden("result", after);
+  hidden("truth", html::data_uri(truth(part)));
+  if (frame.inside) {
+    text += fmt::format("PSNR {:.2f} dB, SSIM {:.3f}", frame.inside->psnr_db, frame.inside->ssim);
+  }
+  return text + "</div>\n";
+}
+
+nlohmann::json read_summary(const std::filesystem::path& file) {
+  constexpr std::size_t most_bytes = 1 << 24;
+  const nlohmann::json summary =
+      nlohmann::json::parse(read_text_file(file, most_bytes), nullptr, false);
+  if (summary.is_discarded()) throw Error(file.string() + ": is not JSON");
+  return summary;
+}
+
+}  // namespace
+
+void write_report(const std::filesystem::path& recording, const std::filesystem::path& run,
+                  const std::filesystem::path& file) {
+  const Score score = score_run(recording, run);
+  const RunFolder folder(recording, run);
+  const nlohmann::json summary = read_summary(run / "summary.json");
+  std::string page = head;
+  page += fmt::format("<h1>{}</h1>\n", html::escaped(recording.filename().string()));
+  try {
+    if (score.mean.inside) {
+      page += fmt::format("<p>PSNR {:.2f} dB, SSIM {:.3f} inside the object's mask",
+                          score.mean.inside->psnr_db, score.mean.inside->ssim);
+      if (score.flicker) page += fmt::format("; flicker {:.1f} grey levels", *score.flicker);
+      page += fmt::format("; {} frames.</p>\n", score.frames.size());
+    }
+    page += provenance_bar(summary);
+    page += "<h2>Before and after</h2>\n";
+    const std::size_t step = (score.frames.size() + most_pictures - 1) / most_pictures;
+    for (std::size_t i = 0; i < score.frames.size(); i += step) {
+      page += comparison(folder, score.frames[i]);
+    }
+    page += "<h2>Figures by frame</h2>\n" + plots(score.frames);
+    page += "<h2>Table 2</h2>\n" + table_2(summary);
+    page += "<h2>Milliseconds by frame</h2>\n" + time_plots(load_csv(run / "frames.csv"));
+    page += fmt::format("<h2>Options</h2><pre>{}</pre>\n",
+                        html::escaped(summary.at("options").dump(2)));
+  } catch (const nlohmann::json::exception& error) {
+    throw Error(fmt::format("{}: {}", (run / "summary.json").string(), error.what()));
+  }
+  write_file(file, page + script);
+}
+
+}  // namespace diminish
