@@ -9,7 +9,7 @@ namespace diminish {
 /// in `for_each_option`, from which the command line and the docs are made.
 struct Options {
   double sync_tolerance_s = 0;
-  int mask_margin_px = 3;
+  int mask_margin_px = 5;
   int rgbd_mask_margin_px = 6;
   double blob_spread = 1.0;
   bool refine_poses = true;

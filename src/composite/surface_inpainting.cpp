@@ -35,21 +35,28 @@ class SurfaceInpainting : public Inpainter {
     plane_colors_.collect(holes.occlusion, holes.reconstruction, picture);
     collect_states(holes);
     for (std::size_t k = 0; k < planes; ++k) give_up_holes_in_foreground(k);
-    // They do not depend on each other: what one fills no other takes for known.
-    oneapi::tbb::parallel_for(std::size_t{0}, solvers_.size(), [&](std::size_t k) {
+    // They do not depend on each other: what one fills no other takes for known. Pictures are
+    // written a block of pixels at a time, so not side by side.
+    std::array<bool, label_count> solved{};
+    oneapi::tbb::parallel_for(std::size_t{0}, label_count, [&](std::size_t k) {
       const auto label = static_cast<std::uint8_t>(k);
       if (boxes_[k].empty()) return;
-      solve(boxes_[k], solvers_[k], holes, picture, [label](const State& state) -> std::uint8_t {
+      const auto key = [label](const State& state) -> std::uint8_t {
         if (state.open) return state.label == label ? 1 : 0;
         const bool is_known = label == surface_label::unknown || state.label == label;
         return is_known ? MembraneSolver::fixed : 0;
-      });
+      };
+      solved[k] = solve(boxes_[k], solvers_[k], holes, picture, key);
     });
+    for (std::size_t k = 0; k < label_count; ++k) {
+      if (solved[k]) write(boxes_[k], solvers_[k], picture);
+    }
     return fill_rest(holes, picture);
   }
 
  private:
   static constexpr std::size_t planes = PlaneColors::planes;
+  static constexpr std::size_t label_count = surface_label::first_plane + planes;
   /// Of a hole's rim on measured surfaces, at least so much must lie on the hole's plane; else the
   /// hole is rather one in what stands in front of it.
   static constexpr int plane_rim_percent = 60;
@@ -85,9 +92,11 @@ class SurfaceInpainting : public Inpainter {
       }
     }
     if (rest.empty()) return true;
+    MembraneSolver& solver = solvers_[surface_label::unknown];
     const bool anything_known = solve(
-        rest, solvers_[surface_label::unknown], holes, picture,
+        rest, solver, holes, picture,
         [](const State& state) -> std::uint8_t { return state.open ? 1 : MembraneSolver::fixed; });
+    if (anything_known) write(rest, solver, picture);
     if (!anything_known) picture.fill(bounding_box(holes.missing), {});
     return anything_known;
   }
@@ -149,12 +158,14 @@ class SurfaceInpainting : public Inpainter {
     return own.sum() < shadow * around.sum() ? around : own;
   }
 
-  /// Fills the pixels of `box` (of the window) whose key is 1 and that hang together with a fixed
-  /// one. Returns whether there was one.
+  Rect with_rim(const Rect& box) const { return intersect(grow(box, 1), states_.bounds()); }
+
+  /// Solves for the pixels of `box` (of the window) whose key is 1 and that hang together with a
+  /// fixed one. Returns whether there was one.
   template <class Key>
-  bool solve(const Rect& box, MembraneSolver& solver, const Holes& holes, Image<Bgr>& picture,
-             const Key& key) {
-    const Rect part = intersect(grow(box, 1), states_.bounds());
+  bool solve(const Rect& box, MembraneSolver& solver, const Holes& holes, const Image<Bgr>& picture,
+             const Key& key) const {
+    const Rect part = with_rim(box);
     solver.begin(part.width, part.height);
     for_rows(part.height, [&](Rows rows) {
       for (int row = rows.first; row < rows.last; ++row) {
@@ -164,23 +175,28 @@ class SurfaceInpainting : public Inpainter {
       }
     });
     solver.connect();
-    const Rect in_picture{window_.x + part.x, window_.y + part.y, part.width, part.height};
     bool anything_known = false;
     solver.for_each_fixed([&](int x, int y) {
-      const Eigen::Array3f color = color_of(in_picture.x + x, in_picture.y + y, holes, picture);
+      const Eigen::Array3f color =
+          color_of(window_.x + part.x + x, window_.y + part.y + y, holes, picture);
       solver.set_fixed(x, y, {color[0], color[1], color[2]});
       anything_known = true;
     });
     if (!anything_known) return false;
     solver.take_out_loose_parts();
     solver.solve(tolerance_levels);
-    write_solution(solver, in_picture, picture);
+    return true;
+  }
+
+  void write(const Rect& box, const MembraneSolver& solver, Image<Bgr>& picture) {
+    const Rect part = with_rim(box);
+    write_solution(solver, {window_.x + part.x, window_.y + part.y, part.width, part.height},
+                   picture);
     for (int y = 0; y < part.height; ++y) {
       const std::uint8_t* keys = solver.keys(y);
       State* states = states_.row(part.y + y) + part.x;
       for (int i = 0; i < part.width; ++i) states[i].open = states[i].open && keys[i] != 1;
     }
-    return true;
   }
 
   /// Pixels beside a hole.
@@ -191,8 +207,8 @@ class SurfaceInpainting : public Inpainter {
   PlaneColors plane_colors_;
   Rect window_;  ///< in the picture
   Image<State> states_;
-  std::array<Rect, 256> boxes_;  ///< of the holes of each label, in the window
-  std::array<MembraneSolver, surface_label::first_plane + planes> solvers_;  ///< by label
+  std::array<Rect, 256> boxes_;                      ///< of the holes of each label, in the window
+  std::array<MembraneSolver, label_count> solvers_;  ///< by label
   std::vector<std::uint32_t> bits_;
   ConnectedRuns parts_;
   std::vector<Rim> rims_;
