@@ -2,7 +2,8 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <cmath>
+
+#include "core/robust.h"
 
 namespace diminish {
 namespace {
@@ -21,12 +22,6 @@ Terms field_terms(const ColorMap& map, float x, float y) {
   Terms terms;
   terms << u, v, u * u, u * v, v * v;
   return terms;
-}
-
-float median(std::vector<float>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 class Fit {
@@ -71,10 +66,7 @@ class Fit {
     // Where Tukey's weights end: 4.7 standard deviations.
     const float end = 4.7F * std::max(least_scale, 0.65F * median(values_));
     weights_.clear();
-    for (const float residual : residuals_) {
-      const float relative = std::min(1.F, residual / end);
-      weights_.push_back((1 - relative * relative) * (1 - relative * relative));
-    }
+    for (const float residual : residuals_) weights_.push_back(tukey_weight(residual, end));
   }
 
   /// Matrix and offset, the field being as it is. Colours are in units of 128 levels.
@@ -90,23 +82,19 @@ class Fit {
       squares += weighted * terms.transpose();
       products += weighted * (pair.camera.matrix() / (unit * field)).transpose();
     }
+    constexpr float prior = prior_pairs / 16;
+    squares.diagonal().array() += prior;
     for (int c = 0; c < 3; ++c) {
+      products(c, c) += prior * gains_[c];
+      Eigen::Vector4f solution = Eigen::Vector4f::Zero();
       if (model_ == ColorMapModel::affine) {
-        const Eigen::Array2i chosen(c, 3);
-        Eigen::Matrix2f own = squares(chosen, chosen);
-        Eigen::Vector2f target = products(chosen, c);
-        own.diagonal().array() += prior_pairs / 16;
-        target[0] += prior_pairs / 16 * gains_[c];
-        const Eigen::Vector2f solution = own.ldlt().solve(target);
-        map_.matrix(c, c) = solution[0];
-        map_.offset[c] = unit * solution[1];
-        continue;
+        const Eigen::Array2i used(c, 3);
+        const Eigen::Matrix2f own = squares(used, used);
+        const Eigen::Vector2f target = products(used, c);
+        solution(used) = own.ldlt().solve(target);
+      } else {
+        solution = squares.ldlt().solve(products.col(c));
       }
-      Eigen::Matrix4f own = squares;
-      Eigen::Vector4f target = products.col(c);
-      own.diagonal().array() += prior_pairs / 16;
-      target[c] += prior_pairs / 16 * gains_[c];
-      const Eigen::Vector4f solution = own.ldlt().solve(target);
       map_.matrix.row(c) = solution.head<3>();
       map_.offset[c] = unit * solution[3];
     }

@@ -19,8 +19,6 @@ class PlaneColors {
   /// occlusion: the objects' mask in `picture`.
   void collect(const Mask& occlusion, const Reconstruction& reconstruction,
                const Image<Bgr>& picture);
-  /// Whether planes were looked for there.
-  bool covers(int x, int y) const { return region_.contains(x, y); }
   /// The mean colour of a plane around a pixel; false where too little of it is seen, or the pixel
   /// is outside the reconstruction's region.
   bool around(int x, int y, std::uint8_t label, Eigen::Array3f& mean) const;

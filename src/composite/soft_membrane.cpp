@@ -1,7 +1,6 @@
 #include "composite/soft_membrane.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace diminish {
 namespace {

@@ -82,6 +82,7 @@ class SurfaceInpainting : public Inpainter {
       }
     }
   }
+
   /// What hangs together with no pixel of its own plane.
   bool fill_rest(const Holes& holes, Image<Bgr>& picture) {
     Rect rest;
@@ -96,8 +97,11 @@ class SurfaceInpainting : public Inpainter {
     const bool anything_known = solve(
         rest, solver, holes, picture,
         [](const State& state) -> std::uint8_t { return state.open ? 1 : MembraneSolver::fixed; });
-    if (anything_known) write(rest, solver, picture);
-    if (!anything_known) picture.fill(bounding_box(holes.missing), {});
+    if (anything_known) {
+      write(rest, solver, picture);
+    } else {
+      picture.fill(bounding_box(holes.missing), {});
+    }
     return anything_known;
   }
 
@@ -146,15 +150,12 @@ class SurfaceInpainting : public Inpainter {
   }
 
   /// The colour that a known pixel hands on.
-  Eigen::Array3f color_of(int x, int y, const Holes& holes, const Image<Bgr>& picture) const {
+  Eigen::Array3f color_of(int x, int y, std::uint8_t label, const Holes& holes,
+                          const Image<Bgr>& picture) const {
     constexpr float shadow = 0.85F;
     const Eigen::Array3f own = to_channels(picture(x, y));
-    if (holes.occlusion(x, y) != 0) return own;
     Eigen::Array3f around;
-    if (!plane_colors_.covers(x, y) ||
-        !plane_colors_.around(x, y, holes.reconstruction.surface(x, y), around)) {
-      return own;
-    }
+    if (holes.occlusion(x, y) != 0 || !plane_colors_.around(x, y, label, around)) return own;
     return own.sum() < shadow * around.sum() ? around : own;
   }
 
@@ -177,8 +178,8 @@ class SurfaceInpainting : public Inpainter {
     solver.connect();
     bool anything_known = false;
     solver.for_each_fixed([&](int x, int y) {
-      const Eigen::Array3f color =
-          color_of(window_.x + part.x + x, window_.y + part.y + y, holes, picture);
+      const Eigen::Array3f color = color_of(window_.x + part.x + x, window_.y + part.y + y,
+                                            states_(part.x + x, part.y + y).label, holes, picture);
       solver.set_fixed(x, y, {color[0], color[1], color[2]});
       anything_known = true;
     });

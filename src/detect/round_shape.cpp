@@ -7,6 +7,8 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
+#include "core/robust.h"
+
 namespace diminish {
 namespace {
 
@@ -69,9 +71,7 @@ Points without_outliers(const Points& points, const RoundShape& shape) {
     distances.push_back(std::abs(relative_radius(point.x, point.y) - 1) * radius);
   }
   std::vector<double> sorted = distances;
-  const auto middle = sorted.begin() + sorted.size() / 2;
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  const double limit = std::max(1.0, 2.5 * *middle);
+  const double limit = std::max(1.0, 2.5 * median(sorted));
   Points kept;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (distances[i] <= limit) kept.push_back(points[i]);

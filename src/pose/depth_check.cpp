@@ -1,8 +1,9 @@
 #include "pose/depth_check.h"
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
+
+#include "core/robust.h"
 
 namespace diminish {
 
@@ -25,9 +26,7 @@ std::optional<double> marker_depth_error_m(const RigidTransform& depth_from_mark
     }
   }
   if (errors.size() * 2 < static_cast<std::size_t>(places * places)) return std::nullopt;
-  const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
-  std::nth_element(errors.begin(), middle, errors.end());
-  return *middle;
+  return median(errors);
 }
 
 }  // namespace diminish

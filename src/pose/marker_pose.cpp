@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "geometry/rotation.h"
+
 namespace diminish {
 namespace {
 
@@ -52,12 +54,6 @@ double reprojection_error(const Corners& corners, const IdealView& view,
     squares += (view.project(camera_from_corners * corners[i]) - view.pixels[i]).squaredNorm();
   }
   return std::sqrt(squares / 4);
-}
-
-Eigen::Matrix3d rotation_by(const Eigen::Vector3d& axis_times_angle) {
-  const double angle = axis_times_angle.norm();
-  if (angle < 1e-300) return Eigen::Matrix3d::Identity();
-  return Eigen::AngleAxisd(angle, axis_times_angle / angle).toRotationMatrix();
 }
 
 /// Levenberg-Marquardt on the reprojection error; returns what is left of it, pixels.

@@ -1,12 +1,13 @@
 #include "pose/pose_refinement.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "core/robust.h"
 #include "core/rows.h"
+#include "geometry/rotation.h"
 
 namespace diminish {
 namespace {
@@ -26,24 +27,13 @@ constexpr float largest_deviations = 4;
 /// Neighbouring samples' errors are not independent: they count for less than their number.
 constexpr float independent_share = 0.1F;
 
-float brightness(const Bgr& color) {
-  return 0.114F * static_cast<float>(color.b) + 0.587F * static_cast<float>(color.g) +
-         0.299F * static_cast<float>(color.r);
+float brightness(int blue, int green, int red) {
+  return 0.114F * static_cast<float>(blue) + 0.587F * static_cast<float>(green) +
+         0.299F * static_cast<float>(red);
 }
 
 RigidTransform exponential(const Eigen::Matrix<double, 6, 1>& twist) {
-  const Eigen::Vector3d axis = twist.tail<3>();
-  const double angle = axis.norm();
-  RigidTransform result;
-  if (angle > 0) result.rotation = Eigen::AngleAxisd(angle, axis / angle).toRotationMatrix();
-  result.translation = twist.head<3>();
-  return result;
-}
-
-float median(std::vector<float>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return {rotation_by(twist.tail<3>()), twist.head<3>()};
 }
 
 }  // namespace
@@ -67,8 +57,7 @@ void PoseRefinement::shrink(const Image<Bgr>& image) {
         const int blue = upper[0].b + upper[apart].b + lower[0].b + lower[apart].b;
         const int green = upper[0].g + upper[apart].g + lower[0].g + lower[apart].g;
         const int red = upper[0].r + upper[apart].r + lower[0].r + lower[apart].r;
-        to[x] = 0.0285F * static_cast<float>(blue) + 0.14675F * static_cast<float>(green) +
-                0.07475F * static_cast<float>(red);
+        to[x] = brightness(blue, green, red) / 4;
       }
     }
   });
@@ -90,7 +79,8 @@ void PoseRefinement::collect(const FrameSet& frame, const std::vector<SceneSampl
     float sum = 0;
     for (int j = -reach; j <= reach; ++j) {
       for (int k = -reach; k <= reach; ++k) {
-        sum += brightness(image(u + k * spacing, v + j * spacing));
+        const Bgr& color = image(u + k * spacing, v + j * spacing);
+        sum += brightness(color.b, color.g, color.r);
       }
     }
     constexpr float taps = (2 * reach + 1) * (2 * reach + 1);
@@ -179,11 +169,7 @@ float PoseRefinement::weigh() {
     magnitudes_.push_back(std::abs(row.residual));
   }
   const float scale = std::max(1.F, 1.48F * median(magnitudes_));
-  // Tukey's weights.
-  for (Row& row : rows_) {
-    const float relative = std::min(1.F, std::abs(row.residual) / (4.7F * scale));
-    row.weight = (1 - relative * relative) * (1 - relative * relative);
-  }
+  for (Row& row : rows_) row.weight = tukey_weight(std::abs(row.residual), 4.7F * scale);
   return scale;
 }
 

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgproc.hpp>
 
 #include "core/text.h"
 #include "diminish/diminished_frame.h"
@@ -123,20 +123,11 @@ std::string provenance_bar(const nlohmann::json& summary) {
 }
 
 std::string comparison(const RunFolder& folder, const FrameScore& frame) {
-  constexpr int surroundings_px = 40;
-  const cv::Mat input = folder.input(frame.name);
-  const cv::Mat result = folder.result(frame.name);
-  const cv::Mat truth = folder.truth(frame.name);
-  const cv::Mat mask = folder.mask(frame.name);
-  if (input.empty() || result.empty() || truth.empty() || mask.empty()) return {};
-  cv::Rect part = cv::boundingRect(mask);
-  if (part.empty()) part = {0, 0, mask.cols, mask.rows};
-  part = cv::Rect(part.x - surroundings_px, part.y - surroundings_px,
-                  part.width + 2 * surroundings_px, part.height + 2 * surroundings_px) &
-         cv::Rect(0, 0, mask.cols, mask.rows);
+  const auto pictures = folder.object_pictures(frame.name);
+  if (!pictures) return {};
   std::string text = fmt::format("<h3>{}</h3><div class=compare>", html::escaped(frame.name));
-  const std::string before = html::data_uri(input(part));
-  const std::string after = html::data_uri(result(part));
+  const std::string before = html::data_uri(pictures->input);
+  const std::string after = html::data_uri(pictures->result);
   text += fmt::format("<div class=slider><img alt='' src='{}'><img alt='' src='{}'></div>", before,
                       after);
   text += "<input type=range value=50 aria-label='before and after'>";
@@ -152,7 +143,7 @@ std::string comparison(const RunFolder& folder, const FrameScore& frame) {
   };
   hidden("input", before);
   hidden("result", after);
-  hidden("truth", html::data_uri(truth(part)));
+  hidden("truth", html::data_uri(pictures->truth));
   if (frame.inside) {
     text += fmt::format("PSNR {:.2f} dB, SSIM {:.3f}", frame.inside->psnr_db, frame.inside->ssim);
   }

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 #include <set>
 #include <utility>
 
@@ -174,6 +175,23 @@ cv::Mat RunFolder::result(const std::string& frame) const {
 cv::Mat RunFolder::mask(const std::string& frame) const {
   return read_image(run_ / "mask" / (frame + ".png"), cv::IMREAD_GRAYSCALE);
 }
+std::optional<RunFolder::ObjectPictures> RunFolder::object_pictures(
+    const std::string& frame) const {
+  constexpr int surroundings_px = 40;
+  const ObjectPictures whole{input(frame), result(frame), truth(frame)};
+  const cv::Mat object = mask(frame);
+  if (whole.input.empty() || whole.result.empty() || whole.truth.empty() || object.empty()) {
+    return std::nullopt;
+  }
+  const cv::Rect bounds(0, 0, object.cols, object.rows);
+  cv::Rect part = cv::boundingRect(object);
+  if (part.empty()) part = bounds;
+  part = cv::Rect(part.x - surroundings_px, part.y - surroundings_px,
+                  part.width + 2 * surroundings_px, part.height + 2 * surroundings_px) &
+         bounds;
+  return ObjectPictures{whole.input(part), whole.result(part), whole.truth(part)};
+}
+
 cv::Mat RunFolder::provenance(const std::string& frame) const {
   const fs::path file = run_ / "provenance" / (frame + ".png");
   if (!fs::exists(file)) return {};

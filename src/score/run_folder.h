@@ -31,6 +31,13 @@ class RunFolder {
   cv::Mat mask(const std::string& frame) const;
   cv::Mat provenance(const std::string& frame) const;
 
+  /// The surroundings of the object, cut out of a frame's pictures.
+  struct ObjectPictures {
+    cv::Mat input, result, truth;
+  };
+  /// Nothing where a picture or the mask is missing.
+  std::optional<ObjectPictures> object_pictures(const std::string& frame) const;
+
   using NamedPoses = std::map<std::string, RigidTransform>;
   /// The run's poses, by the names of frames.csv's columns.
   NamedPoses poses(const std::string& frame) const;

@@ -10,7 +10,6 @@
 namespace diminish {
 namespace {
 
-constexpr int surroundings_px = 40;
 constexpr int panel_height_px = 400;
 constexpr int caption_height_px = 28;
 
@@ -33,23 +32,16 @@ void write_score_pictures(const std::filesystem::path& recording,
   const RunFolder folder(recording, run);
   std::filesystem::create_directories(run / "score");
   for (const std::string& name : folder.frames()) {
-    const cv::Mat input = folder.input(name);
-    const cv::Mat result = folder.result(name);
-    const cv::Mat truth = folder.truth(name);
-    const cv::Mat mask = folder.mask(name);
-    if (input.empty() || result.empty() || truth.empty() || mask.empty()) continue;
-    cv::Rect part = cv::boundingRect(mask);
-    if (part.empty()) part = {0, 0, mask.cols, mask.rows};
-    part = cv::Rect(part.x - surroundings_px, part.y - surroundings_px,
-                    part.width + 2 * surroundings_px, part.height + 2 * surroundings_px) &
-           cv::Rect(0, 0, mask.cols, mask.rows);
+    const auto pictures = folder.object_pictures(name);
+    if (!pictures) continue;
     cv::Mat error;
-    cv::absdiff(result(part), truth(part), error);
+    cv::absdiff(pictures->result, pictures->truth, error);
     cv::Mat sheet;
-    cv::hconcat(
-        std::vector<cv::Mat>{make_panel(input(part), "input"), make_panel(result(part), "result"),
-                             make_panel(truth(part), "truth"), make_panel(4 * error, "error x 4")},
-        sheet);
+    cv::hconcat(std::vector<cv::Mat>{make_panel(pictures->input, "input"),
+                                     make_panel(pictures->result, "result"),
+                                     make_panel(pictures->truth, "truth"),
+                                     make_panel(4 * error, "error x 4")},
+                sheet);
     write_png(run / "score" / (name + ".png"), sheet);
   }
 }

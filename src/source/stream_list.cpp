@@ -9,6 +9,7 @@
 #include <sstream>
 #include <string_view>
 
+#include "core/robust.h"
 #include "core/text.h"
 #include "diminish/error.h"
 #include "source/video_reader.h"
@@ -149,9 +150,7 @@ double median_period_s(const std::vector<StreamEntry>& entries) {
   for (std::size_t i = 1; i < entries.size(); ++i) {
     periods.push_back(entries[i].stamp_s - entries[i - 1].stamp_s);
   }
-  const auto middle = periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2);
-  std::nth_element(periods.begin(), middle, periods.end());
-  return *middle;
+  return median(periods);
 }
 
 }  // namespace diminish
