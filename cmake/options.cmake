@@ -4,7 +4,10 @@ target_compile_options(diminish_build_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
   -Wnon-virtual-dtor -Woverloaded-virtual -Wimplicit-fallthrough -Wno-missing-field-initializers
   # The same bytes on every machine: no contraction of a*b+c where the source does not say so.
-  -ffp-contract=off)
+  -ffp-contract=off
+  # Nobody reads errno or floating-point exceptions: rounding is an instruction, comparisons are
+  # vectorised. No result depends on it.
+  -fno-math-errno -fno-trapping-math)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 sees overlaps in std::string's operator+ that are not there (GCC bug 105651).
   target_compile_options(diminish_build_options INTERFACE -Wno-restrict)

@@ -46,18 +46,18 @@ inline Rect grow(const Rect& rect, int margin) {
   return {rect.x - margin, rect.y - margin, rect.width + 2 * margin, rect.height + 2 * margin};
 }
 
+/// The smallest rectangle that holds both.
+inline Rect join(const Rect& a, const Rect& b) {
+  if (a.empty()) return b;
+  if (b.empty()) return a;
+  const int x = std::min(a.x, b.x);
+  const int y = std::min(a.y, b.y);
+  return {x, y, std::max(a.right(), b.right()) - x, std::max(a.bottom(), b.bottom()) - y};
+}
+
 /// Makes `rect` the smallest that also holds the pixel (x, y).
 inline void extend(Rect& rect, int x, int y) {
-  if (rect.empty()) {
-    rect = {x, y, 1, 1};
-    return;
-  }
-  const int right = std::max(rect.right(), x + 1);
-  const int bottom = std::max(rect.bottom(), y + 1);
-  rect.x = std::min(rect.x, x);
-  rect.y = std::min(rect.y, y);
-  rect.width = right - rect.x;
-  rect.height = bottom - rect.y;
+  rect = join(rect, {x, y, 1, 1});
 }
 
 /// A row-major image without padding. Pixel centres are at integer coordinates.

@@ -9,68 +9,74 @@ void PlaneColors::collect(const Mask& occlusion, const Reconstruction& reconstru
   region_ = intersect(reconstruction.region, reconstruction.surface.bounds());
   columns_ = (region_.width + cell - 1) / cell;
   rows_ = (region_.height + cell - 1) / cell;
-  cells_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), {});
-  for (int y = region_.y; y < region_.bottom(); ++y) {
-    Cell* row = cells_.data() + static_cast<std::ptrdiff_t>((y - region_.y) / cell) * columns_;
-    const std::uint8_t* mask = occlusion.row(y);
-    const std::uint8_t* surface = reconstruction.surface.row(y);
-    const Bgr* colors = picture.row(y);
-    for (int column = 0; column < columns_; ++column) {
-      const int first = region_.x + column * cell;
-      const int last = std::min(first + cell, region_.right());
-      Cell& own = row[column];
-      for (int x = first; x < last; ++x) own.has_object = own.has_object || mask[x] != 0;
-      if (own.has_object) continue;
-      for (int x = first; x < last; ++x) {
-        const int label = surface[x] - surface_label::first_plane;
-        if (label < 0 || label >= planes) continue;
-        Sum& sum = own.sums[label];
-        sum.blue += colors[x].b;
-        sum.green += colors[x].g;
-        sum.red += colors[x].r;
-        ++sum.count;
-      }
-    }
-  }
+  find_objects(occlusion);
+  table_.resize(static_cast<std::size_t>(columns_ + 1) * static_cast<std::size_t>(rows_ + 1));
+  const auto clear = [](Cell& entry) {
+    for (Sum& sum : entry.sums) sum.setZero();
+  };
+  std::for_each(cell_row(0), cell_row(1), clear);
   for (int row = 0; row < rows_; ++row) {
-    for (int column = 0; column < columns_; ++column) {
-      if (near_object(column, row)) {
-        std::fill(std::begin(cell_at(column, row).sums), std::end(cell_at(column, row).sums),
-                  Sum{});
+    std::for_each(cell_row(row + 1), cell_row(row + 2), clear);
+    add_row(row, reconstruction, picture);
+    const Cell* above = cell_row(row);
+    Cell* own = cell_row(row + 1);
+    for (int plane = 0; plane < planes; ++plane) {
+      Sum so_far = Sum::Zero();
+      for (int column = 1; column <= columns_; ++column) {
+        so_far += own[column].sums[plane];
+        own[column].sums[plane] = above[column].sums[plane] + so_far;
       }
     }
   }
 }
 
-bool PlaneColors::near_object(int column, int row) const {
-  for (int r = std::max(0, row - gap); r <= std::min(rows_ - 1, row + gap); ++r) {
-    for (int c = std::max(0, column - gap); c <= std::min(columns_ - 1, column + gap); ++c) {
-      if (cell_at(c, r).has_object) return true;
+void PlaneColors::find_objects(const Mask& occlusion) {
+  has_object_.resize(columns_, rows_, 0);
+  near_object_.resize(columns_, rows_, 0);
+  for (int y = 0; y < region_.height; y += step) {
+    const std::uint8_t* mask = occlusion.row(region_.y + y) + region_.x;
+    std::uint8_t* has = has_object_.row(y / cell);
+    for (int x = 0; x < region_.width; x += step) has[x / cell] |= mask[x];
+  }
+  for (int row = 0; row < rows_; ++row) {
+    for (int column = 0; column < columns_; ++column) {
+      if (has_object_(column, row) == 0) continue;
+      near_object_.fill(intersect(grow({column, row, 1, 1}, gap), near_object_.bounds()), 255);
     }
   }
-  return false;
+}
+
+/// The colours of a row of cells, each in the entry to its lower right.
+void PlaneColors::add_row(int row, const Reconstruction& reconstruction,
+                          const Image<Bgr>& picture) {
+  Cell* own = cell_row(row + 1) + 1;
+  const std::uint8_t* near = near_object_.row(row);
+  const int end = std::min((row + 1) * cell, region_.height);
+  for (int y = row * cell; y < end; y += step) {
+    const std::uint8_t* surface = reconstruction.surface.row(region_.y + y) + region_.x;
+    const Bgr* colors = picture.row(region_.y + y) + region_.x;
+    for (int x = 0; x < region_.width; x += step) {
+      const int plane = surface[x] - surface_label::first_plane;
+      if (plane < 0 || plane >= planes || near[x / cell] != 0) continue;
+      own[x / cell].sums[plane] += Sum(colors[x].b, colors[x].g, colors[x].r, 1);
+    }
+  }
 }
 
 bool PlaneColors::around(int x, int y, std::uint8_t label, Eigen::Array3f& mean) const {
   const int plane = label - surface_label::first_plane;
   if (!region_.contains(x, y) || plane < 0 || plane >= planes) return false;
-  const int column = (x - region_.x) / cell;
-  const int row = (y - region_.y) / cell;
-  Sum total;
-  for (int r = std::max(0, row - reach); r <= std::min(rows_ - 1, row + reach); ++r) {
-    for (int c = std::max(0, column - reach); c <= std::min(columns_ - 1, column + reach); ++c) {
-      const Sum& sum = cell_at(c, r).sums[plane];
-      total.blue += sum.blue;
-      total.green += sum.green;
-      total.red += sum.red;
-      total.count += sum.count;
-    }
-  }
-  constexpr std::uint32_t fewest_pixels = 24;
-  if (total.count < fewest_pixels) return false;
-  mean = Eigen::Array3f(static_cast<float>(total.blue), static_cast<float>(total.green),
-                        static_cast<float>(total.red)) /
-         static_cast<float>(total.count);
+  const Rect part = intersect(grow({(x - region_.x) / cell, (y - region_.y) / cell, 1, 1}, reach),
+                              {0, 0, columns_, rows_});
+  const Cell* upper = cell_row(part.y);
+  const Cell* lower = cell_row(part.bottom());
+  // Unsigned: what overflows on the way does not matter.
+  const Sum sum = lower[part.right()].sums[plane] - lower[part.x].sums[plane] -
+                  upper[part.right()].sums[plane] + upper[part.x].sums[plane];
+  constexpr std::uint32_t fewest = 24 / (step * step);
+  if (sum[3] < fewest) return false;
+  const Eigen::Array4f total = sum.cast<float>();
+  mean = total.head<3>() / total[3];
   return true;
 }
 

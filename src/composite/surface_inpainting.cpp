@@ -1,27 +1,26 @@
 #include <oneapi/tbb/parallel_for.h>
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
 #include "composite/channels.h"
 #include "composite/connected_runs.h"
-#include "composite/membrane_picture.h"
-#include "composite/membrane_solver.h"
 #include "composite/plane_colors.h"
-#include "core/rows.h"
+#include "composite/smooth_filling.h"
 #include "diminish/inpainter.h"
 
 namespace diminish {
 namespace {
 
-/// Of the last multigrid correction; what is left of the error is smaller.
-constexpr float tolerance_levels = 1.F;
-
-/// A pixel of the window: the plane that it shows, and whether it is still to be filled.
-struct State {
-  std::uint8_t label;
-  bool open;
-};
+/// A pixel of the window: what it shows (surface_label, in seven bits), and whether it is open,
+/// that is, still to be filled.
+namespace state {
+using Code = std::uint8_t;
+constexpr Code open = 0x80;
+constexpr Code label_bits = 0x7F;
+constexpr Code foreground = surface_label::foreground & label_bits;
+}  // namespace state
 
 /// Fills each plane of the background from its own pixels alone, as smoothly as can be: what stands
 /// in front of a wall does not bleed onto it, and where table and wall meet there is an edge. What
@@ -35,27 +34,18 @@ class SurfaceInpainting : public Inpainter {
     plane_colors_.collect(holes.occlusion, holes.reconstruction, picture);
     collect_states(holes);
     for (std::size_t k = 0; k < planes; ++k) give_up_holes_in_foreground(k);
-    // They do not depend on each other: what one fills no other takes for known. Pictures are
-    // written a block of pixels at a time, so not side by side.
-    std::array<bool, label_count> solved{};
+    // They do not depend on each other: what one fills no other takes for known.
+    std::array<bool, most_labels> filled{};
+    for (std::size_t k = label_count; k < most_labels; ++k) filled[k] = boxes_[k].empty();
     oneapi::tbb::parallel_for(std::size_t{0}, label_count, [&](std::size_t k) {
-      const auto label = static_cast<std::uint8_t>(k);
-      if (boxes_[k].empty()) return;
-      const auto key = [label](const State& state) -> std::uint8_t {
-        if (state.open) return state.label == label ? 1 : 0;
-        const bool is_known = label == surface_label::unknown || state.label == label;
-        return is_known ? MembraneSolver::fixed : 0;
-      };
-      solved[k] = solve(boxes_[k], solvers_[k], holes, picture, key);
+      filled[k] = fill(static_cast<std::uint8_t>(k), holes, picture);
     });
-    for (std::size_t k = 0; k < label_count; ++k) {
-      if (solved[k]) write(boxes_[k], solvers_[k], picture);
-    }
-    return fill_rest(holes, picture);
+    return fill_rest(filled, holes, picture);
   }
 
  private:
   static constexpr std::size_t planes = PlaneColors::planes;
+  static constexpr std::size_t most_labels = 128;
   static constexpr std::size_t label_count = surface_label::first_plane + planes;
   /// Of a hole's rim on measured surfaces, at least so much must lie on the hole's plane; else the
   /// hole is rather one in what stands in front of it.
@@ -65,44 +55,57 @@ class SurfaceInpainting : public Inpainter {
     states_.resize(window_.width, window_.height);
     boxes_.fill({});
     const Reconstruction& reconstruction = holes.reconstruction;
-    const Rect drawn = intersect(reconstruction.region, reconstruction.surface.bounds());
+    const Rect drawn =
+        intersect(intersect(reconstruction.region, reconstruction.surface.bounds()), window_);
     for (int y = 0; y < window_.height; ++y) {
       const int row = window_.y + y;
-      const bool is_drawn = row >= drawn.y && row < drawn.bottom();
       const std::uint8_t* missing = holes.missing.row(row) + window_.x;
-      const std::uint8_t* surface =
-          is_drawn ? reconstruction.surface.row(row) + window_.x : nullptr;
-      State* states = states_.row(y);
-      for (int x = 0; x < window_.width; ++x) {
-        const int column = window_.x + x;
-        std::uint8_t label = surface_label::unknown;
-        if (is_drawn && column >= drawn.x && column < drawn.right()) label = surface[x];
-        states[x] = {label, missing[x] != 0};
-        if (states[x].open) extend(boxes_[label], x, y);
+      state::Code* states = states_.row(y);
+      for (int x = 0; x < window_.width; ++x) states[x] = missing[x] & state::open;
+      if (row >= drawn.y && row < drawn.bottom()) {
+        const std::uint8_t* surface = reconstruction.surface.row(row) + window_.x;
+        const int end = drawn.right() - window_.x;
+        for (int x = drawn.x - window_.x; x < end; ++x) states[x] |= surface[x] & state::label_bits;
+      }
+      for_each_open(y, [&](int x) { extend(boxes_[states[x] & state::label_bits], x, y); });
+    }
+  }
+
+  /// Calls visit(x) for each open pixel of a row.
+  template <class Visit>
+  void for_each_open(int y, const Visit& visit) const {
+    const state::Code* states = states_.row(y);
+    constexpr int step = 8;
+    for (int x = 0; x < window_.width; x += step) {
+      const int end = std::min(x + step, window_.width);
+      state::Code any = 0;
+      for (int i = x; i < end; ++i) any |= states[i];
+      if ((any & state::open) == 0) continue;
+      for (int i = x; i < end; ++i) {
+        if ((states[i] & state::open) != 0) visit(i);
       }
     }
   }
 
-  /// What hangs together with no pixel of its own plane.
-  bool fill_rest(const Holes& holes, Image<Bgr>& picture) {
-    Rect rest;
+  /// What has a label of which nothing is known.
+  bool fill_rest(const std::array<bool, most_labels>& filled, const Holes& holes,
+                 Image<Bgr>& picture) {
+    if (std::all_of(filled.begin(), filled.end(), [](bool is) { return is; })) return true;
+    Rect& rest = boxes_[surface_label::unknown];
+    rest = {};
     for (int y = 0; y < window_.height; ++y) {
-      const State* states = states_.row(y);
-      for (int x = 0; x < window_.width; ++x) {
-        if (states[x].open) extend(rest, x, y);
-      }
+      for_each_open(y, [&](int x) {
+        state::Code& code = states_(x, y);
+        const state::Code label = code & state::label_bits;
+        code = filled[label] ? label : state::open | surface_label::unknown;
+        if (!filled[label]) extend(rest, x, y);
+      });
     }
-    if (rest.empty()) return true;
-    MembraneSolver& solver = solvers_[surface_label::unknown];
-    const bool anything_known = solve(
-        rest, solver, holes, picture,
-        [](const State& state) -> std::uint8_t { return state.open ? 1 : MembraneSolver::fixed; });
-    if (anything_known) {
-      write(rest, solver, picture);
-    } else {
-      picture.fill(bounding_box(holes.missing), {});
+    if (fill(surface_label::unknown, holes, picture)) return true;
+    for (int y = 0; y < window_.height; ++y) {
+      for_each_open(y, [&](int x) { picture(window_.x + x, window_.y + y) = {}; });
     }
-    return anything_known;
+    return false;
   }
 
   /// Takes the label from the holes that mostly border on what is in front of their plane.
@@ -113,18 +116,18 @@ class SurfaceInpainting : public Inpainter {
     const int words = (box.width + 31) / 32;
     bits_.assign(static_cast<std::size_t>(words) * static_cast<std::size_t>(box.height), 0);
     for (int y = 0; y < box.height; ++y) {
-      const State* states = states_.row(box.y + y) + box.x;
+      const state::Code* states = states_.row(box.y + y) + box.x;
       std::uint32_t* bits = bits_.data() + static_cast<std::ptrdiff_t>(y) * words;
       for (int x = 0; x < box.width; ++x) {
-        if (states[x].open && states[x].label == label) bits[x / 32] |= 1U << (x % 32);
+        if (states[x] == (state::open | label)) bits[x / 32] |= 1U << (x % 32);
       }
     }
     parts_.find(bits_.data(), words, words, box.height);
     rims_.assign(parts_.part_limit(), {});
     const auto count = [&](Rim& rim, int x, int y) {
-      if (!states_.bounds().contains(x, y) || states_(x, y).open) return;
-      rim.plane += states_(x, y).label == label ? 1 : 0;
-      rim.foreground += states_(x, y).label == surface_label::foreground ? 1 : 0;
+      if (!states_.bounds().contains(x, y)) return;
+      rim.plane += states_(x, y) == label ? 1 : 0;
+      rim.foreground += states_(x, y) == state::foreground ? 1 : 0;
     };
     for (int y = 0; y < box.height; ++y) {
       for (const ConnectedRuns::Run& run : parts_.row(y)) {
@@ -141,8 +144,8 @@ class SurfaceInpainting : public Inpainter {
       for (const ConnectedRuns::Run& run : parts_.row(y)) {
         const Rim& rim = rims_[run.part];
         if (100 * rim.plane >= plane_rim_percent * (rim.plane + rim.foreground)) continue;
-        State* states = states_.row(box.y + y) + box.x;
-        for (int x = run.first; x < run.last; ++x) states[x].label = surface_label::unknown;
+        state::Code* states = states_.row(box.y + y) + box.x;
+        std::fill(states + run.first, states + run.last, state::open | surface_label::unknown);
         extend(boxes_[surface_label::unknown], box.x + run.first, box.y + y);
         extend(boxes_[surface_label::unknown], box.x + run.last - 1, box.y + y);
       }
@@ -159,45 +162,37 @@ class SurfaceInpainting : public Inpainter {
     return own.sum() < shadow * around.sum() ? around : own;
   }
 
-  Rect with_rim(const Rect& box) const { return intersect(grow(box, 1), states_.bounds()); }
-
-  /// Solves for the pixels of `box` (of the window) whose key is 1 and that hang together with a
-  /// fixed one. Returns whether there was one.
-  template <class Key>
-  bool solve(const Rect& box, MembraneSolver& solver, const Holes& holes, const Image<Bgr>& picture,
-             const Key& key) const {
-    const Rect part = with_rim(box);
-    solver.begin(part.width, part.height);
-    for_rows(part.height, [&](Rows rows) {
-      for (int row = rows.first; row < rows.last; ++row) {
-        const State* states = states_.row(part.y + row) + part.x;
-        std::uint8_t* keys = solver.keys(row);
-        for (int i = 0; i < part.width; ++i) keys[i] = key(states[i]);
-      }
-    });
-    solver.connect();
-    bool anything_known = false;
-    solver.for_each_fixed([&](int x, int y) {
-      const Eigen::Array3f color = color_of(window_.x + part.x + x, window_.y + part.y + y,
-                                            states_(part.x + x, part.y + y).label, holes, picture);
-      solver.set_fixed(x, y, {color[0], color[1], color[2]});
-      anything_known = true;
-    });
-    if (!anything_known) return false;
-    solver.take_out_loose_parts();
-    solver.solve(tolerance_levels);
-    return true;
-  }
-
-  void write(const Rect& box, const MembraneSolver& solver, Image<Bgr>& picture) {
-    const Rect part = with_rim(box);
-    write_solution(solver, {window_.x + part.x, window_.y + part.y, part.width, part.height},
-                   picture);
-    for (int y = 0; y < part.height; ++y) {
-      const std::uint8_t* keys = solver.keys(y);
-      State* states = states_.row(part.y + y) + part.x;
-      for (int i = 0; i < part.width; ++i) states[i].open = states[i].open && keys[i] != 1;
+  /// Fills the open pixels with this label. Returns false if nothing is known beside them.
+  bool fill(std::uint8_t label, const Holes& holes, Image<Bgr>& picture) {
+    const Rect& box = boxes_[label];
+    if (box.empty()) return true;
+    const int left = box.x;
+    const int top = box.y;
+    SmoothFilling& filling = fillings_[label];
+    filling.begin(box.width, box.height);
+    for (int y = box.y; y < box.bottom(); ++y) {
+      const state::Code* states = states_.row(y);
+      for_each_open(y, [&](int x) {
+        if (states[x] == (state::open | label)) filling.open(x - left, y - top);
+      });
     }
+    const auto is_known = [&](int x, int y) {
+      if (!states_.bounds().contains(left + x, top + y)) return false;
+      const state::Code code = states_(left + x, top + y);
+      return label == surface_label::unknown ? (code & state::open) == 0 : code == label;
+    };
+    const auto color = [&](int x, int y) {
+      return color_of(window_.x + left + x, window_.y + top + y, states_(left + x, top + y), holes,
+                      picture);
+    };
+    if (filling.empty()) return true;
+    if (!filling.connect(is_known, color)) return false;
+    filling.solve();
+    filling.for_each([&](int x, int y, const Eigen::Array4f& channels) {
+      const auto level = [&](int c) { return static_cast<std::uint8_t>(channels[c] + 0.5F); };
+      picture(window_.x + left + x, window_.y + top + y) = {level(0), level(1), level(2)};
+    });
+    return true;
   }
 
   /// Pixels beside a hole.
@@ -207,9 +202,9 @@ class SurfaceInpainting : public Inpainter {
 
   PlaneColors plane_colors_;
   Rect window_;  ///< in the picture
-  Image<State> states_;
-  std::array<Rect, 256> boxes_;                      ///< of the holes of each label, in the window
-  std::array<MembraneSolver, label_count> solvers_;  ///< by label
+  Image<state::Code> states_;
+  std::array<Rect, most_labels> boxes_;              ///< of the holes of each label, in the window
+  std::array<SmoothFilling, label_count> fillings_;  ///< by label
   std::vector<std::uint32_t> bits_;
   ConnectedRuns parts_;
   std::vector<Rim> rims_;

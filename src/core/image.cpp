@@ -1,21 +1,12 @@
 #include "diminish/image.h"
 
-#include <cstring>
-
 namespace diminish {
 namespace {
 
 bool any_set(const std::uint8_t* row, int count) {
-  // Without a branch inside, so that the compiler takes many pixels at a time.
-  std::uint64_t all = 0;
-  int x = 0;
-  constexpr int step = 64;
-  for (; x + step <= count; x += step) {
-    std::uint64_t words[step / sizeof(std::uint64_t)];
-    std::memcpy(words, row + x, step);
-    for (const std::uint64_t word : words) all |= word;
-  }
-  for (; x < count; ++x) all |= row[x];
+  // Without a branch, so that the compiler takes many pixels at a time.
+  std::uint8_t all = 0;
+  for (int x = 0; x < count; ++x) all |= row[x];
   return all != 0;
 }
 
@@ -26,6 +17,15 @@ int first_set(const std::uint8_t* row, int count) {
   while (x + step <= count && !any_set(row + x, step)) x += step;
   while (x < count && row[x] == 0) ++x;
   return x;
+}
+
+/// The last non-zero of `count` pixels; -1 if there is none.
+int last_set(const std::uint8_t* row, int count) {
+  constexpr int step = 32;
+  int end = count;
+  while (end >= step && !any_set(row + end - step, step)) end -= step;
+  while (end > 0 && row[end - 1] == 0) --end;
+  return end - 1;
 }
 
 }  // namespace
@@ -45,10 +45,7 @@ Rect bounding_box(const Mask& mask, const Rect& part) {
     if (top < 0) top = y;
     bottom = y;
     left = std::min(left, first_set(row, left));
-    // From the right end to the rightmost so far.
-    int last = part.width - 1;
-    while (last > right && row[last] == 0) --last;
-    right = last;
+    right += 1 + last_set(row + right + 1, part.width - right - 1);
   }
   if (top < 0) return {};
   return {part.x + left, top, right - left + 1, bottom - top + 1};

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "core/rows.h"
+#include "reconstruct/depth_noise.h"
 
 namespace diminish {
 namespace {
@@ -18,11 +19,8 @@ constexpr std::size_t fewest_points = 60;
 constexpr double smallest_support = 0.12;
 constexpr double most_behind = 0.04;
 
-/// How far a measurement may be from the surface it is of: depth sensors' errors grow with the
-/// square of the distance.
-float tolerance_m(float depth_m) {
-  return 0.012F + 0.006F * depth_m * depth_m;
-}
+/// How far a measurement may be from the plane it is on.
+constexpr DepthNoise tolerance{0.012F, 0.006F};
 
 /// Small, and the same everywhere.
 class Random {
@@ -46,13 +44,13 @@ BackgroundPlane facing_camera(Eigen::Vector3f normal, const Eigen::Vector3f& poi
 }
 
 /// Least squares.
-BackgroundPlane fit(const BackgroundPlane& plane, const std::vector<Eigen::Vector3f>& points) {
+BackgroundPlane fit(const BackgroundPlane& plane, const PlanePoints& points) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
   double count = 0;
-  for (const Eigen::Vector3f& point : points) {
-    if (std::abs(plane.height_m(point)) > tolerance_m(point.z())) continue;
-    const Eigen::Vector3d p = point.cast<double>();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (std::abs(plane.height_m(points[i])) > points.tolerance_m[i]) continue;
+    const Eigen::Vector3d p = points[i].cast<double>();
     sum += p;
     squares += p * p.transpose();
     ++count;
@@ -62,6 +60,23 @@ BackgroundPlane fit(const BackgroundPlane& plane, const std::vector<Eigen::Vecto
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(squares / count -
                                                               mean * mean.transpose());
   return facing_camera(solver.eigenvectors().col(0).cast<float>(), mean.cast<float>());
+}
+
+/// Points no further from the plane than they may be off by.
+int count_on(const BackgroundPlane& plane, const PlanePoints& points) {
+  int count = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const float height_m = plane.height_m(points[i]);
+    count += std::abs(height_m) <= points.tolerance_m[i] ? 1 : 0;
+  }
+  return count;
+}
+int count_behind(const BackgroundPlane& plane, const PlanePoints& points) {
+  int count = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    count += plane.height_m(points[i]) < -2 * points.tolerance_m[i] ? 1 : 0;
+  }
+  return count;
 }
 
 }  // namespace
@@ -103,7 +118,7 @@ void BackgroundPlanes::choose_points(const Rect& objects, const std::vector<Scen
   for (const SceneSample& sample : samples) {
     const int x = static_cast<int>(sample.pixel.x());
     const int y = static_cast<int>(sample.pixel.y());
-    if (around.contains(x, y)) points_.push_back(sample.point_m);
+    if (around.contains(x, y)) points_.add(sample.point_m, tolerance.at(sample.point_m.z()));
   }
 }
 
@@ -115,34 +130,29 @@ bool BackgroundPlanes::next_plane(BackgroundPlane& plane) {
       fewest_points / 2,
       static_cast<std::size_t>(smallest_support * static_cast<double>(points_.size())));
   Random random;
-  std::size_t most = 0;
   const std::size_t stride = std::max<std::size_t>(1, rest_.size() / 500);
+  some_.thin(points_, stride);
+  some_of_rest_.thin(rest_, stride);
+  int most = 0;
   for (int i = 0; i < hypotheses; ++i) {
-    const Eigen::Vector3f& a = rest_[random.below(rest_.size())];
-    const Eigen::Vector3f& b = rest_[random.below(rest_.size())];
-    const Eigen::Vector3f& c = rest_[random.below(rest_.size())];
+    const Eigen::Vector3f a = rest_[random.below(rest_.size())];
+    const Eigen::Vector3f b = rest_[random.below(rest_.size())];
+    const Eigen::Vector3f c = rest_[random.below(rest_.size())];
     const Eigen::Vector3f normal = (b - a).cross(c - a);
     const float length = normal.norm();
     if (!(length > 1e-4F)) continue;
     const BackgroundPlane candidate = facing_camera(normal / length, a);
-    std::size_t on = 0;
-    for (std::size_t k = 0; k < rest_.size(); k += stride) {
-      on += std::abs(candidate.height_m(rest_[k])) <= tolerance_m(rest_[k].z()) ? 1U : 0U;
-    }
+    const int on = count_on(candidate, some_of_rest_);
     if (on <= most) continue;
-    std::size_t behind = 0;
-    std::size_t all = 0;
-    for (std::size_t k = 0; k < points_.size(); k += stride, ++all) {
-      behind += candidate.height_m(points_[k]) < -2 * tolerance_m(points_[k].z()) ? 1U : 0U;
-    }
-    if (static_cast<double>(behind) > most_behind * static_cast<double>(all)) continue;
+    const int behind = count_behind(candidate, some_);
+    if (behind > most_behind * static_cast<double>(some_.size())) continue;
     most = on;
     plane = candidate;
   }
-  if (most * stride < wanted) return false;
+  if (static_cast<std::size_t>(most) * stride < wanted) return false;
   for (int i = 0; i < 3; ++i) plane = fit(plane, rest_);
-  std::erase_if(rest_, [&](const Eigen::Vector3f& point) {
-    return std::abs(plane.height_m(point)) <= 1.5F * tolerance_m(point.z());
+  rest_.erase_if([&](const Eigen::Vector3f& point, float tolerance_m) {
+    return std::abs(plane.height_m(point)) <= 1.5F * tolerance_m;
   });
   return plane.distance_m < 0;
 }
@@ -158,35 +168,39 @@ void BackgroundPlanes::label_row(int y, Reconstruction& reconstruction) const {
   };
   for (int x = region.x; x < region.right();) {
     const int column = x / ray_step;
-    const int end = std::min(region.right(), (column + 1) * ray_step);
+    const int count = std::min(region.right(), (column + 1) * ray_step) - x;
     const Eigen::Vector2f left = ray_at(column);
     const Eigen::Vector2f step = (ray_at(column + 1) - left) / ray_step;
-    // Along a row the inverse depth of a plane grows linearly.
-    float inverse[most_planes] = {};
-    float slope[most_planes] = {};
     const Eigen::Vector2f first = left + static_cast<float>(x % ray_step) * step;
     const Eigen::Vector2f second = first + step;
+    // By pixel; loops without branches, which compilers turn into vector instructions.
+    float inverse[ray_step];
+    float greatest[ray_step] = {};
+    std::int32_t nearest[ray_step] = {};
+    std::int32_t own[ray_step];
+    std::fill(std::begin(own), std::end(own), surface_label::foreground);
     for (std::size_t k = 0; k < planes_.size(); ++k) {
-      inverse[k] = planes_[k].inverse_depth(first.x(), first.y());
-      slope[k] = planes_[k].inverse_depth(second.x(), second.y()) - inverse[k];
-    }
-    for (; x < end; ++x) {
-      std::uint8_t nearest = surface_label::unknown;
-      float greatest = 0;
-      std::uint8_t own = surface_label::foreground;
-      const float z = depth_m[x];
-      for (std::size_t k = 0; k < planes_.size(); ++k) {
-        const auto label = static_cast<std::uint8_t>(surface_label::first_plane + k);
-        if (inverse[k] > greatest) {
-          greatest = inverse[k];
-          nearest = label;
-        }
-        // (1/z - inverse) z is the difference in depth, relative to the plane's.
-        if (z > 0 && std::abs(1 - inverse[k] * z) * z <= 2 * tolerance_m(z)) own = label;
-        inverse[k] += slope[k];
+      // Along a row the inverse depth of a plane grows linearly.
+      const float start = planes_[k].inverse_depth(first.x(), first.y());
+      const float slope = planes_[k].inverse_depth(second.x(), second.y()) - start;
+      const auto label = static_cast<std::int32_t>(surface_label::first_plane + k);
+      for (int i = 0; i < count; ++i) {
+        inverse[i] = start + static_cast<float>(i) * slope;
+        const bool is_nearer = inverse[i] > greatest[i];
+        nearest[i] = is_nearer ? label : nearest[i];
+        greatest[i] = is_nearer ? inverse[i] : greatest[i];
       }
-      surface[x] = z > 0 ? own : nearest;
+      for (int i = 0; i < count; ++i) {
+        // (1/z - inverse) z is the difference in depth, relative to the plane's.
+        const float z = depth_m[x + i];
+        const bool is_on = std::abs(1 - inverse[i] * z) * z <= 2 * tolerance.at(z);
+        own[i] = is_on ? label : own[i];
+      }
     }
+    for (int i = 0; i < count; ++i) {
+      surface[x + i] = static_cast<std::uint8_t>(depth_m[x + i] > 0 ? own[i] : nearest[i]);
+    }
+    x += count;
   }
 }
 

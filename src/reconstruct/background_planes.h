@@ -23,6 +23,44 @@ struct BackgroundPlane {
   }
 };
 
+/// Points, channel by channel, with what each may be off by.
+class PlanePoints {
+ public:
+  std::vector<float> x_m, y_m, z_m, tolerance_m;
+
+  std::size_t size() const { return x_m.size(); }
+  Eigen::Vector3f operator[](std::size_t i) const { return {x_m[i], y_m[i], z_m[i]}; }
+  void clear() { keep(0); }
+  void add(const Eigen::Vector3f& point_m, float tolerance) {
+    x_m.push_back(point_m.x());
+    y_m.push_back(point_m.y());
+    z_m.push_back(point_m.z());
+    tolerance_m.push_back(tolerance);
+  }
+  /// Becomes every stride-th point of `all`.
+  void thin(const PlanePoints& all, std::size_t stride) {
+    clear();
+    for (std::size_t i = 0; i < all.size(); i += stride) add(all[i], all.tolerance_m[i]);
+  }
+  template <class Predicate>
+  void erase_if(const Predicate& predicate) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < size(); ++i) {
+      if (predicate((*this)[i], tolerance_m[i])) continue;
+      x_m[kept] = x_m[i];
+      y_m[kept] = y_m[i];
+      z_m[kept] = z_m[i];
+      tolerance_m[kept++] = tolerance_m[i];
+    }
+    keep(kept);
+  }
+
+ private:
+  void keep(std::size_t count) {
+    for (auto* values : {&x_m, &y_m, &z_m, &tolerance_m}) values->resize(count);
+  }
+};
+
 /// Walls, floors and tables: the planes that bound what is seen around the objects, and to which of
 /// them each pixel belongs. Where nothing was measured, such a plane is the best guess of what is
 /// there: it goes on behind whatever stands in front of it.
@@ -44,7 +82,7 @@ class BackgroundPlanes {
 
   int columns_ = 0;
   Image<Eigen::Vector2f> rays_;  ///< of every 32nd pixel
-  std::vector<Eigen::Vector3f> points_, rest_;
+  PlanePoints points_, rest_, some_, some_of_rest_;
   std::vector<BackgroundPlane> planes_;
 };
 
