@@ -1,3 +1,5 @@
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -46,24 +48,29 @@ class MappedCorrection : public ColorCorrector {
   }
 
  private:
+  /// Samples come camera by camera.
   void fit_maps(const Image<Bgr>& camera, const Mask& occlusion,
                 const std::vector<SceneSample>& samples) {
     std::fill(maps_.begin(), maps_.end(), ColorMap{});
-    for (std::size_t first = 0; first < samples.size();) {
-      const std::uint8_t source = samples[first].source;
-      pairs_.clear();
-      const auto last =
-          std::find_if(samples.begin() + static_cast<std::ptrdiff_t>(first), samples.end(),
-                       [&](const SceneSample& sample) { return sample.source != source; });
-      const auto end = static_cast<std::size_t>(last - samples.begin());
-      const std::size_t step = (end - first + most_pairs - 1) / most_pairs;
-      for (std::size_t i = first; i < end; i += step) add_pair(camera, occlusion, samples[i]);
-      first = end;
-      maps_[source] = fit_color_map(pairs_, model_, camera.bounds());
+    sources_.clear();
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      if (i == 0 || samples[i].source != samples[i - 1].source) sources_.push_back({i, i});
+      sources_.back().end = i + 1;
     }
+    if (pairs_.size() < sources_.size()) pairs_.resize(sources_.size());
+    oneapi::tbb::parallel_for(std::size_t{0}, sources_.size(), [&](std::size_t k) {
+      const auto [begin, end] = sources_[k];
+      pairs_[k].clear();
+      const std::size_t step = (end - begin + most_pairs - 1) / most_pairs;
+      for (std::size_t i = begin; i < end; i += step) {
+        add_pair(camera, occlusion, samples[i], pairs_[k]);
+      }
+      maps_[samples[begin].source] = fit_color_map(pairs_[k], model_, camera.bounds());
+    });
   }
 
-  void add_pair(const Image<Bgr>& camera, const Mask& occlusion, const SceneSample& sample) {
+  static void add_pair(const Image<Bgr>& camera, const Mask& occlusion, const SceneSample& sample,
+                       std::vector<ColorPair>& pairs) {
     constexpr int rim = even_color_reach_px;
     const int x = static_cast<int>(std::lrint(sample.pixel.x()));
     const int y = static_cast<int>(std::lrint(sample.pixel.y()));
@@ -80,16 +87,16 @@ class MappedCorrection : public ColorCorrector {
     const ColorPair pair{sample.pixel,
                          to_channels(sample.color),
                          {color.channels[0], color.channels[1], color.channels[2]}};
-    if (color.even && is_exposed(pair.rgbd) && is_exposed(pair.camera)) pairs_.push_back(pair);
+    if (color.even && is_exposed(pair.rgbd) && is_exposed(pair.camera)) pairs.push_back(pair);
   }
 
   /// What is left after mapping where the reconstruction reaches beyond the mask.
   void fit_membrane(const Image<Bgr>& camera, const Mask& occlusion,
                     const Reconstruction& reconstruction) {
     const Rect& region = reconstruction.region;
-    // A quarter of the pixels says as much as all of them.
-    for (int y = region.y; y < region.bottom(); y += 2) {
-      for (int x = region.x; x < region.right(); x += 2) {
+    constexpr int step = SoftMembrane::step;
+    for (int y = region.y; y < region.bottom(); y += step) {
+      for (int x = region.x; x < region.right(); x += step) {
         const std::uint8_t source = reconstruction.source(x, y);
         if (occlusion(x, y) != 0 || source == 0) continue;
         const Bgra& color = reconstruction.color(x, y);
@@ -103,7 +110,12 @@ class MappedCorrection : public ColorCorrector {
 
   ColorMapModel model_;
   bool with_membrane_;
-  std::vector<ColorPair> pairs_;
+  /// Samples [begin, end) of one RGB-D camera.
+  struct Source {
+    std::size_t begin, end;
+  };
+  std::vector<Source> sources_;
+  std::vector<std::vector<ColorPair>> pairs_;                ///< of each source
   std::vector<ColorMap> maps_ = std::vector<ColorMap>(256);  ///< by Reconstruction::source
   SoftMembrane membrane_;
   std::vector<float> corrections_[2];  ///< of the row that each thread is at

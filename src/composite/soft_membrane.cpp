@@ -26,10 +26,10 @@ void SoftMembrane::begin(const Rect& region) {
 }
 
 void SoftMembrane::add(int x, int y, const Eigen::Array3f& difference) {
-  constexpr float per_pixel = full_weight / (cell * cell);
+  constexpr float each = full_weight * step * step / (cell * cell);
   const Eigen::Array3f relative = difference / largest_difference;
   if ((relative.abs() >= 1).any()) return;
-  const float weight = per_pixel * (1 - relative.square()).square().prod();
+  const float weight = each * (1 - relative.square()).square().prod();
   // The nearest grid point.
   const int column = (x - region_.x + cell / 2) / cell;
   const int row = (y - region_.y + cell / 2) / cell;
@@ -75,8 +75,8 @@ void SoftMembrane::row(int y, float* correction) const {
     const int count = std::min(cell, region_.width - column * cell);
     for (int c = 0; c < 3; ++c) {
       float* to = correction + c * region_.width + column * cell;
-      const float step = (right[c] - left[c]) / cell;
-      for (int i = 0; i < count; ++i) to[i] = left[c] + static_cast<float>(i) * step;
+      const float slope = (right[c] - left[c]) / cell;
+      for (int i = 0; i < count; ++i) to[i] = left[c] + static_cast<float>(i) * slope;
     }
     left = right;
   }

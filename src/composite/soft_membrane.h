@@ -16,6 +16,7 @@ namespace diminish {
 class SoftMembrane {
  public:
   static constexpr int cell = 16;  ///< pixels
+  static constexpr int step = 4;   ///< differences are wanted of every `step`-th row and column
 
   void begin(const Rect& region);
   /// difference: in levels.

@@ -19,9 +19,10 @@ std::vector<float> row_of(const SoftMembrane& membrane, int y) {
 /// Differences of 6 levels, with noise, in a strip at the left.
 void add_strip(SoftMembrane& membrane) {
   std::mt19937 random(2);
-  std::normal_distribution<float> noise(0, 2);
-  for (int y = region.y; y < region.bottom(); ++y) {
-    for (int x = region.x; x < region.x + 24; ++x) {
+  std::normal_distribution<float> noise(0, 1);
+  constexpr int step = SoftMembrane::step;
+  for (int y = region.y; y < region.bottom(); y += step) {
+    for (int x = region.x; x < region.x + 24; x += step) {
       membrane.add(x, y, {6 + noise(random), -3 + noise(random), noise(random)});
     }
   }

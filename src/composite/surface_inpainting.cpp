@@ -1,4 +1,5 @@
 #include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <array>
@@ -31,9 +32,12 @@ class SurfaceInpainting : public Inpainter {
     const Rect box = bounding_box(holes.missing);
     if (box.empty()) return true;
     window_ = intersect(grow(box, 1), picture.bounds());
-    plane_colors_.collect(holes.occlusion, holes.reconstruction, picture);
-    collect_states(holes);
-    for (std::size_t k = 0; k < planes; ++k) give_up_holes_in_foreground(k);
+    oneapi::tbb::parallel_invoke(
+        [&] { plane_colors_.collect(holes.occlusion, holes.reconstruction, picture); },
+        [&] {
+          collect_states(holes);
+          for (std::size_t k = 0; k < planes; ++k) give_up_holes_in_foreground(k);
+        });
     // They do not depend on each other: what one fills no other takes for known.
     std::array<bool, most_labels> filled{};
     for (std::size_t k = label_count; k < most_labels; ++k) filled[k] = boxes_[k].empty();
