@@ -51,8 +51,9 @@ TEST(VectorTargets, AgreeOnWholeFrames) {
         worst = std::max({worst, std::abs(a.b - b.b), std::abs(a.g - b.g), std::abs(a.r - b.r)});
       }
     }
-    // A seen pixel may be rounded otherwise, and then what is filled from it, once more.
-    EXPECT_LE(worst, 2);
+    // A seen pixel may be rounded otherwise, and then what is filled from it, once more; where a
+    // shadow is lifted, by a multiple.
+    EXPECT_LE(worst, 4);
     ++targets;
   }
   EXPECT_GE(targets, 1);

@@ -16,6 +16,8 @@ struct Options {
   bool remove_flying = true;
   bool remove_hidden = true;
   bool smooth_depth = true;
+  bool lift_shadows = true;
+  bool remove_shadows = false;
   double discontinuity_threshold_m = 0.05;
   double discontinuity_reach_m = 2;
   double depth_agreement_m = 0.03;
@@ -68,6 +70,12 @@ void for_each_option(AnyOptions& options, Visit&& visit) {
   visit(
       OptionInfo{"smooth_depth", "", "Average depth over neighbouring pixels of the same surface"},
       options.smooth_depth);
+  visit(OptionInfo{"lift_shadows", "",
+                   "Show what the objects hide without the shadows that they cast on it"},
+        options.lift_shadows);
+  visit(OptionInfo{"remove_shadows", "",
+                   "Take away the shadows that the objects cast outside their masks, too"},
+        options.remove_shadows);
   visit(OptionInfo{"discontinuity_threshold_m", "metres",
                    "Depth pixels further apart than this are not joined by a triangle (SDCT)", 1e-4,
                    100},

@@ -37,6 +37,12 @@ struct Reconstruction {
   /// In `region`: see surface_label. Where nothing was drawn, the plane that would be seen there.
   /// Empty where planes were not looked for.
   Image<std::uint8_t> surface;
+  /// In `region`: the share of the light on the planes that the objects to remove leave, 255: all.
+  /// Empty where shadows were not looked for.
+  Image<Bgr> light;
+  /// Of the objects to remove, in the colour camera's frame, as far as RGB-D cameras see them.
+  /// Thin.
+  std::vector<Eigen::Vector3f> object_points_m;
   /// Thinly over the whole picture, and not only in `region`: what the RGB-D cameras see of
   /// surfaces, away from objects to remove and from depth edges. A few thousand.
   std::vector<SceneSample> samples;

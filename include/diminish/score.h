@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <map>
@@ -23,12 +24,21 @@ struct PoseError {
   double rotation_deg = 0;
 };
 
+/// What errors come from: the object was not covered; no camera saw the place; the picture is
+/// shifted; edges are not where they should be; neighbouring pixels are off by the same colour;
+/// what is left.
+inline constexpr std::array<const char*, 6> error_causes{"mask",  "missing", "pose",
+                                                         "edges", "color",   "texture"};
+/// Shares of the squared error, by cause; they sum to 1.
+using ErrorBudget = std::array<double, error_causes.size()>;
+
 /// One frame against the truth. What cannot be known (no such pixels, no truth) is absent.
 struct FrameScore {
   std::string name;
   std::optional<Quality> inside;   ///< inside the true mask, grown by 3 pixels
   std::optional<Quality> valid;    ///< of these, pixels that an RGB-D camera saw
   std::optional<Quality> missing;  ///< of these, pixels that none saw
+  std::optional<ErrorBudget> budget;
   std::optional<double> coverage;  ///< the share of the run's mask that an RGB-D camera saw
   /// Intersection over union of the run's mask and the true mask grown by the run's margin.
   std::optional<double> mask_iou;
@@ -62,8 +72,8 @@ Score score_run(const std::filesystem::path& recording, const std::filesystem::p
 std::string score_table(const Score& score);
 std::string score_json(const Score& score);
 
-/// Writes run/score/NAME.png: input, result, truth and four times the error, side by side, cut to
-/// the object's surroundings.
+/// Writes run/score/NAME.png, cut to the object's surroundings: input, result, truth; four times
+/// the error, provenance, and the causes of the error, each in its colour.
 void write_score_pictures(const std::filesystem::path& recording, const std::filesystem::path& run);
 
 }  // namespace diminish

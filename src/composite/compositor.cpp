@@ -90,6 +90,11 @@ void Compositor::composite(const Image<Bgr>& camera, const OcclusionMasks& masks
     corrector(options.color_correct)
         .correct(camera, masks.color, result.reconstruction, result.picture);
   }
+  const bool has_shadows = !result.reconstruction.light.empty();
+  if (has_shadows) {
+    const ScopedTimer timer(milliseconds, Stage::color_correction);
+    shadow_lifting_.lift(result.reconstruction, result.picture);
+  }
   if (result.report.missing_pixels > 0) {
     const ScopedTimer timer(milliseconds, Stage::inpainting);
     if (!inpainter(options.inpaint)
@@ -97,6 +102,10 @@ void Compositor::composite(const Image<Bgr>& camera, const OcclusionMasks& masks
       std::replace(result.provenance.begin(), result.provenance.end(), provenance::inpainted,
                    provenance::unknown);
     }
+  }
+  if (has_shadows && !options.remove_shadows) {
+    const ScopedTimer timer(milliseconds, Stage::color_correction);
+    shadow_lifting_.restore_outside(camera, masks.color, result.reconstruction, result.picture);
   }
   if (result.report.mask_pixels > 0) {
     const ScopedTimer timer(milliseconds, Stage::compositing);

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "composite/shadow_lifting.h"
 #include "diminish/color_corrector.h"
 #include "diminish/diminished_frame.h"
 #include "diminish/inpainter.h"
@@ -29,6 +30,7 @@ class Compositor {
   std::map<std::string, std::unique_ptr<ColorCorrector>> correctors_;
   std::map<std::string, std::unique_ptr<Inpainter>> inpainters_;
   std::map<std::string, std::unique_ptr<ViewMode>> view_modes_;
+  ShadowLifting shadow_lifting_;
   Mask missing_;
   Rect missing_box_;
 };

@@ -14,6 +14,7 @@
 #include "pose/camera_poses.h"
 #include "pose/pose_refinement.h"
 #include "reconstruct/background_planes.h"
+#include "reconstruct/cast_shadows.h"
 #include "reconstruct/depth_cleaner.h"
 #include "reconstruct/scene_sampler.h"
 
@@ -53,7 +54,8 @@ struct Pipeline::Implementation {
         reconstructor(Registry<Reconstructor>::get("cpu")(rig)),
         sampler(rig),
         pose_refinement(rig.color),
-        background_planes(rig.color) {
+        background_planes(rig.color),
+        cast_shadows(rig.color) {
     for (const RgbdCamera& camera : rig.rgbd) {
       rgbd_color_lenses.emplace_back(camera.color);
       depth_cleaners.emplace_back(camera);
@@ -91,22 +93,42 @@ struct Pipeline::Implementation {
 
   void reconstruct(const FrameSet& frame, const Rect& objects, Poses& poses,
                    Reconstruction& reconstruction) {
-    const Rect region = options.whole_view
-                            ? rig.color.bounds()
-                            : intersect(grow(objects, options.surroundings_px), rig.color.bounds());
-    sampler.sample(frame, poses, masks, region, reconstruction.samples);
+    const Rect whole = rig.color.bounds();
+    Rect region =
+        options.whole_view ? whole : intersect(grow(objects, options.surroundings_px), whole);
+    sampler.sample(frame, poses, masks, options.remove_shadows ? whole : region, reconstruction);
     oneapi::tbb::parallel_invoke(
         [&] {
-          if (!options.refine_poses) return;
-          pose_refinement.refine(frame, masks.color, reconstruction.samples, poses);
+          if (options.refine_poses) {
+            pose_refinement.refine(frame, masks.color, reconstruction, poses);
+          }
         },
         [&] { clean_depths(frame); });
-    oneapi::tbb::parallel_invoke([&] { background_planes.find(objects, reconstruction.samples); },
-                                 [&] {
-                                   reconstructor->reconstruct(frame, depths, poses, masks, region,
-                                                              options, reconstruction);
-                                 });
+    const auto draw = [&] {
+      reconstructor->reconstruct(frame, depths, poses, masks, region, options, reconstruction);
+    };
+    if (options.remove_shadows) {
+      find_background(objects, reconstruction);
+      region = join(region, cast_shadows.bounds());
+      draw();
+    } else {
+      oneapi::tbb::parallel_invoke([&] { find_background(objects, reconstruction); }, draw);
+    }
     background_planes.label(reconstruction);
+    if (cast_shadows.any()) {
+      cast_shadows.shade(reconstruction);
+    } else {
+      reconstruction.light.resize(0, 0);
+    }
+  }
+
+  void find_background(const Rect& objects, const Reconstruction& reconstruction) {
+    background_planes.find(objects, reconstruction.samples);
+    cast_shadows.clear();
+    if (options.lift_shadows || options.remove_shadows) {
+      cast_shadows.find(background_planes.planes(), reconstruction.samples,
+                        reconstruction.object_points_m);
+    }
   }
 
   static void begin(const FrameSet& frame, DiminishedFrame& result) {
@@ -137,6 +159,7 @@ struct Pipeline::Implementation {
   SceneSampler sampler;
   PoseRefinement pose_refinement;
   BackgroundPlanes background_planes;
+  CastShadows cast_shadows;
   Compositor compositor;
   OcclusionMasks masks;
 };

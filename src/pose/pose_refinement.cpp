@@ -174,7 +174,8 @@ float PoseRefinement::weigh() {
 }
 
 bool PoseRefinement::refine(const FrameSet& frame, const Mask& occlusion,
-                            std::vector<SceneSample>& samples, Poses& poses) {
+                            Reconstruction& reconstruction, Poses& poses) {
+  const std::vector<SceneSample>& samples = reconstruction.samples;
   const int smallest_side = 8 * shrinkage_;
   if (std::min(frame.color.width(), frame.color.height()) < smallest_side) return false;
   if (samples.size() < fewest_points) return false;
@@ -227,11 +228,11 @@ bool PoseRefinement::refine(const FrameSet& frame, const Mask& occlusion,
       total.tail<3>().norm() > largest_deviations * rotation_deviation) {
     return false;
   }
-  apply(correction, samples, poses);
+  apply(correction, reconstruction, poses);
   return true;
 }
 
-void PoseRefinement::apply(const RigidTransform& correction, std::vector<SceneSample>& samples,
+void PoseRefinement::apply(const RigidTransform& correction, Reconstruction& reconstruction,
                            Poses& poses) const {
   for (auto& pose : poses.color_from_depth) {
     if (pose) pose = correction * *pose;
@@ -239,7 +240,10 @@ void PoseRefinement::apply(const RigidTransform& correction, std::vector<SceneSa
   if (poses.color_from_world) poses.color_from_world = correction * *poses.color_from_world;
   const Eigen::Matrix3f rotation = correction.rotation.cast<float>();
   const Eigen::Vector3f translation = correction.translation.cast<float>();
-  for (SceneSample& sample : samples) {
+  for (Eigen::Vector3f& point_m : reconstruction.object_points_m) {
+    point_m = rotation * point_m + translation;
+  }
+  for (SceneSample& sample : reconstruction.samples) {
     const Eigen::Vector3f p = rotation * sample.point_m + translation;
     sample.point_m = p;
     if (!(p.z() > 0) ||

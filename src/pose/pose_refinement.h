@@ -23,9 +23,10 @@ class PoseRefinement {
  public:
   explicit PoseRefinement(const Intrinsics& color);
 
-  /// Moves `samples` and the poses. Returns whether the correction was taken: it must explain the
-  /// picture better, and be small. Cost: an eighth of the picture's pixels, and 0.3 us a sample.
-  bool refine(const FrameSet& frame, const Mask& occlusion, std::vector<SceneSample>& samples,
+  /// Moves the reconstruction's samples and object points, and the poses. Returns whether the
+  /// correction was taken: it must explain the picture better, and be small. Cost: an eighth of the
+  /// picture's pixels, and 0.3 us a sample.
+  bool refine(const FrameSet& frame, const Mask& occlusion, Reconstruction& reconstruction,
               Poses& poses);
 
  private:
@@ -53,8 +54,7 @@ class PoseRefinement {
   void fit_lines();
   /// The residuals and their weights, by the lines; returns their scale.
   float weigh();
-  void apply(const RigidTransform& correction, std::vector<SceneSample>& samples,
-             Poses& poses) const;
+  void apply(const RigidTransform& correction, Reconstruction& reconstruction, Poses& poses) const;
 
   Intrinsics color_;
   Projection projection_;

@@ -43,9 +43,10 @@ class PoseRefinementTest : public ::testing::Test {
     return sum / count;
   }
   bool refine(Poses& poses) {
-    std::vector<SceneSample> samples;
-    SceneSampler(frame.rig).sample(frame.frame, poses, masks, frame.rig.color.bounds(), samples);
-    return PoseRefinement(frame.rig.color).refine(frame.frame, masks.color, samples, poses);
+    Reconstruction reconstruction;
+    SceneSampler(frame.rig).sample(frame.frame, poses, masks, frame.rig.color.bounds(),
+                                   reconstruction);
+    return PoseRefinement(frame.rig.color).refine(frame.frame, masks.color, reconstruction, poses);
   }
 
   AnalyticFrame frame;

@@ -11,7 +11,6 @@
 namespace diminish {
 namespace {
 
-constexpr int ray_step = 32;
 constexpr int most_planes = 3;
 constexpr int hypotheses = 160;
 constexpr std::size_t fewest_points = 60;
@@ -80,16 +79,6 @@ int count_behind(const BackgroundPlane& plane, const PlanePoints& points) {
 }
 
 }  // namespace
-
-BackgroundPlanes::BackgroundPlanes(const Intrinsics& color) {
-  const Lens lens(color);
-  rays_.resize(color.width / ray_step + 2, color.height / ray_step + 2);
-  for (int row = 0; row < rays_.height(); ++row) {
-    for (int column = 0; column < rays_.width(); ++column) {
-      rays_(column, row) = lens.undistort({column * ray_step, row * ray_step}).cast<float>();
-    }
-  }
-}
 
 void BackgroundPlanes::find(const Rect& objects, const std::vector<SceneSample>& samples) {
   choose_points(objects, samples);
@@ -161,27 +150,19 @@ void BackgroundPlanes::label_row(int y, Reconstruction& reconstruction) const {
   const Rect& region = reconstruction.region;
   std::uint8_t* surface = reconstruction.surface.row(y);
   const float* depth_m = reconstruction.depth_m.row(y);
-  const int ray_row = y / ray_step;
-  const float below = static_cast<float>(y % ray_step) / ray_step;
-  const auto ray_at = [&](int column) -> Eigen::Vector2f {
-    return (1 - below) * rays_(column, ray_row) + below * rays_(column, ray_row + 1);
-  };
   for (int x = region.x; x < region.right();) {
-    const int column = x / ray_step;
-    const int count = std::min(region.right(), (column + 1) * ray_step) - x;
-    const Eigen::Vector2f left = ray_at(column);
-    const Eigen::Vector2f step = (ray_at(column + 1) - left) / ray_step;
-    const Eigen::Vector2f first = left + static_cast<float>(x % ray_step) * step;
-    const Eigen::Vector2f second = first + step;
+    const RayGrid::Segment rays = rays_.segment(x, y, region.right());
+    const int count = rays.count;
+    const Eigen::Vector2f second = rays.first + rays.slope;
     // By pixel; loops without branches, which compilers turn into vector instructions.
-    float inverse[ray_step];
-    float greatest[ray_step] = {};
-    std::int32_t nearest[ray_step] = {};
-    std::int32_t own[ray_step];
+    float inverse[RayGrid::step];
+    float greatest[RayGrid::step] = {};
+    std::int32_t nearest[RayGrid::step] = {};
+    std::int32_t own[RayGrid::step];
     std::fill(std::begin(own), std::end(own), surface_label::foreground);
     for (std::size_t k = 0; k < planes_.size(); ++k) {
       // Along a row the inverse depth of a plane grows linearly.
-      const float start = planes_[k].inverse_depth(first.x(), first.y());
+      const float start = planes_[k].inverse_depth(rays.first.x(), rays.first.y());
       const float slope = planes_[k].inverse_depth(second.x(), second.y()) - start;
       const auto label = static_cast<std::int32_t>(surface_label::first_plane + k);
       for (int i = 0; i < count; ++i) {

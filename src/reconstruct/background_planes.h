@@ -6,6 +6,7 @@
 #include "diminish/image.h"
 #include "diminish/intrinsics.h"
 #include "diminish/reconstruction.h"
+#include "geometry/ray_grid.h"
 
 namespace diminish {
 
@@ -66,7 +67,7 @@ class PlanePoints {
 /// there: it goes on behind whatever stands in front of it.
 class BackgroundPlanes {
  public:
-  explicit BackgroundPlanes(const Intrinsics& color);
+  explicit BackgroundPlanes(const Intrinsics& color) : rays_(color) {}
 
   /// objects: where they are in the colour camera's picture. Deterministic.
   void find(const Rect& objects, const std::vector<SceneSample>& samples);
@@ -80,8 +81,7 @@ class BackgroundPlanes {
   bool next_plane(BackgroundPlane& plane);
   void label_row(int y, Reconstruction& reconstruction) const;
 
-  int columns_ = 0;
-  Image<Eigen::Vector2f> rays_;  ///< of every 32nd pixel
+  RayGrid rays_;
   PlanePoints points_, rest_, some_, some_of_rest_;
   std::vector<BackgroundPlane> planes_;
 };

@@ -17,11 +17,12 @@ class OnAnalyticScene : public ::testing::Test {
  protected:
   OnAnalyticScene() : frame(scene, {eye}) {
     SceneSampler(frame.rig).sample(frame.frame, frame.poses, testing::empty_masks(frame.rig),
-                                   frame.rig.color.bounds(), samples);
+                                   frame.rig.color.bounds(), reconstruction);
   }
   AnalyticScene scene;
   AnalyticFrame frame;
-  std::vector<SceneSample> samples;
+  Reconstruction reconstruction;
+  const std::vector<SceneSample>& samples = reconstruction.samples;
 };
 
 // Points, pixels and colours against the ray caster.
@@ -59,7 +60,6 @@ TEST_F(OnAnalyticScene, FindsTheWallAndLabelsWhatLiesOnIt) {
       planes.planes()[0].height_m((color_from_world * Eigen::Vector3d(0.1, 0.2, 0)).cast<float>()),
       0, 0.002);
 
-  Reconstruction reconstruction;
   reconstruction.region = frame.rig.color.bounds();
   reconstruction.source.resize(320, 256, 1);
   reconstruction.depth_m.resize(320, 256);
@@ -84,7 +84,6 @@ TEST_F(OnAnalyticScene, WithoutSamplesThereAreNoPlanes) {
   BackgroundPlanes planes(frame.rig.color);
   planes.find(frame.rig.color.bounds(), {});
   EXPECT_TRUE(planes.planes().empty());
-  Reconstruction reconstruction;
   reconstruction.region = {0, 0, 40, 30};
   reconstruction.source.resize(320, 256, 0);
   reconstruction.depth_m.resize(320, 256, 0.F);

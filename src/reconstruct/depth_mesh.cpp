@@ -53,6 +53,15 @@ MeshVertex DepthMesh::vertex(const Frame& frame, int column, int row) const {
   return {to_subpixels(px), to_subpixels(py), 1.F / color_z, u, v, z};
 }
 
+Eigen::Vector3f DepthMesh::point_m(const Frame& frame, int column, int row) const {
+  const float z =
+      static_cast<float>(frame.depth(column, row)) * static_cast<float>(camera_.depth_unit_m);
+  const float x = rays_(column, row).x() * z;
+  const float y = rays_(column, row).y() * z;
+  return {frame.to_color.apply(0, x, y, z), frame.to_color.apply(1, x, y, z),
+          frame.to_color.apply(2, x, y, z)};
+}
+
 void DepthMesh::compute(const Frame& frame, Image<MeshVertex>& vertices) const {
   vertices.resize(frame.depth.width(), frame.depth.height());
   for (int row = 0; row < vertices.height(); ++row) {

@@ -40,8 +40,8 @@ class DepthMesh {
   /// Of every depth pixel.
   void compute(const Frame& frame, Image<MeshVertex>& vertices) const;
 
-  /// The ray (x, y, 1) of a depth pixel, in the depth sensor's frame.
-  const Eigen::Vector2f& ray(int column, int row) const { return rays_(column, row); }
+  /// What a depth pixel measures, in the colour camera's frame, masked or not.
+  Eigen::Vector3f point_m(const Frame& frame, int column, int row) const;
 
  private:
   RgbdCamera camera_;

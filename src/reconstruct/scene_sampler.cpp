@@ -33,15 +33,16 @@ bool on_surface(const Image<std::uint16_t>& depth, int column, int row) {
 
 SceneSampler::SceneSampler(const Rig& rig) {
   for (const RgbdCamera& camera : rig.rgbd) {
-    by_camera_.push_back({DepthMesh(camera, rig.color), {}, {}});
+    by_camera_.push_back({DepthMesh(camera, rig.color), {}, {}, {}});
   }
 }
 
 void SceneSampler::sample(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks,
-                          const Rect& region, std::vector<SceneSample>& samples) {
+                          const Rect& region, Reconstruction& reconstruction) {
   oneapi::tbb::parallel_for(std::size_t{0}, by_camera_.size(), [&](std::size_t k) {
     Camera& camera = by_camera_[k];
     camera.samples.clear();
+    camera.object_points_m.clear();
     camera.part = {};
     if (!frame.rgbd[k].available() || !poses.color_from_depth[k]) return;
     sample_camera(frame.rgbd[k],
@@ -49,9 +50,13 @@ void SceneSampler::sample(const FrameSet& frame, const Poses& poses, const Occlu
                    FloatTransform(*poses.color_from_depth[k])},
                   region, static_cast<std::uint8_t>(k + 1), camera);
   });
+  std::vector<SceneSample>& samples = reconstruction.samples;
+  std::vector<Eigen::Vector3f>& points = reconstruction.object_points_m;
   samples.clear();
+  points.clear();
   for (const Camera& camera : by_camera_) {
     samples.insert(samples.end(), camera.samples.begin(), camera.samples.end());
+    points.insert(points.end(), camera.object_points_m.begin(), camera.object_points_m.end());
   }
 }
 
@@ -67,6 +72,10 @@ void SceneSampler::sample_camera(const RgbdFrame& images, const DepthMesh::Frame
   const Rect around = grow(region, margin);
   for (int row = reach + step / 2; row < height - reach; row += step) {
     for (int column = reach + step / 2; column < width - reach; column += step) {
+      if (frame.depth_mask(column, row) != 0 && on_surface(images.depth, column, row)) {
+        camera.object_points_m.push_back(camera.mesh.point_m(frame, column, row));
+        continue;
+      }
       const MeshVertex vertex = camera.mesh.vertex(frame, column, row);
       if (!vertex.valid()) continue;
       SceneSample sample;
@@ -86,12 +95,7 @@ void SceneSampler::sample_camera(const RgbdFrame& images, const DepthMesh::Frame
       const auto level = [&](int c) {
         return static_cast<std::uint8_t>(std::lrint(color.channels[c]));
       };
-      const Eigen::Vector2f& ray = camera.mesh.ray(column, row);
-      const float x = ray.x() * vertex.depth_m;
-      const float y = ray.y() * vertex.depth_m;
-      sample.point_m = {frame.to_color.apply(0, x, y, vertex.depth_m),
-                        frame.to_color.apply(1, x, y, vertex.depth_m),
-                        frame.to_color.apply(2, x, y, vertex.depth_m)};
+      sample.point_m = camera.mesh.point_m(frame, column, row);
       sample.texture = {vertex.u, vertex.v};
       sample.color = {level(0), level(1), level(2)};
       sample.source = source;

@@ -20,7 +20,7 @@ class SceneSampler {
   /// masks: grown already. region: of the colour camera's picture, to be drawn later. `samples` is
   /// sorted by `source`. Cost: about 0.1 us a sample.
   void sample(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks,
-              const Rect& region, std::vector<SceneSample>& samples);
+              const Rect& region, Reconstruction& reconstruction);
 
   /// The part of an RGB-D camera's depth image that shows the region, generously.
   const Rect& part(std::size_t camera) const { return by_camera_[camera].part; }
@@ -29,6 +29,7 @@ class SceneSampler {
   struct Camera {
     DepthMesh mesh;
     std::vector<SceneSample> samples;
+    std::vector<Eigen::Vector3f> object_points_m;
     Rect part;
   };
   void sample_camera(const RgbdFrame& images, const DepthMesh::Frame& frame, const Rect& region,

@@ -5,6 +5,8 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "diminish/diminished_frame.h"
+
 namespace diminish {
 
 double psnr_db(double mean_squared_error) {
@@ -48,6 +50,32 @@ std::optional<Quality> quality(const cv::Mat& picture, const cv::Mat& truth, con
   const SquaredError error = squared_error(picture, truth, region);
   if (error.count == 0) return std::nullopt;
   return Quality{psnr_db(error.sum / static_cast<double>(error.count)), cv::mean(ssim, region)[0]};
+}
+
+cv::Mat grow(const cv::Mat& mask, int margin_px) {
+  if (margin_px == 0) return mask;
+  const cv::Size size(2 * margin_px + 1, 2 * margin_px + 1);
+  cv::Mat disc(size, CV_8U);
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      const int dx = x - margin_px;
+      const int dy = y - margin_px;
+      disc.at<std::uint8_t>(y, x) = dx * dx + dy * dy <= margin_px * margin_px ? 1 : 0;
+    }
+  }
+  cv::Mat grown;
+  cv::dilate(mask, grown, disc);
+  return grown;
+}
+
+cv::Mat scored_region(const cv::Mat& true_mask, const cv::Mat& mask) {
+  constexpr int margin_px = 3;
+  return grow(true_mask.empty() ? mask : true_mask, margin_px);
+}
+
+cv::Mat seen_pixels(const cv::Mat& origin, const cv::Mat& mask) {
+  if (origin.empty()) return cv::Mat::zeros(mask.size(), CV_8U);
+  return (origin >= provenance::first_rgbd) & (origin < provenance::inpainted);
 }
 
 }  // namespace diminish

@@ -24,4 +24,11 @@ cv::Mat ssim_map(const cv::Mat& picture, const cv::Mat& truth);
 std::optional<Quality> quality(const cv::Mat& picture, const cv::Mat& truth, const cv::Mat& ssim,
                                const cv::Mat& region);
 
+/// `mask`, grown by a disc.
+cv::Mat grow(const cv::Mat& mask, int margin_px);
+/// Where errors count: the true mask, or without one the run's, grown by 3 pixels.
+cv::Mat scored_region(const cv::Mat& true_mask, const cv::Mat& mask);
+/// 255 where an RGB-D camera saw the pixel. origin: provenance values; empty: nowhere.
+cv::Mat seen_pixels(const cv::Mat& origin, const cv::Mat& mask);
+
 }  // namespace diminish

@@ -178,7 +178,7 @@ cv::Mat RunFolder::mask(const std::string& frame) const {
 std::optional<RunFolder::ObjectPictures> RunFolder::object_pictures(
     const std::string& frame) const {
   constexpr int surroundings_px = 40;
-  const ObjectPictures whole{input(frame), result(frame), truth(frame)};
+  const ObjectPictures whole{{}, input(frame), result(frame), truth(frame)};
   const cv::Mat object = mask(frame);
   if (whole.input.empty() || whole.result.empty() || whole.truth.empty() || object.empty()) {
     return std::nullopt;
@@ -189,7 +189,7 @@ std::optional<RunFolder::ObjectPictures> RunFolder::object_pictures(
   part = cv::Rect(part.x - surroundings_px, part.y - surroundings_px,
                   part.width + 2 * surroundings_px, part.height + 2 * surroundings_px) &
          bounds;
-  return ObjectPictures{whole.input(part), whole.result(part), whole.truth(part)};
+  return ObjectPictures{part, whole.input(part), whole.result(part), whole.truth(part)};
 }
 
 cv::Mat RunFolder::provenance(const std::string& frame) const {

@@ -33,6 +33,7 @@ class RunFolder {
 
   /// The surroundings of the object, cut out of a frame's pictures.
   struct ObjectPictures {
+    cv::Rect part;
     cv::Mat input, result, truth;
   };
   /// Nothing where a picture or the mask is missing.

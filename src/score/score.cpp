@@ -8,29 +8,12 @@
 
 #include "diminish/diminished_frame.h"
 #include "diminish/error.h"
+#include "score/error_budget.h"
 #include "score/image_quality.h"
 #include "score/run_folder.h"
 
 namespace diminish {
 namespace {
-
-constexpr int region_margin_px = 3;
-
-cv::Mat grow(const cv::Mat& mask, int margin_px) {
-  if (margin_px == 0) return mask;
-  const cv::Size size(2 * margin_px + 1, 2 * margin_px + 1);
-  cv::Mat disc(size, CV_8U);
-  for (int y = 0; y < size.height; ++y) {
-    for (int x = 0; x < size.width; ++x) {
-      const int dx = x - margin_px;
-      const int dy = y - margin_px;
-      disc.at<std::uint8_t>(y, x) = dx * dx + dy * dy <= margin_px * margin_px ? 1 : 0;
-    }
-  }
-  cv::Mat grown;
-  cv::dilate(mask, grown, disc);
-  return grown;
-}
 
 double ratio(const cv::Mat& part, const cv::Mat& whole) {
   return static_cast<double>(cv::countNonZero(part)) / static_cast<double>(cv::countNonZero(whole));
@@ -96,6 +79,14 @@ FrameScore mean_score(const std::vector<FrameScore>& frames) {
   mean.coverage = mean_of(frames, [](const FrameScore& frame) { return frame.coverage; });
   mean.mask_iou = mean_of(frames, [](const FrameScore& frame) { return frame.mask_iou; });
   mean.mask_recall = mean_of(frames, [](const FrameScore& frame) { return frame.mask_recall; });
+  for (std::size_t i = 0; i < error_causes.size(); ++i) {
+    const auto share = mean_of(frames, [&](const FrameScore& frame) {
+      return frame.budget ? std::optional((*frame.budget)[i]) : std::nullopt;
+    });
+    if (!share) break;
+    if (!mean.budget) mean.budget.emplace();
+    (*mean.budget)[i] = *share;
+  }
   for (const FrameScore& frame : frames) {
     if (frame.changed_outside) {
       mean.changed_outside = mean.changed_outside.value_or(0) + *frame.changed_outside;
@@ -153,9 +144,7 @@ Score score_run(const std::filesystem::path& recording, const std::filesystem::p
     const cv::Mat provenance = folder.provenance(name);
     expect_same_size(mask, result, (run / "mask" / (name + ".png")).string());
     expect_same_size(provenance, result, (run / "provenance" / (name + ".png")).string());
-    const cv::Mat seen = provenance.empty() ? cv::Mat(cv::Mat::zeros(mask.size(), CV_8U))
-                                            : cv::Mat((provenance >= provenance::first_rgbd) &
-                                                      (provenance < provenance::inpainted));
+    const cv::Mat seen = seen_pixels(provenance, mask);
     if (cv::countNonZero(mask) > 0) frame.coverage = ratio(seen & mask, mask);
     if (const cv::Mat input = folder.input(name); !input.empty()) {
       expect_same_size(input, result, what);
@@ -170,11 +159,12 @@ Score score_run(const std::filesystem::path& recording, const std::filesystem::p
     }
     Residual residual;
     if (!truth.empty()) {
-      const cv::Mat region = grow(true_mask.empty() ? mask : true_mask, region_margin_px);
+      const cv::Mat region = scored_region(true_mask, mask);
       const cv::Mat ssim = ssim_map(result, truth);
       frame.inside = quality(result, truth, ssim, region);
       frame.valid = quality(result, truth, ssim, region & seen);
       frame.missing = quality(result, truth, ssim, region & mask & ~seen);
+      frame.budget = find_error_causes({result, truth, region, mask, seen}).budget;
       const SquaredError error = squared_error(result, truth, region);
       pooled.sum += error.sum;
       pooled.count += error.count;

@@ -1,10 +1,16 @@
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <numeric>
 #include <opencv2/imgproc.hpp>
 #include <utility>
 #include <vector>
 
 #include "diminish/score.h"
+#include "score/error_budget.h"
+#include "score/image_quality.h"
 #include "score/run_folder.h"
+#include "sink/palette.h"
 #include "sink/partial_file.h"
 
 namespace diminish {
@@ -25,6 +31,34 @@ cv::Mat make_panel(const cv::Mat& picture, const char* caption) {
   return panel;
 }
 
+/// The provenance's values in the colours of its palette.
+cv::Mat in_colors(const cv::Mat& provenance, cv::Size size) {
+  cv::Mat picture = cv::Mat::zeros(size, CV_8UC3);
+  for (int y = 0; y < provenance.rows; ++y) {
+    for (int x = 0; x < provenance.cols; ++x) {
+      const Bgr& color = provenance_palette()[provenance.at<std::uint8_t>(y, x)];
+      picture.at<cv::Vec3b>(y, x) = {color.b, color.g, color.r};
+    }
+  }
+  return picture;
+}
+
+/// The three greatest shares.
+std::string describe(const ErrorCauses& causes) {
+  if (!causes.budget) return "no error";
+  std::vector<std::size_t> order(error_causes.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return (*causes.budget)[a] > (*causes.budget)[b];
+  });
+  std::string text;
+  for (std::size_t i = 0; i < 3; ++i) {
+    text += fmt::format("{}{} {:.0f} %", i == 0 ? "" : ", ", error_causes[order[i]],
+                        100 * (*causes.budget)[order[i]]);
+  }
+  return text;
+}
+
 }  // namespace
 
 void write_score_pictures(const std::filesystem::path& recording,
@@ -36,12 +70,25 @@ void write_score_pictures(const std::filesystem::path& recording,
     if (!pictures) continue;
     cv::Mat error;
     cv::absdiff(pictures->result, pictures->truth, error);
-    cv::Mat sheet;
+    const cv::Mat mask = folder.mask(name);
+    const cv::Mat provenance = folder.provenance(name);
+    const ErrorCauses causes = find_error_causes({folder.result(name), folder.truth(name),
+                                                  scored_region(folder.true_mask(name), mask), mask,
+                                                  seen_pixels(provenance, mask)});
+    cv::Mat upper;
     cv::hconcat(std::vector<cv::Mat>{make_panel(pictures->input, "input"),
                                      make_panel(pictures->result, "result"),
-                                     make_panel(pictures->truth, "truth"),
-                                     make_panel(4 * error, "error x 4")},
-                sheet);
+                                     make_panel(pictures->truth, "truth")},
+                upper);
+    cv::Mat lower;
+    cv::hconcat(
+        std::vector<cv::Mat>{
+            make_panel(4 * error, "error x 4"),
+            make_panel(in_colors(provenance, mask.size())(pictures->part), "provenance"),
+            make_panel(draw_error_causes(causes)(pictures->part), describe(causes).c_str())},
+        lower);
+    cv::Mat sheet;
+    cv::vconcat(upper, lower, sheet);
     write_png(run / "score" / (name + ".png"), sheet);
   }
 }

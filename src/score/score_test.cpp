@@ -181,8 +181,8 @@ TEST_F(ScoreTest, PicturesShowInputResultTruthAndError) {
   write_score_pictures(folder.path(), folder.path() / "run");
   const cv::Mat sheet = cv::imread((folder.path() / "run/score/000000.png").string());
   ASSERT_FALSE(sheet.empty());
-  // Four panels of the picture's shape; the last is black but for the errors.
-  EXPECT_NEAR(static_cast<double>(sheet.cols) / (sheet.rows - 28), 4.0 * width / height, 0.05);
+  // Two rows of three panels of the picture's shape; the last is black but for the errors.
+  EXPECT_NEAR(static_cast<double>(sheet.cols) / (sheet.rows - 2 * 28), 1.5 * width / height, 0.05);
   EXPECT_EQ(sheet.at<cv::Vec3b>(sheet.rows - 5, sheet.cols - 5), cv::Vec3b(0, 0, 0));
 }
 

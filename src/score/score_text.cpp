@@ -30,6 +30,11 @@ nlohmann::ordered_json to_json(const FrameScore& frame) {
   add_quality("inside", frame.inside);
   add_quality("valid", frame.valid);
   add_quality("missing", frame.missing);
+  if (frame.budget) {
+    for (std::size_t i = 0; i < error_causes.size(); ++i) {
+      json["error_budget"][error_causes[i]] = (*frame.budget)[i];
+    }
+  }
   if (frame.coverage) json["coverage"] = *frame.coverage;
   if (frame.mask_iou) json["mask_iou"] = *frame.mask_iou;
   if (frame.mask_recall) json["mask_recall"] = *frame.mask_recall;
@@ -51,6 +56,14 @@ std::string score_table(const Score& score) {
   text += row(score.mean);
   text += fmt::format("PSNR of all frames' error {} dB, flicker {} levels\n",
                       cell(score.psnr_pooled_db, 2), cell(score.flicker, 2));
+  if (score.mean.budget) {
+    text += "Squared error by cause:";
+    for (std::size_t i = 0; i < error_causes.size(); ++i) {
+      text += fmt::format("{} {} {:.0f} %", i == 0 ? "" : ",", error_causes[i],
+                          100 * (*score.mean.budget)[i]);
+    }
+    text += "\n";
+  }
   for (const auto& [name, error] : score.mean.poses) {
     text += fmt::format("{}: {:.1f} mm, {:.2f} degrees off\n", name, error.position_mm,
                         error.rotation_deg);

@@ -1,0 +1,69 @@
+#include "composite/shadow_lifting.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+namespace diminish {
+namespace {
+
+/// The lower half gets half of the light.
+class HalfInShadow : public ::testing::Test {
+ protected:
+  HalfInShadow() {
+    reconstruction.region = {10, 10, 80, 80};
+    reconstruction.light.resize(100, 100, {255, 255, 255});
+    reconstruction.light.fill({10, 50, 80, 40}, {128, 128, 128});
+    occlusion.fill({20, 20, 60, 60}, 255);
+    picture.fill({0, 50, 100, 50}, {50, 60, 70});
+  }
+
+  Reconstruction reconstruction;
+  Mask occlusion{100, 100, 0};
+  Image<Bgr> picture{100, 100, {100, 120, 140}};
+  ShadowLifting lifting;
+};
+
+TEST_F(HalfInShadow, ShadowsAreLifted) {
+  Image<Bgr> lit = picture;
+  lifting.lift(reconstruction, lit);
+  for (int y = 10; y < 90; ++y) {
+    for (int x = 10; x < 90; ++x) {
+      ASSERT_LE(std::abs(lit(x, y).g - 120), 1) << x << ' ' << y;
+    }
+  }
+  EXPECT_EQ(lit(5, 60), picture(5, 60)) << "outside the region";
+}
+
+TEST_F(HalfInShadow, OutsideTheMaskTheCamerasPictureStaysAndNoLineShows) {
+  const Image<Bgr> camera = picture;
+  Image<Bgr> result = picture;
+  lifting.lift(reconstruction, result);
+  lifting.restore_outside(camera, occlusion, reconstruction, result);
+  for (int y = 0; y < 100; ++y) {
+    for (int x = 0; x < 100; ++x) {
+      if (occlusion(x, y) == 0) {
+        ASSERT_EQ(result(x, y), camera(x, y)) << x << ' ' << y;
+      }
+    }
+  }
+  // From the lower rim upwards and from the left to the right it becomes lighter, little by little.
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_GE(result(50, 79 - i).r, result(50, 80 - i).r);
+    EXPECT_LE(result(50, 79 - i).r, result(50, 80 - i).r + 8);
+    EXPECT_LE(std::abs(result(20 + i, 60).r - result(19 + i, 60).r), 8);
+  }
+  EXPECT_NEAR(result(50, 60).r, 140, 1) << "deep inside there is no shadow";
+}
+
+TEST_F(HalfInShadow, WithoutShadowNothingChanges) {
+  reconstruction.light.fill({255, 255, 255});
+  Image<Bgr> result = picture;
+  lifting.lift(reconstruction, result);
+  EXPECT_EQ(result, picture);
+  lifting.restore_outside(Image<Bgr>(100, 100), occlusion, reconstruction, result);
+  EXPECT_EQ(result, picture);
+}
+
+}  // namespace
+}  // namespace diminish

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "diminish/image.h"
+#include "diminish/intrinsics.h"
+#include "diminish/reconstruction.h"
+#include "geometry/ray_grid.h"
+#include "reconstruct/background_planes.h"
+#include "reconstruct/shadow_fit.h"
+
+namespace diminish {
+
+/// The shadows that the objects to remove cast on the background's planes: of the light from each
+/// direction they hide what lies behind them, and how much comes from where follows from the
+/// brightness of the samples on the plane (ShadowFit). What the objects, as far as RGB-D cameras
+/// see them, cannot have caused stays: other things' shadows, texture.
+class CastShadows {
+ public:
+  explicit CastShadows(const Intrinsics& color);
+
+  /// samples, object_points_m: in the colour camera's frame. Cost: one to three milliseconds.
+  void find(const std::vector<BackgroundPlane>& planes, const std::vector<SceneSample>& samples,
+            const std::vector<Eigen::Vector3f>& object_points_m);
+  void clear() { shadow_count_ = 0; }
+  /// Whether there are any.
+  bool any() const { return shadow_count_ > 0; }
+  /// Where they are in the colour camera's picture.
+  Rect bounds() const;
+  /// Fills `reconstruction.light`: shadows end where something stands on their plane.
+  void shade(Reconstruction& reconstruction) const;
+
+ private:
+  static constexpr std::size_t bits_a_word = 64;
+  /// One for each direction.
+  using DirectionBits = std::array<std::uint64_t, 2>;
+
+  /// A plane with coordinates on it, in metres from the point below the objects' middle.
+  struct Ground {
+    BackgroundPlane plane;
+    Eigen::Vector3f origin, along_u, along_v;
+
+    Ground() = default;
+    Ground(const BackgroundPlane& plane, const Eigen::Vector3f& middle);
+    Eigen::Vector2f coordinates(const Eigen::Vector3f& point_m) const;
+    Eigen::Vector3f point_m(const Eigen::Vector2f& place) const;
+  };
+  struct Blocker {
+    Eigen::Vector2f place;
+    float height_m;
+  };
+  struct Lit {
+    Eigen::Vector2f place;
+    Eigen::Array3f levels;
+  };
+  struct Shadow {
+    Ground ground;
+    std::uint8_t label = 0;
+    Image<Eigen::Array3f> light;  ///< the share that is left, by cell
+  };
+
+  void choose_blockers(const Ground& ground, const std::vector<BackgroundPlane>& planes,
+                       const std::vector<Eigen::Vector3f>& object_points_m);
+  void choose_lit(const Ground& ground, const std::vector<SceneSample>& samples);
+  bool fit();
+  bool is_hidden(int x, int y, std::size_t direction) const {
+    return (hidden_(x, y)[direction / bits_a_word] >> (direction % bits_a_word) & 1U) != 0;
+  }
+  void draw_light(Image<Eigen::Array3f>& light);
+  static Eigen::Array3f dark_at(const Shadow& cast, const Eigen::Vector2f& ray);
+  void shade_row(const Shadow& cast, int y, Reconstruction& reconstruction) const;
+
+  Lens lens_;
+  RayGrid rays_;
+  std::vector<Eigen::Vector2f> slopes_;  ///< of each direction: metres along the plane a metre up
+  std::vector<Blocker> blockers_;
+  std::vector<Lit> lit_;
+  Image<DirectionBits> hidden_;  ///< by cell
+  std::vector<std::uint8_t> directions_;
+  ShadowFit fit_;
+  std::vector<Eigen::Array3f> shares_;  ///< by direction
+  Image<Eigen::Array3f> dark_;
+  std::vector<Shadow> shadows_;  ///< the first shadow_count_ are this frame's
+  std::size_t shadow_count_ = 0;
+};
+
+}  // namespace diminish
