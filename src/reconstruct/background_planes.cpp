@@ -160,18 +160,22 @@ void BackgroundPlanes::label_row(int y, Reconstruction& reconstruction) const {
     std::int32_t nearest[RayGrid::step] = {};
     std::int32_t own[RayGrid::step];
     std::fill(std::begin(own), std::end(own), surface_label::foreground);
+    const auto is_measured = [](float z) { return z > 0; };
+    const bool all_measured = std::all_of(depth_m + x, depth_m + x + count, is_measured);
+    const bool any_measured =
+        all_measured || std::any_of(depth_m + x, depth_m + x + count, is_measured);
     for (std::size_t k = 0; k < planes_.size(); ++k) {
       // Along a row the inverse depth of a plane grows linearly.
       const float start = planes_[k].inverse_depth(rays.first.x(), rays.first.y());
       const float slope = planes_[k].inverse_depth(second.x(), second.y()) - start;
       const auto label = static_cast<std::int32_t>(surface_label::first_plane + k);
-      for (int i = 0; i < count; ++i) {
-        inverse[i] = start + static_cast<float>(i) * slope;
+      for (int i = 0; i < count; ++i) inverse[i] = start + static_cast<float>(i) * slope;
+      for (int i = 0; !all_measured && i < count; ++i) {
         const bool is_nearer = inverse[i] > greatest[i];
         nearest[i] = is_nearer ? label : nearest[i];
         greatest[i] = is_nearer ? inverse[i] : greatest[i];
       }
-      for (int i = 0; i < count; ++i) {
+      for (int i = 0; any_measured && i < count; ++i) {
         // (1/z - inverse) z is the difference in depth, relative to the plane's.
         const float z = depth_m[x + i];
         const bool is_on = std::abs(1 - inverse[i] * z) * z <= 2 * tolerance.at(z);

@@ -233,9 +233,9 @@ Eigen::Array3f CastShadows::dark_at(const Shadow& cast, const Eigen::Vector2f& r
          ((1 - v) * ((1 - u) * upper[0] + u * upper[1]) + v * ((1 - u) * lower[0] + u * lower[1]));
 }
 
-/// Light changes little from pixel to pixel: it is looked up at every eighth.
+/// Light changes little from pixel to pixel: it is looked up at every 16th.
 void CastShadows::shade_row(const Shadow& cast, int y, Reconstruction& reconstruction) const {
-  constexpr int node = 8;
+  constexpr int node = 16;
   constexpr float invisible = 1.F / 256;
   const Rect& region = reconstruction.region;
   const std::uint8_t* surface = reconstruction.surface.row(y);

@@ -12,7 +12,8 @@ namespace {
 constexpr int passes = 6;
 constexpr int lenient_passes = 3;
 constexpr float largest_shadow = 0.9F;
-constexpr int sweeps = 30;
+/// Each pass begins with the shares of the last.
+constexpr int sweeps = 8;
 /// What few points do not tell is no shadow.
 constexpr float ridge = 2;
 /// Nor is what a direction hardly explains.
