@@ -21,7 +21,8 @@ struct RunnerOptions {
 };
 
 /// Takes every frame from `source` through the pipeline to `sink`; the number of frames done.
-/// Throws what the sink throws and Error on a configuration that cannot work.
+/// Throws what source and sink throw, once the frames before are delivered and those in work are
+/// over, and Error on a configuration that cannot work.
 std::size_t run(FrameSource& source, const Rig& rig, const Scene& scene, const Options& options,
                 FrameSink& sink, const RunnerOptions& runner_options);
 

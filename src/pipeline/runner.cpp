@@ -4,6 +4,8 @@
 #include <oneapi/tbb/parallel_pipeline.h>
 #include <oneapi/tbb/task_arena.h>
 
+#include <atomic>
+#include <exception>
 #include <memory>
 #include <vector>
 
@@ -19,6 +21,7 @@ struct Slot {
   Pipeline pipeline;
   FrameSet frame;
   DiminishedFrame result;
+  std::exception_ptr error;  ///< what kept the frame from being done
 };
 
 }  // namespace
@@ -34,27 +37,52 @@ std::size_t run(FrameSource& source, const Rig& rig, const Scene& scene, const O
     free_slots.push(slots.back().get());
   }
 
+  // An error that left a filter would cancel the loops inside the other frames in work, half done.
+  // So it waits for its turn: the frames before it are delivered, then it is thrown.
   std::size_t frames_done = 0;
+  std::exception_ptr first_error;
+  std::atomic<bool> failed = false;
+  const auto attempt = [&](std::exception_ptr& error, const auto& action) {
+    try {
+      action();
+    } catch (...) {
+      error = std::current_exception();
+      failed = true;
+    }
+  };
   const auto read = [&](tbb::flow_control& control) -> Slot* {
     Slot* slot = nullptr;
-    const bool stopped = runner_options.stop && runner_options.stop->load();
+    const bool stopped = failed || (runner_options.stop && runner_options.stop->load());
     // There are as many slots as frames in work, so that one is always free here.
-    if (stopped || !free_slots.try_pop(slot) || !source.next(slot->frame)) {
+    if (stopped || !free_slots.try_pop(slot)) {
       control.stop();
       return nullptr;
     }
-    return slot;
+    bool is_there = false;
+    slot->error = nullptr;
+    attempt(slot->error, [&] { is_there = source.next(slot->frame); });
+    if (is_there || slot->error) return slot;
+    control.stop();
+    return nullptr;
   };
   const auto process = [&](Slot* slot) {
-    slot->pipeline.process(slot->frame, slot->result);
-    if (!slot->result.report.skipped) sink.write_images(slot->frame, slot->result);
+    if (slot->error) return slot;
+    attempt(slot->error, [&] {
+      slot->pipeline.process(slot->frame, slot->result);
+      if (!slot->result.report.skipped) sink.write_images(slot->frame, slot->result);
+    });
     return slot;
   };
   const auto finish = [&](Slot* slot) {
-    sink.append(slot->frame, slot->result);
+    if (!first_error) first_error = slot->error;
+    if (!first_error) {
+      attempt(first_error, [&] {
+        sink.append(slot->frame, slot->result);
+        ++frames_done;
+        if (runner_options.progress) runner_options.progress(frames_done);
+      });
+    }
     free_slots.push(slot);
-    ++frames_done;
-    if (runner_options.progress) runner_options.progress(frames_done);
   };
 
   tbb::task_arena(threads).execute([&] {
@@ -64,6 +92,7 @@ std::size_t run(FrameSource& source, const Rig& rig, const Scene& scene, const O
             tbb::make_filter<Slot*, Slot*>(tbb::filter_mode::parallel, process) &
             tbb::make_filter<Slot*, void>(tbb::filter_mode::serial_in_order, finish));
   });
+  if (first_error) std::rethrow_exception(first_error);
   return frames_done;
 }
 

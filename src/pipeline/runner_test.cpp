@@ -76,6 +76,37 @@ TEST_F(Runner, StopsAfterTheFramesInWorkAndReportsProgress) {
   EXPECT_EQ(progress, std::vector<std::size_t>{1});
 }
 
+// Whichever frame fails, those before it are delivered, and none after it.
+TEST_F(Runner, FramesBeforeAnErrorAreDelivered) {
+  class FullDisk : public MemorySink {
+    void write_images(const FrameSet& frame, const DiminishedFrame& result) override {
+      if (frame.name == "000001") throw Error("result/000001.png: cannot be written");
+      MemorySink::write_images(frame, result);
+    }
+  };
+  class TornStream : public FrameSource {
+   public:
+    explicit TornStream(std::unique_ptr<FrameSource> whole) : whole_(std::move(whole)) {}
+    bool next(FrameSet& frame) override {
+      if (++frames_ == 3) throw Error("color: cannot be read");
+      return whole_->next(frame);
+    }
+
+   private:
+    std::unique_ptr<FrameSource> whole_;
+    int frames_ = 0;
+  };
+  for (const int threads : {1, 2, 3}) {
+    FullDisk disk;
+    EXPECT_THROW(run_with(disk, {.threads = threads}), Error);
+    EXPECT_EQ(disk.names, std::vector<std::string>{"000000"});
+    MemorySink sink;
+    TornStream torn(open_recording(recording, {}));
+    EXPECT_THROW(run(torn, recording.rig, recording.scene, {}, sink, {.threads = threads}), Error);
+    EXPECT_EQ(sink.names, (std::vector<std::string>{"000000", "000001"}));
+  }
+}
+
 TEST_F(Runner, AnErrorInTheSinkReachesTheCaller) {
   class FullDisk : public FrameSink {
     void write_images(const FrameSet&, const DiminishedFrame&) override {
