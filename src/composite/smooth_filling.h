@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "composite/channels.h"
 #include "diminish/image.h"
 
 namespace diminish {
@@ -63,10 +64,8 @@ class SmoothFilling {
   struct Place {
     int x, y;
   };
-  struct Offset {
-    int x, y;
-  };
-  static constexpr Offset beside[] = {{0, -1}, {0, 1}, {1, 0}, {-1, 0}};
+  /// The left one last: relaxing forwards, it is the one that was just computed.
+  static constexpr PixelOffset beside[] = {{0, -1}, {0, 1}, {1, 0}, {-1, 0}};
 
   struct Grid {
     /// Each cell's number; 0: not in the grid. With a rim of 1 around the window.

@@ -30,13 +30,18 @@ constexpr DepthNoise noise;
 Eigen::Vector2f to_cells(const Eigen::Vector2f& place) {
   return place / cell_m + Eigen::Vector2f::Constant(grid_cells / 2);
 }
-Rect cells_around(const Eigen::Vector2f& place) {
+Eigen::Vector2f to_place(int x, int y) {
+  return cell_m * (Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y)) -
+                   Eigen::Vector2f::Constant(grid_cells / 2));
+}
+/// The cell that holds a place, as a rectangle; it may lie outside the grid.
+Rect cell_of(const Eigen::Vector2f& place) {
   const Eigen::Vector2f at = to_cells(place);
+  return {static_cast<int>(std::lrint(at.x())), static_cast<int>(std::lrint(at.y())), 1, 1};
+}
+Rect cells_around(const Eigen::Vector2f& place) {
   constexpr int reach = 1;
-  return intersect(
-      grow({static_cast<int>(std::lrint(at.x())), static_cast<int>(std::lrint(at.y())), 1, 1},
-           reach),
-      grid);
+  return intersect(grow(cell_of(place), reach), grid);
 }
 
 }  // namespace
@@ -139,9 +144,9 @@ bool CastShadows::fit() {
   }
   fit_.begin(slopes_.size());
   for (const Lit& lit : lit_) {
-    const Eigen::Vector2f at = to_cells(lit.place);
-    const int x = std::clamp(static_cast<int>(std::lrint(at.x())), 0, grid_cells - 1);
-    const int y = std::clamp(static_cast<int>(std::lrint(at.y())), 0, grid_cells - 1);
+    const Rect cell = cell_of(lit.place);
+    const int x = std::clamp(cell.x, 0, grid_cells - 1);
+    const int y = std::clamp(cell.y, 0, grid_cells - 1);
     directions_.clear();
     for (std::size_t d = 0; d < slopes_.size(); ++d) {
       if (is_hidden(x, y, d)) directions_.push_back(static_cast<std::uint8_t>(d));
@@ -191,10 +196,7 @@ Rect CastShadows::bounds() const {
     for (int y = 0; y < grid_cells; y += step) {
       for (int x = 0; x < grid_cells; x += step) {
         if (cast.light(x, y).minCoeff() > shadow) continue;
-        const Eigen::Vector2f place =
-            cell_m * (Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y)) -
-                      Eigen::Vector2f::Constant(grid_cells / 2));
-        const auto pixel = lens_.project(cast.ground.point_m(place).cast<double>());
+        const auto pixel = lens_.project(cast.ground.point_m(to_place(x, y)).cast<double>());
         if (!pixel) continue;
         extend(box, static_cast<int>(pixel->x()), static_cast<int>(pixel->y()));
       }
@@ -216,7 +218,7 @@ void CastShadows::shade(Reconstruction& reconstruction) const {
   });
 }
 
-/// Where the light of the plane's point that a ray meets is taken from; nothing beyond the grid.
+/// The share of the light that is taken from the plane's point that a ray meets; 0 beyond the grid.
 Eigen::Array3f CastShadows::dark_at(const Shadow& cast, const Eigen::Vector2f& ray) {
   const Eigen::Vector3f direction(ray.x(), ray.y(), 1);
   const float inverse = cast.ground.plane.inverse_depth(ray.x(), ray.y());

@@ -16,12 +16,10 @@ constexpr int edge_reach_px = 4;
 /// Standard deviation of what counts as "neighbours".
 constexpr double neighbourhood_px = 6;
 
-cv::Mat difference_of(const cv::Mat& result, const cv::Mat& truth) {
-  cv::Mat a;
-  cv::Mat b;
-  result.convertTo(a, CV_64FC3);
-  truth.convertTo(b, CV_64FC3);
-  return a - b;
+cv::Mat to_levels(const cv::Mat& picture) {
+  cv::Mat levels;
+  picture.convertTo(levels, CV_64FC3);
+  return levels;
 }
 
 /// Summed over the channels.
@@ -42,13 +40,13 @@ double sum_where(const cv::Mat& values, const cv::Mat& mask) {
   return cv::mean(values, mask).val[0] * cv::countNonZero(mask);
 }
 
-/// The difference after the shift that leaves the least of it on `seen` pixels.
-cv::Mat best_shifted(const ErrorInput& input, const cv::Mat& seen) {
-  cv::Mat best = difference_of(input.result, input.truth);
+/// result - truth after the shift that leaves the least of it on `seen` pixels.
+cv::Mat best_shifted(const cv::Mat& result, const cv::Mat& truth, const cv::Mat& seen) {
+  cv::Mat best = result - truth;
   double least = sum_where(squares_of(best), seen);
   for (int dy = -largest_shift_px; dy <= largest_shift_px; ++dy) {
     for (int dx = -largest_shift_px; dx <= largest_shift_px; ++dx) {
-      const cv::Mat difference = difference_of(moved(input.result, dx, dy), input.truth);
+      const cv::Mat difference = moved(result, dx, dy) - truth;
       const double sum = sum_where(squares_of(difference), seen);
       if (sum >= least) continue;
       least = sum;
@@ -99,9 +97,11 @@ ErrorCauses find_error_causes(const ErrorInput& whole) {
   const cv::Rect part = surroundings(whole.region);
   const ErrorInput input{whole.result(part), whole.truth(part), whole.region(part),
                          whole.mask(part), whole.seen(part)};
-  const cv::Mat squares = squares_of(difference_of(input.result, input.truth));
+  const cv::Mat result = to_levels(input.result);
+  const cv::Mat truth = to_levels(input.truth);
+  const cv::Mat squares = squares_of(result - truth);
   const cv::Mat seen = input.region & input.mask & input.seen;
-  const cv::Mat shifted = best_shifted(input, seen);
+  const cv::Mat shifted = best_shifted(result, truth, seen);
   const cv::Mat left = squares_of(shifted);
   const cv::Mat edges = near_edges(input.truth, input.mask & input.seen);
   const cv::Mat inside = seen & ~edges;

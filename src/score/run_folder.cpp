@@ -175,21 +175,25 @@ cv::Mat RunFolder::result(const std::string& frame) const {
 cv::Mat RunFolder::mask(const std::string& frame) const {
   return read_image(run_ / "mask" / (frame + ".png"), cv::IMREAD_GRAYSCALE);
 }
+cv::Rect RunFolder::surroundings(const cv::Mat& mask) {
+  constexpr int margin_px = 40;
+  const cv::Rect bounds(0, 0, mask.cols, mask.rows);
+  const cv::Rect object = cv::boundingRect(mask);
+  if (object.empty()) return bounds;
+  return cv::Rect(object.x - margin_px, object.y - margin_px, object.width + 2 * margin_px,
+                  object.height + 2 * margin_px) &
+         bounds;
+}
+
 std::optional<RunFolder::ObjectPictures> RunFolder::object_pictures(
     const std::string& frame) const {
-  constexpr int surroundings_px = 40;
-  const ObjectPictures whole{{}, input(frame), result(frame), truth(frame)};
+  const ObjectPictures whole{input(frame), result(frame), truth(frame)};
   const cv::Mat object = mask(frame);
   if (whole.input.empty() || whole.result.empty() || whole.truth.empty() || object.empty()) {
     return std::nullopt;
   }
-  const cv::Rect bounds(0, 0, object.cols, object.rows);
-  cv::Rect part = cv::boundingRect(object);
-  if (part.empty()) part = bounds;
-  part = cv::Rect(part.x - surroundings_px, part.y - surroundings_px,
-                  part.width + 2 * surroundings_px, part.height + 2 * surroundings_px) &
-         bounds;
-  return ObjectPictures{part, whole.input(part), whole.result(part), whole.truth(part)};
+  const cv::Rect part = surroundings(object);
+  return ObjectPictures{whole.input(part), whole.result(part), whole.truth(part)};
 }
 
 cv::Mat RunFolder::provenance(const std::string& frame) const {

@@ -31,9 +31,10 @@ class RunFolder {
   cv::Mat mask(const std::string& frame) const;
   cv::Mat provenance(const std::string& frame) const;
 
+  /// Where the object of a mask and its surroundings are; everything without an object.
+  static cv::Rect surroundings(const cv::Mat& mask);
   /// The surroundings of the object, cut out of a frame's pictures.
   struct ObjectPictures {
-    cv::Rect part;
     cv::Mat input, result, truth;
   };
   /// Nothing where a picture or the mask is missing.

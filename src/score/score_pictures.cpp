@@ -66,26 +66,28 @@ void write_score_pictures(const std::filesystem::path& recording,
   const RunFolder folder(recording, run);
   std::filesystem::create_directories(run / "score");
   for (const std::string& name : folder.frames()) {
-    const auto pictures = folder.object_pictures(name);
-    if (!pictures) continue;
-    cv::Mat error;
-    cv::absdiff(pictures->result, pictures->truth, error);
+    const cv::Mat input = folder.input(name);
+    const cv::Mat result = folder.result(name);
+    const cv::Mat truth = folder.truth(name);
     const cv::Mat mask = folder.mask(name);
+    if (input.empty() || result.empty() || truth.empty() || mask.empty()) continue;
+    const cv::Rect part = RunFolder::surroundings(mask);
     const cv::Mat provenance = folder.provenance(name);
-    const ErrorCauses causes = find_error_causes({folder.result(name), folder.truth(name),
-                                                  scored_region(folder.true_mask(name), mask), mask,
-                                                  seen_pixels(provenance, mask)});
+    const ErrorCauses causes =
+        find_error_causes({result, truth, scored_region(folder.true_mask(name), mask), mask,
+                           seen_pixels(provenance, mask)});
+    cv::Mat error;
+    cv::absdiff(result(part), truth(part), error);
     cv::Mat upper;
-    cv::hconcat(std::vector<cv::Mat>{make_panel(pictures->input, "input"),
-                                     make_panel(pictures->result, "result"),
-                                     make_panel(pictures->truth, "truth")},
-                upper);
+    cv::hconcat(
+        std::vector<cv::Mat>{make_panel(input(part), "input"), make_panel(result(part), "result"),
+                             make_panel(truth(part), "truth")},
+        upper);
     cv::Mat lower;
     cv::hconcat(
-        std::vector<cv::Mat>{
-            make_panel(4 * error, "error x 4"),
-            make_panel(in_colors(provenance, mask.size())(pictures->part), "provenance"),
-            make_panel(draw_error_causes(causes)(pictures->part), describe(causes).c_str())},
+        std::vector<cv::Mat>{make_panel(4 * error, "error x 4"),
+                             make_panel(in_colors(provenance, mask.size())(part), "provenance"),
+                             make_panel(draw_error_causes(causes)(part), describe(causes).c_str())},
         lower);
     cv::Mat sheet;
     cv::vconcat(upper, lower, sheet);
