@@ -19,6 +19,7 @@ struct OccluderReport {
   std::string name;
   bool in_color = false;      ///< a mask was drawn in the colour image
   std::vector<bool> in_rgbd;  ///< ... in each RGB-D camera
+  bool kept = false;          ///< it was not looked for: the option `keep` names it
   std::string message;        ///< why it was not found, in plain words; empty when it was
 };
 

@@ -2,6 +2,7 @@
 
 #include <limits>
 #include <string>
+#include <vector>
 
 namespace diminish {
 
@@ -27,6 +28,7 @@ struct Options {
   std::string inpaint = "surfaces";
   int inpaint_radius_px = 5;
   std::string mode = "remove";
+  std::string keep;
   double transparency = 0.5;
 };
 
@@ -101,6 +103,8 @@ void for_each_option(AnyOptions& options, Visit&& visit) {
   visit(OptionInfo{"inpaint_radius_px", "pixels", "Neighbourhood of telea and ns", 1, 100},
         options.inpaint_radius_px);
   visit(OptionInfo{"mode", "method", "How the background is shown"}, options.mode);
+  visit(OptionInfo{"keep", "names", "Objects to leave in the picture; commas between them"},
+        options.keep);
   visit(OptionInfo{"transparency", "",
                    "Of the object, in the mode half: 0 shows it as it is, 1 not at all", 0, 1},
         options.transparency);
@@ -109,5 +113,15 @@ void for_each_option(AnyOptions& options, Visit&& visit) {
 /// Throws Error that names the option and what was given, if a value is out of range or names no
 /// registered method.
 void check(const Options& options);
+
+struct Scene;
+/// The same, and that what `keep` names is there.
+void check(const Options& options, const Scene& scene);
+
+/// The methods that an option's text can name; empty where it names none.
+std::vector<std::string> method_names(const std::string& option);
+
+/// The names in `options.keep`.
+std::vector<std::string> kept_objects(const Options& options);
 
 }  // namespace diminish

@@ -29,6 +29,7 @@ OccluderStage::OccluderStage(const Rig& rig, const Scene& scene) : rig_(rig) {
           .fail("expected one of " + Detectors::known() + ", got '" + spec.detector + "'");
     }
     detectors_.push_back(Detectors::get(spec.detector)(spec, rig));
+    names_.push_back(spec.name);
   }
   scratch_.rgbd_color.resize(rig.rgbd.size());
   scratch_.rgbd_depth.resize(rig.rgbd.size());
@@ -43,7 +44,15 @@ void OccluderStage::detect(const Observation& observation, OcclusionMasks& masks
                            std::vector<OccluderReport>& reports) {
   clear(masks);
   reports.clear();
-  for (const auto& detector : detectors_) reports.push_back(detector->detect(observation, masks));
+  const std::vector<std::string> kept = kept_objects(observation.options);
+  for (std::size_t i = 0; i < detectors_.size(); ++i) {
+    if (std::find(kept.begin(), kept.end(), names_[i]) == kept.end()) {
+      reports.push_back(detectors_[i]->detect(observation, masks));
+    } else {
+      reports.push_back(
+          {.name = names_[i], .in_rgbd = std::vector<bool>(rig_.rgbd.size(), false), .kept = true});
+    }
+  }
   grow_by_margins(observation.options, masks);
 }
 

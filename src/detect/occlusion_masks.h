@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "diminish/occluder_detector.h"
@@ -17,7 +18,8 @@ class OccluderStage {
   bool needs_markers() const;
 
   /// Replaces `masks` by the union of all objects' masks in this frame, grown by the options'
-  /// margins, and `reports` by one report for each object.
+  /// margins, and `reports` by one report for each object. Those that the option `keep` names are
+  /// not looked for.
   void detect(const Observation& observation, OcclusionMasks& masks,
               std::vector<OccluderReport>& reports);
 
@@ -27,6 +29,7 @@ class OccluderStage {
 
   Rig rig_;
   std::vector<std::unique_ptr<OccluderDetector>> detectors_;
+  std::vector<std::string> names_;  ///< of the objects
   OcclusionMasks scratch_;
 };
 

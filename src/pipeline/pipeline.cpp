@@ -46,8 +46,9 @@ void expect_sizes(const FrameSet& frame, const Rig& rig) {
 }  // namespace
 
 struct Pipeline::Implementation {
-  Implementation(const Rig& rig_, const Scene& scene)
+  Implementation(const Rig& rig_, const Scene& scene_)
       : rig(rig_),
+        scene(scene_),
         color_lens(rig.color),
         camera_poses(rig, scene),
         occluders(rig, scene),
@@ -147,6 +148,7 @@ struct Pipeline::Implementation {
   }
 
   Rig rig;
+  Scene scene;
   Options options;
   Lens color_lens;
   std::vector<Lens> rgbd_color_lenses;
@@ -173,7 +175,7 @@ Pipeline::Pipeline(Pipeline&&) noexcept = default;
 Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;
 
 void Pipeline::set_options(const Options& options) {
-  check(options);
+  check(options, implementation_->scene);
   implementation_->options = options;
 }
 const Options& Pipeline::options() const {
