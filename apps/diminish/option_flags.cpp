@@ -4,9 +4,7 @@
 #include <string>
 #include <type_traits>
 
-#include "diminish/color_corrector.h"
-#include "diminish/inpainter.h"
-#include "diminish/view_mode.h"
+#include "core/text.h"
 
 namespace diminish {
 namespace {
@@ -15,14 +13,6 @@ std::string flag_name(const OptionInfo& info) {
   std::string name = info.name;
   std::replace(name.begin(), name.end(), '_', '-');
   return "--" + name;
-}
-
-/// The names that a text option can have.
-std::string choices(const Options& options, const std::string& value) {
-  if (&value == &options.color_correct) return Registry<ColorCorrector>::known();
-  if (&value == &options.inpaint) return Registry<Inpainter>::known();
-  if (&value == &options.mode) return Registry<ViewMode>::known();
-  return {};
 }
 
 }  // namespace
@@ -38,7 +28,8 @@ void add_option_flags(CLI::App& command, Options& options) {
                        ->capture_default_str()
                        ->group("Options of the pipeline");
       if constexpr (std::is_same_v<Value, std::string>) {
-        flag->type_name(choices(options, value));
+        const std::vector<std::string> methods = method_names(info.name);
+        flag->type_name(methods.empty() ? info.unit : join(methods));
       } else {
         flag->type_name(info.unit);
       }

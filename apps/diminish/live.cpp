@@ -1,0 +1,89 @@
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <chrono>
+#include <memory>
+#include <thread>
+
+#include "commands.h"
+#include "live_setup.h"
+
+namespace diminish {
+namespace {
+
+struct LiveCommand {
+  LiveSetup setup;
+  double seconds = 0;
+
+  int execute() const;
+};
+
+void print_line(const LiveStatus& status) {
+  fmt::print("{:>7} frames  {:>5.1f} frames/s  {:>6.1f} ms a frame  latency {:.0f} ms",
+             status.frames, status.frames_per_second, status.frame_ms, status.latency_ms.p50);
+  for (const std::string& problem : status.problems) fmt::print("  [{}]", problem);
+  fmt::print("\n");
+  std::fflush(stdout);
+}
+
+void print_summary(const LiveStatus& status, const LiveRun& run) {
+  fmt::print("\n{} frames, {} colour images left out for newer ones, {} frames failed\n",
+             status.frames, status.skipped, status.failed);
+  fmt::print("Latency: p50 {:.1f}, p95 {:.1f}, p99 {:.1f} ms\n", status.latency_ms.p50,
+             status.latency_ms.p95, status.latency_ms.p99);
+  fmt::print("{:<10}{:>9}{:>8}{:>11}{:>13}{:>12}{:>9}{:>8}{:>10}{:>12}\n", "camera", "images",
+             "dropped", "duplicates", "out of order", "wrong size", "damaged", "stalls", "failures",
+             "reconnects");
+  for (const CameraStatus& camera : status.cameras) {
+    fmt::print("{:<10}{:>9}{:>8}{:>11}{:>13}{:>12}{:>9}{:>8}{:>10}{:>12}\n", camera.name,
+               camera.images, camera.dropped, camera.duplicates, camera.out_of_order,
+               camera.wrong_size, camera.damaged, camera.stalls, camera.failures,
+               camera.reconnects);
+  }
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  fmt::print("Peak memory: {:.0f} MB\n", static_cast<double>(usage.ru_maxrss) * 1024 / 1e6);
+  if (!run.recording) return;
+  const RecordingStatus recording = run.recording->status();
+  fmt::print("Recorded {} frames to {}, {} dropped\n", recording.frames, recording.folder,
+             recording.dropped);
+  if (!recording.problem.empty()) fmt::print(stderr, "diminish: {}\n", recording.problem);
+}
+
+int LiveCommand::execute() const {
+  stop_on_signals();
+  LiveRun run = setup.start();
+  const double start_s = monotonic_now_s();
+  double next_line_s = start_s + 1;
+  LiveStatus status = run.session->status();
+  while (!stop_requested() && !status.ended &&
+         (seconds <= 0 || monotonic_now_s() < start_s + seconds)) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    status = run.session->status();
+    if (monotonic_now_s() < next_line_s) continue;
+    print_line(status);
+    next_line_s += 1;
+  }
+  run.virtual_camera.reset();
+  run.session->stop();
+  if (run.recording) run.recording->finish();
+  print_summary(run.session->status(), run);
+  return 0;
+}
+
+}  // namespace
+
+void add_live(CLI::App& program, int& exit_code) {
+  auto command = std::make_shared<LiveCommand>();
+  CLI::App* sub = program.add_subcommand(
+      "live",
+      "Runs live without a picture: into a virtual camera, a recording, or just for figures");
+  command->setup.add_flags(*sub);
+  command->setup.add_output_flags(*sub);
+  sub->add_option("--seconds", command->seconds, "How long; default: until interrupted")
+      ->check(CLI::Range(0.0, 1e9))
+      ->type_name("S");
+  sub->callback([command, &exit_code] { exit_code = command->execute(); });
+}
+
+}  // namespace diminish

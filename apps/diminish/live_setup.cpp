@@ -1,0 +1,116 @@
+#include "live_setup.h"
+
+#include <atomic>
+#include <csignal>
+
+#include "diminish/error.h"
+#include "diminish/frame_source.h"
+#include "option_flags.h"
+
+namespace diminish {
+namespace {
+
+std::atomic<bool> stop_flag = false;
+
+}  // namespace
+
+void stop_on_signals() {
+  std::signal(SIGINT, [](int) { stop_flag = true; });
+  std::signal(SIGTERM, [](int) { stop_flag = true; });
+}
+bool stop_requested() {
+  return stop_flag;
+}
+
+void LiveSetup::add_flags(CLI::App& command) {
+  command
+      .add_option("setup", folder,
+                  "Folder with rig.yaml and scene.yaml; if it is a recording and no cameras are "
+                  "given, it is replayed again and again")
+      ->required();
+  command.add_option("--color", color, "The camera of the user's view, such as v4l2:/dev/video0")
+      ->type_name("CAMERA");
+  command
+      .add_option("--rgbd", rgbd,
+                  "An RGB-D camera, in the rig's order or as NAME=CAMERA; twice with the same name "
+                  "for separate colour and depth devices. `diminish devices` lists what there is")
+      ->type_name("[NAME=]CAMERA");
+  command
+      .add_option("--budget", live_options.budget_ms,
+                  "What a frame may take; quality steps down when it takes more")
+      ->check(CLI::Range(0.0, 10000.0))
+      ->type_name("MILLISECONDS");
+  command
+      .add_option("--threads", live_options.threads, "Threads that work on a frame; 0: all cores")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 1024))
+      ->type_name("N");
+  command
+      .add_option("--sync-wait", live_options.sync_wait_s,
+                  "How long a picture waits for its RGB-D images")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 10.0))
+      ->type_name("SECONDS");
+  add_option_flags(command, options);
+}
+
+std::vector<LiveCamera> LiveSetup::cameras(const Rig& rig) const {
+  std::vector<LiveCamera> result;
+  if (color.empty() && rgbd.empty()) {
+    const std::string replay = "recording:" + folder.string() + "?loop";
+    result.push_back({"color", replay});
+    for (const RgbdCamera& camera : rig.rgbd) result.push_back({camera.name, replay});
+    return result;
+  }
+  result.push_back({"color", color});
+  if (color.empty()) throw Error("--color: expected a camera beside --rgbd");
+  std::size_t next = 0;
+  for (const std::string& text : rgbd) {
+    const std::size_t equals = text.find('=');
+    // "NAME=scheme:...": the name ends before the first colon.
+    if (equals != std::string::npos && equals < text.find(':')) {
+      result.push_back({text.substr(0, equals), text.substr(equals + 1)});
+    } else if (next < rig.rgbd.size()) {
+      result.push_back({rig.rgbd[next++].name, text});
+    } else {
+      throw Error("--rgbd " + text + ": the rig has only " + std::to_string(rig.rgbd.size()) +
+                  " RGB-D cameras; name them as NAME=CAMERA if one has several devices");
+    }
+  }
+  return result;
+}
+
+void LiveSetup::add_output_flags(CLI::App& command) {
+  command
+      .add_option("--record", record,
+                  "Write what the cameras see as a recording into this folder; frames for which "
+                  "there is no time are dropped and counted")
+      ->type_name("FOLDER");
+  command
+      .add_option("--virtual-camera", virtual_camera,
+                  "Hand the result to this v4l2loopback device, for programs that take a camera")
+      ->type_name("DEVICE");
+}
+
+LiveRun LiveSetup::start() const {
+  const Rig rig = load_rig(rig_file());
+  const Scene scene = load_scene(scene_file());
+  LiveRun run;
+  if (!record.empty()) {
+    run.recording = std::make_shared<RecordingWriter>(record, rig_file(), rig, scene_file(), scene);
+  }
+  std::vector<LiveCamera> all = cameras(rig);
+  if (draw_clock) all.front().uri = "clock:" + all.front().uri;
+  run.session = std::make_unique<LiveSession>(rig, scene, options, all, live_options);
+  if (run.recording) {
+    run.recording_listener = run.session->on_frame(
+        [writer = run.recording](const auto& frame) { writer->offer(frame); });
+  }
+  if (!virtual_camera.empty()) {
+    constexpr double usual_rate = 30;
+    run.virtual_camera = std::make_unique<VirtualCamera>(*run.session, virtual_camera, usual_rate);
+  }
+  return run;
+}
+
+}  // namespace diminish

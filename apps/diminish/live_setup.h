@@ -1,0 +1,52 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "diminish/live.h"
+#include "live/recording_writer.h"
+#include "live/virtual_camera.h"
+
+namespace diminish {
+
+/// A running session and what it writes.
+struct LiveRun {
+  std::unique_ptr<LiveSession> session;
+  std::shared_ptr<RecordingWriter> recording;  ///< null: none is made
+  std::shared_ptr<void> recording_listener;
+  std::unique_ptr<VirtualCamera> virtual_camera;
+};
+
+/// What the live commands (live, serve, view, latency-test) have in common: set-up, cameras,
+/// options.
+struct LiveSetup {
+  std::filesystem::path folder;
+  std::string color;
+  std::vector<std::string> rgbd;
+  std::filesystem::path record;
+  std::string virtual_camera;
+  bool draw_clock = false;  ///< into the colour camera's pictures
+  Options options;
+  LiveOptions live_options;
+
+  void add_flags(CLI::App& command);
+  /// --record and --virtual-camera
+  void add_output_flags(CLI::App& command);
+
+  std::filesystem::path rig_file() const { return folder / "rig.yaml"; }
+  std::filesystem::path scene_file() const { return folder / "scene.yaml"; }
+  /// Loads the set-up and starts. Throws Error.
+  LiveRun start() const;
+
+ private:
+  std::vector<LiveCamera> cameras(const Rig& rig) const;
+};
+
+/// Asks for SIGINT and SIGTERM to end the command; whether that has happened.
+void stop_on_signals();
+bool stop_requested();
+
+}  // namespace diminish

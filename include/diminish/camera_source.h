@@ -1,0 +1,107 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "diminish/image.h"
+#include "diminish/intrinsics.h"
+#include "diminish/registry.h"
+#include "diminish/rig.h"
+
+namespace diminish {
+
+/// Seconds of the machine's monotonic clock: what all live timestamps are in.
+inline double monotonic_now_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// Which of a camera's sensors an image is from.
+enum class Sensor { color, depth };
+
+/// An image as a camera delivers it. Of `color` and `depth` the one that `sensor` names is filled.
+struct CameraImage {
+  Sensor sensor = Sensor::color;
+  /// When it was taken, on the monotonic clock; the driver's word for it where there is one.
+  double stamp_s = 0;
+  Image<Bgr> color;
+  Image<std::uint16_t> depth;
+  /// Why the image cannot be used (torn, damaged); empty for a good one.
+  std::string fault;
+};
+
+/// What names a camera: "scheme:target?key=value&key".
+struct CameraUri {
+  std::string text;                               ///< all of it, for messages
+  std::string scheme;                             ///< which registered source it is for
+  std::string target;                             ///< a path, a device, a pipeline
+  std::map<std::string, std::string> parameters;  ///< without '=': an empty text
+
+  bool has(const std::string& key) const { return parameters.count(key) != 0; }
+  /// Throws Error that names the URI and the key, if the value is no number in the range.
+  double number(const std::string& key, double fallback, double min, double max) const;
+  std::string text_of(const std::string& key, const std::string& fallback) const;
+  /// Complains of parameters that are not in `known`.
+  void expect_parameters(const std::vector<std::string>& known) const;
+  /// Throws Error with the URI in front.
+  [[noreturn]] void fail(const std::string& message) const;
+};
+
+/// Throws Error if there is no "scheme:" in front.
+CameraUri parse_camera_uri(const std::string& text);
+
+/// For whom a camera is opened.
+struct CameraRequest {
+  std::string name;  ///< "color" for the user's view, else an RGB-D camera's name in the rig
+  const Rig* rig = nullptr;
+  /// When the live session began: what is replayed begins here, on all cameras.
+  double epoch_s = 0;
+};
+
+/// A device that `diminish devices` lists.
+struct CameraDevice {
+  std::string uri;
+  std::string description;
+};
+
+/// A camera, or what behaves like one. Registered by its URI's scheme, one file each.
+/// Used by one thread.
+class CameraSource {
+ public:
+  static constexpr const char* kind = "camera source";
+  struct Entry {
+    /// Opens the camera. Throws Error that names the URI and what was expected.
+    std::function<std::unique_ptr<CameraSource>(const CameraUri&, const CameraRequest&)> open;
+    /// The devices that are there now; may be left out.
+    std::function<std::vector<CameraDevice>()> list;
+    /// An example and what it is for: "v4l2:/dev/video0?size=1280x1024&fps=30: a webcam".
+    std::string help;
+  };
+  using Factory = Entry;
+
+  enum class Status { image, nothing, end };
+
+  virtual ~CameraSource() = default;
+
+  /// Waits for the next image, at most about `timeout`, and reads it into `image`, reusing its
+  /// memory. `end`: there will be none any more. Throws Error when the camera is gone; it may then
+  /// be opened again.
+  virtual Status read(CameraImage& image, std::chrono::milliseconds timeout) = 0;
+
+  /// Images that the camera itself left out so far, as far as it says.
+  virtual std::size_t dropped() const { return 0; }
+
+  /// Factory intrinsics, where a driver knows them.
+  virtual std::optional<Intrinsics> intrinsics(Sensor) const { return std::nullopt; }
+};
+
+/// Opens the camera that a URI names. Throws Error that names the URI.
+std::unique_ptr<CameraSource> open_camera(const std::string& uri, const CameraRequest& request);
+
+}  // namespace diminish

@@ -1,0 +1,112 @@
+#include <gtest/gtest.h>
+
+#include <map>
+#include <thread>
+
+#include "diminish/camera_source.h"
+#include "diminish/frame_source.h"
+#include "expect_error.h"
+#include "source/tiny_recording.h"
+
+namespace diminish {
+namespace {
+
+using std::chrono::milliseconds;
+using testing::HasSubstr;
+
+class RecordingCamera : public testing::Test {
+ protected:
+  std::unique_ptr<CameraSource> open(const std::string& name, const std::string& parameters) {
+    return open_camera("recording:" + recording_.path("").string() + parameters,
+                       {name, nullptr, epoch_s_});
+  }
+
+  /// All images up to `most`, waiting for each.
+  static std::vector<CameraImage> read_all(CameraSource& camera, std::size_t most) {
+    std::vector<CameraImage> images;
+    while (images.size() < most) {
+      CameraImage image;
+      const auto status = camera.read(image, milliseconds(1000));
+      if (status == CameraSource::Status::end) break;
+      if (status == CameraSource::Status::image) images.push_back(std::move(image));
+    }
+    return images;
+  }
+
+  TinyRecording recording_;
+  double epoch_s_ = monotonic_now_s();
+};
+
+TEST_F(RecordingCamera, DeliversEachImageNotBeforeItsTime) {
+  const auto camera = open("color", "?rate=4");
+  for (int i = 0; i < 3; ++i) {
+    CameraImage image;
+    ASSERT_EQ(camera->read(image, milliseconds(1000)), CameraSource::Status::image);
+    EXPECT_GE(monotonic_now_s(), image.stamp_s);
+    EXPECT_NEAR(image.stamp_s, epoch_s_ + 0.1 * i / 4, 1e-6);
+    EXPECT_EQ(image.sensor, Sensor::color);
+    EXPECT_EQ(image.color(0, 0), (Bgr{static_cast<std::uint8_t>(i), 50, 200}));
+  }
+  CameraImage image;
+  EXPECT_EQ(camera->read(image, milliseconds(10)), CameraSource::Status::end);
+}
+
+TEST_F(RecordingCamera, AnRgbdCameraDeliversBothSensorsOnTheRecordingsClock) {
+  const auto camera = open("rgbd0", "?rate=4");
+  const std::vector<CameraImage> images = read_all(*camera, 10);
+  std::map<Sensor, int> counts;
+  for (const CameraImage& image : images) {
+    const int i = counts[image.sensor]++;
+    EXPECT_NEAR(image.stamp_s, epoch_s_ + (0.1 * i + 0.001) / 4, 1e-6);
+    const bool is_depth = image.sensor == Sensor::depth;
+    EXPECT_EQ(is_depth ? image.depth(3, 3) - 1000 : image.color(3, 3).b, i);
+  }
+  EXPECT_EQ(counts[Sensor::color], 3);
+  EXPECT_EQ(counts[Sensor::depth], 3);
+}
+
+TEST_F(RecordingCamera, ALoopGoesOnWithoutAGapInTime) {
+  const auto camera = open("color", "?loop&rate=10");
+  const std::vector<CameraImage> images = read_all(*camera, 8);
+  ASSERT_EQ(images.size(), 8U);
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    EXPECT_NEAR(images[i].stamp_s, epoch_s_ + 0.01 * static_cast<double>(i), 1e-6);
+    EXPECT_EQ(images[i].color(0, 0).b, i % 3);
+  }
+}
+
+TEST_F(RecordingCamera, WhatIsLongOverdueIsLeftOutAndCounted) {
+  const auto camera = open("color", "?loop&rate=100");
+  std::this_thread::sleep_for(milliseconds(100));
+  CameraImage image;
+  ASSERT_EQ(camera->read(image, milliseconds(1000)), CameraSource::Status::image);
+  EXPECT_GE(camera->dropped(), 50U);
+  EXPECT_GT(image.stamp_s, epoch_s_ + 0.05);
+}
+
+TEST_F(RecordingCamera, ADamagedImageIsAFault) {
+  recording_.write("color/1.png", "no picture");
+  for (const char* parameters : {"?rate=10", "?rate=10&loop"}) {
+    const auto camera = open("color", parameters);
+    const std::vector<CameraImage> images = read_all(*camera, 3);
+    ASSERT_EQ(images.size(), 3U);
+    EXPECT_EQ(images[0].fault, "");
+    EXPECT_THAT(images[1].fault, HasSubstr("color/1.png"));
+    EXPECT_EQ(images[2].fault, "");
+    epoch_s_ = monotonic_now_s();
+  }
+}
+
+TEST_F(RecordingCamera, ComplaintsNameWhatIsWrong) {
+  EXPECT_THAT(error_of([&] { open("color", "?camera=rgbd7"); }),
+              HasSubstr("the recording has no camera 'rgbd7'"));
+  EXPECT_THAT(error_of([&] { open("color", "?rate=0"); }), HasSubstr("rate: expected a number"));
+  EXPECT_THAT(error_of([&] { open("color", "?lop"); }), HasSubstr("unknown parameter 'lop'"));
+  EXPECT_THAT(error_of([] {
+                open_camera("recording:/nowhere", {"color", nullptr, 0});
+              }),
+              HasSubstr("/nowhere/rig.yaml"));
+}
+
+}  // namespace
+}  // namespace diminish

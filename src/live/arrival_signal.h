@@ -1,0 +1,37 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <mutex>
+
+namespace diminish {
+
+/// Wakes who waits for something to happen anywhere. Nothing that happens between two looks at
+/// `count` is missed.
+class ArrivalSignal {
+ public:
+  void notify() {
+    {
+      const std::lock_guard lock(mutex_);
+      ++count_;
+    }
+    changed_.notify_all();
+  }
+  std::size_t count() const {
+    const std::lock_guard lock(mutex_);
+    return count_;
+  }
+  /// Waits until the count is not `seen` any more, or the time is over.
+  void wait(std::size_t seen, std::chrono::duration<double> timeout) const {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, timeout, [&] { return count_ != seen; });
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  mutable std::condition_variable changed_;
+  std::size_t count_ = 0;
+};
+
+}  // namespace diminish

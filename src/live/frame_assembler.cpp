@@ -1,0 +1,128 @@
+#include "live/frame_assembler.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace diminish {
+namespace {
+
+constexpr double usual_period_s = 1.0 / 30;
+
+/// The median time from one image to the next.
+double period_s(const ImageHistory<Bgr>& history) {
+  std::array<double, ImageHistory<Bgr>::capacity> periods;
+  const std::size_t count = history.size() < 2 ? 0 : history.size() - 1;
+  for (std::size_t i = 0; i < count; ++i) {
+    periods[i] = history.newest(i).stamp_s - history.newest(i + 1).stamp_s;
+  }
+  if (count == 0) return usual_period_s;
+  const auto middle = periods.begin() + static_cast<std::ptrdiff_t>(count / 2);
+  std::nth_element(periods.begin(), middle, periods.begin() + static_cast<std::ptrdiff_t>(count));
+  return *middle;
+}
+
+}  // namespace
+
+FrameAssembler::FrameAssembler(CameraInbox& color, std::vector<CameraInbox*> rgbd)
+    : color_(color),
+      rgbd_(std::move(rgbd)),
+      last_stamp_s_(-std::numeric_limits<double>::infinity()) {}
+
+double FrameAssembler::sync_tolerance_s(const Settings& settings) {
+  if (settings.sync_tolerance_s > 0) return settings.sync_tolerance_s;
+  return color_.with_images([](const auto& color, const auto&) { return period_s(color) / 2; });
+}
+
+bool FrameAssembler::is_complete(double stamp_s, double tolerance_s,
+                                 const std::function<bool(std::size_t)>& is_expected) {
+  for (std::size_t k = 0; k < rgbd_.size(); ++k) {
+    if (!is_expected(k)) continue;
+    const bool has_both = rgbd_[k]->with_images([&](const auto& color, const auto& depth) {
+      return color.nearest(stamp_s, tolerance_s) && depth.nearest(stamp_s, tolerance_s);
+    });
+    if (!has_both) return false;
+  }
+  return true;
+}
+
+std::optional<double> FrameAssembler::next_deadline_s(const Settings& settings) {
+  return color_.with_images([&](const auto& color, const auto&) {
+    std::optional<double> deadline_s;
+    for (std::size_t age = 0; age < color.size(); ++age) {
+      if (color.newest(age).stamp_s <= last_stamp_s_) break;
+      deadline_s = color.newest(age).arrival_s + settings.sync_wait_s;
+    }
+    return deadline_s;
+  });
+}
+
+std::optional<std::size_t> FrameAssembler::assemble(
+    const Settings& settings, double now_s, const std::function<bool(std::size_t)>& is_expected,
+    FrameSet& frame) {
+  struct Candidate {
+    double stamp_s, arrival_s;
+  };
+  const double tolerance_s = sync_tolerance_s(settings);
+  std::array<Candidate, ImageHistory<Bgr>::capacity> candidates;  // the newest first
+  const std::size_t count = color_.with_images([&](const auto& color, const auto&) {
+    std::size_t found = 0;
+    // After a reset of the camera's clock all images are new.
+    if (color.size() > 0 && color.newest().stamp_s < last_stamp_s_) {
+      last_stamp_s_ = -std::numeric_limits<double>::infinity();
+    }
+    while (found < color.size() && color.newest(found).stamp_s > last_stamp_s_) {
+      candidates[found] = {color.newest(found).stamp_s, color.newest(found).arrival_s};
+      ++found;
+    }
+    return found;
+  });
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool waited_long = now_s >= candidates[i].arrival_s + settings.sync_wait_s;
+    if (!waited_long && !is_complete(candidates[i].stamp_s, tolerance_s, is_expected)) continue;
+    const bool taken = color_.with_images([&](auto& color, const auto&) {
+      for (std::size_t age = 0; age < color.size(); ++age) {
+        auto& entry = color.newest(age);
+        if (entry.stamp_s != candidates[i].stamp_s) continue;
+        std::swap(frame.color, entry.image);
+        return true;
+      }
+      return false;
+    });
+    if (!taken) return std::nullopt;
+    last_stamp_s_ = candidates[i].stamp_s;
+    frame.stamp_s = candidates[i].stamp_s;
+    frame.index = next_index_++;
+    frame.name = fmt::format("{:06}", frame.index);
+    frame.masks.clear();
+    frame.faults.clear();
+    frame.rgbd.resize(rgbd_.size());
+    for (std::size_t k = 0; k < rgbd_.size(); ++k) fill_rgbd(k, tolerance_s, frame);
+    return count - 1 - i;
+  }
+  return std::nullopt;
+}
+
+void FrameAssembler::fill_rgbd(std::size_t camera, double tolerance_s, FrameSet& frame) {
+  RgbdFrame& rgbd = frame.rgbd[camera];
+  rgbd_[camera]->with_images([&](const auto& color, const auto& depth) {
+    const auto copy = [&](const auto& history, auto& image, double& stamp_s) {
+      const auto* entry = history.nearest(frame.stamp_s, tolerance_s);
+      if (!entry) return false;
+      if (stamp_s != entry->stamp_s || image.empty()) image = entry->image;
+      stamp_s = entry->stamp_s;
+      return true;
+    };
+    const bool has_color = copy(color, rgbd.color, rgbd.color_stamp_s);
+    const bool has_depth = copy(depth, rgbd.depth, rgbd.depth_stamp_s);
+    rgbd.missing.clear();
+    if (has_color && has_depth) return;
+    rgbd.missing = fmt::format("{}: no {} image within {:.2g} s", rgbd_[camera]->name(),
+                               has_color ? "depth" : "color", tolerance_s);
+    rgbd.color.resize(0, 0);
+    rgbd.depth.resize(0, 0);
+  });
+}
+
+}  // namespace diminish

@@ -1,0 +1,327 @@
+#include <fmt/format.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include <algorithm>
+#include <condition_variable>
+#include <mutex>
+#include <numeric>
+#include <thread>
+
+#include "diminish/error.h"
+#include "diminish/live.h"
+#include "diminish/pipeline.h"
+#include "live/camera_feed.h"
+#include "live/frame_assembler.h"
+#include "live/frame_pool.h"
+#include "live/quality_ladder.h"
+#include "sink/distribution.h"
+
+namespace diminish {
+namespace {
+
+constexpr std::size_t window_frames = 150;
+/// Without a picture for so long, that is said.
+constexpr double no_picture_after_s = 1;
+
+void check_cameras(const Rig& rig, const std::vector<LiveCamera>& cameras) {
+  const auto is_used = [&](const std::string& name) {
+    return std::any_of(cameras.begin(), cameras.end(),
+                       [&](const LiveCamera& camera) { return camera.name == name; });
+  };
+  if (!is_used("color")) throw Error("color: expected a camera for the user's view");
+  for (const LiveCamera& camera : cameras) {
+    const bool is_known = camera.name == "color" || std::any_of(rig.rgbd.begin(), rig.rgbd.end(),
+                                                                [&](const RgbdCamera& rgbd) {
+                                                                  return rgbd.name == camera.name;
+                                                                });
+    if (!is_known) throw Error(camera.name + ": the rig has no camera of this name");
+    const CameraUri uri = parse_camera_uri(camera.uri);
+    if (!Registry<CameraSource>::contains(uri.scheme)) {
+      uri.fail("unknown kind of camera '" + uri.scheme + "', expected one of " +
+               Registry<CameraSource>::known());
+    }
+  }
+  for (const RgbdCamera& rgbd : rig.rgbd) {
+    if (!is_used(rgbd.name)) throw Error(rgbd.name + ": expected a camera (--rgbd)");
+  }
+}
+
+double sum(const StageTimes& times) {
+  return std::accumulate(times.begin(), times.end(), 0.0);
+}
+
+}  // namespace
+
+struct LiveSession::Implementation {
+  Implementation(const Rig& rig_, const Scene& scene_, const Options& options_,
+                 const std::vector<LiveCamera>& cameras, const LiveOptions& live_options_)
+      : rig(rig_),
+        scene(scene_),
+        options(options_),
+        live_options(live_options_),
+        pipeline(rig, scene, options),
+        assembler{make_inboxes(), rgbd_inboxes()} {  // braces: from left to right
+    check_cameras(rig, cameras);
+    const double epoch_s = monotonic_now_s();
+    for (const LiveCamera& camera : cameras) {
+      CameraInbox& inbox = **std::find_if(inboxes.begin(), inboxes.end(), [&](const auto& box) {
+        return box->name() == camera.name;
+      });
+      feeds.push_back(std::make_unique<CameraFeed>(
+          camera, CameraRequest{camera.name, &rig, epoch_s}, inbox, arrived));
+    }
+    worker = std::thread([this] { work(); });
+  }
+
+  ~Implementation() { stop(); }
+
+  CameraInbox& make_inboxes() {
+    inboxes.push_back(std::make_unique<CameraInbox>("color", rig.color, std::nullopt));
+    for (const RgbdCamera& camera : rig.rgbd) {
+      inboxes.push_back(std::make_unique<CameraInbox>(camera.name, camera.color, camera.depth));
+    }
+    return *inboxes.front();
+  }
+  std::vector<CameraInbox*> rgbd_inboxes() const {
+    std::vector<CameraInbox*> rgbd;
+    for (std::size_t i = 1; i < inboxes.size(); ++i) rgbd.push_back(inboxes[i].get());
+    return rgbd;
+  }
+
+  void stop() {
+    stopped = true;
+    arrived.notify();
+    published.notify();
+    for (const auto& feed : feeds) feed->stop();
+    if (worker.joinable()) worker.join();
+  }
+
+  void work() {
+    const int threads =
+        live_options.threads > 0 ? live_options.threads : oneapi::tbb::task_arena::automatic;
+    oneapi::tbb::task_arena arena(threads);
+    std::shared_ptr<LiveFrame> frame = pool.take();
+    while (!stopped) {
+      const std::size_t seen = arrived.count();
+      try {
+        if (!make_frame(*frame)) {
+          arrived.wait(seen, waiting_time());
+          continue;
+        }
+        arena.execute([&] { process(*frame); });
+        publish(frame);
+        frame = pool.take();
+      } catch (const std::exception& error) {
+        note_failure(error.what());
+      } catch (...) {
+        note_failure("an unknown error");
+      }
+    }
+  }
+
+  FrameAssembler::Settings sync_settings() const {
+    const std::lock_guard lock(mutex);
+    return {options.sync_tolerance_s, live_options.sync_wait_s};
+  }
+
+  std::chrono::duration<double> waiting_time() {
+    constexpr double longest_s = 0.1;
+    constexpr double shortest_s = 0.001;
+    const auto deadline_s = assembler.next_deadline_s(sync_settings());
+    const double left_s = deadline_s ? *deadline_s - monotonic_now_s() : longest_s;
+    return std::chrono::duration<double>(std::clamp(left_s, shortest_s, longest_s));
+  }
+
+  bool make_frame(LiveFrame& frame) {
+    const double now_s = monotonic_now_s();
+    const auto is_expected = [&](std::size_t k) {
+      const auto last_s = inboxes[k + 1]->last_arrival_s();
+      return last_s && now_s - *last_s < no_picture_after_s;
+    };
+    const auto passed_over = assembler.assemble(sync_settings(), now_s, is_expected, frame.input);
+    if (!passed_over) return false;
+    const std::lock_guard lock(mutex);
+    skipped += *passed_over;
+    return true;
+  }
+
+  void process(LiveFrame& frame) {
+    {
+      const std::lock_guard lock(mutex);
+      pipeline.set_options(QualityLadder::simplified(options, ladder.level()));
+    }
+    pipeline.process(frame.input, frame.result);
+  }
+
+  void publish(const std::shared_ptr<LiveFrame>& frame) {
+    frame->published_s = monotonic_now_s();
+    frame->latency_ms = 1000 * (frame->published_s - frame->input.stamp_s);
+    {
+      const std::lock_guard lock(mutex);
+      frame->number = latest ? latest->number + 1 : 1;
+      latest = frame;
+      latencies_ms.add(frame->latency_ms);
+      publish_times_s.add(frame->published_s);
+      ladder.next_level(sum(frame->result.report.milliseconds), live_options.budget_ms);
+      failure.clear();
+    }
+    const std::lock_guard lock(listeners_mutex);
+    std::erase_if(listeners, [](const auto& listener) { return listener.expired(); });
+    for (const auto& weak : listeners) {
+      if (const auto listener = weak.lock()) (*listener)(frame);
+    }
+    published.notify();
+  }
+
+  void note_failure(const std::string& what) {
+    const std::lock_guard lock(mutex);
+    ++failed;
+    failure = what;
+  }
+
+  LiveStatus status() const;
+  void describe_cameras(LiveStatus& status, double now_s) const;
+
+  using Listener = std::function<void(const std::shared_ptr<const LiveFrame>&)>;
+
+  const Rig rig;
+  const Scene scene;
+  mutable std::mutex mutex;  ///< of what follows, up to the next blank line
+  Options options;
+  LiveOptions live_options;
+  QualityLadder ladder;
+  std::shared_ptr<const LiveFrame> latest;
+  SlidingWindow latencies_ms{window_frames};
+  SlidingWindow publish_times_s{window_frames};
+  std::size_t skipped = 0, failed = 0;
+  std::string failure;
+
+  Pipeline pipeline;
+  FramePool pool;
+  std::vector<std::unique_ptr<CameraInbox>> inboxes;  ///< "color" and each RGB-D camera's
+  FrameAssembler assembler;
+  ArrivalSignal arrived, published;
+  std::mutex listeners_mutex;
+  std::vector<std::weak_ptr<Listener>> listeners;
+  std::atomic<bool> stopped = false;
+  std::vector<std::unique_ptr<CameraFeed>> feeds;
+  std::thread worker;
+};
+
+void LiveSession::Implementation::describe_cameras(LiveStatus& status, double now_s) const {
+  for (const auto& feed : feeds) status.cameras.push_back(feed->status());
+  for (const CameraStatus& camera : status.cameras) {
+    if (camera.state == CameraState::lost) {
+      status.problems.push_back(camera.name + ": camera lost: " + camera.problem);
+    } else if (camera.state == CameraState::silent) {
+      status.problems.push_back(camera.name + ": the camera is silent: " + camera.problem);
+    } else if (camera.state == CameraState::ended && camera.name == "color") {
+      status.ended = true;
+    }
+  }
+  if (!status.ended && (!latest || now_s - latest->published_s > no_picture_after_s)) {
+    status.problems.push_back("no new picture");
+  }
+}
+
+LiveStatus LiveSession::Implementation::status() const {
+  LiveStatus status;
+  status.running = !stopped;
+  const std::lock_guard lock(mutex);
+  describe_cameras(status, monotonic_now_s());
+  status.skipped = skipped;
+  status.failed = failed;
+  status.frames_per_second = publish_times_s.rate();
+  const Distribution latency = distribution_of(latencies_ms.values());
+  status.latency_ms = {latency.p50, latency.p95, latency.p99};
+  status.budget_ms = live_options.budget_ms;
+  status.quality_level = ladder.level();
+  status.quality = QualityLadder::description(ladder.level());
+  if (!failure.empty()) status.problems.push_back("the last frame failed: " + failure);
+  if (!latest) return status;
+  const FrameReport& report = latest->result.report;
+  status.frames = latest->number;
+  status.stage_ms = report.milliseconds;
+  status.frame_ms = sum(report.milliseconds);
+  for (const auto& pose : report.poses.color_from_depth) status.posed.push_back(pose.has_value());
+  status.markers.push_back(report.markers.color.size());
+  for (const auto& markers : report.markers.rgbd) status.markers.push_back(markers.size());
+  status.occluders = report.occluders;
+  const double pixels = static_cast<double>(latest->result.mask.size());
+  if (pixels > 0) status.mask_share = static_cast<double>(report.mask_pixels) / pixels;
+  if (report.mask_pixels > 0) {
+    status.seen_share =
+        static_cast<double>(report.valid_pixels) / static_cast<double>(report.mask_pixels);
+  }
+  for (const std::string& message : report.messages) {
+    const bool is_said =
+        std::any_of(status.cameras.begin(), status.cameras.end(), [&](const auto& c) {
+          return c.state != CameraState::running && message.starts_with(c.name + ":");
+        });
+    if (!is_said) status.problems.push_back(message);
+  }
+  return status;
+}
+
+LiveSession::LiveSession(const Rig& rig, const Scene& scene, const Options& options,
+                         const std::vector<LiveCamera>& cameras, const LiveOptions& live_options)
+    : implementation_(
+          std::make_unique<Implementation>(rig, scene, options, cameras, live_options)) {}
+LiveSession::~LiveSession() = default;
+
+const Rig& LiveSession::rig() const {
+  return implementation_->rig;
+}
+const Scene& LiveSession::scene() const {
+  return implementation_->scene;
+}
+Options LiveSession::options() const {
+  const std::lock_guard lock(implementation_->mutex);
+  return implementation_->options;
+}
+void LiveSession::set_options(const Options& options) {
+  check(options, implementation_->scene);
+  const std::lock_guard lock(implementation_->mutex);
+  implementation_->options = options;
+}
+LiveOptions LiveSession::live_options() const {
+  const std::lock_guard lock(implementation_->mutex);
+  return implementation_->live_options;
+}
+void LiveSession::set_budget_ms(double budget_ms) {
+  const std::lock_guard lock(implementation_->mutex);
+  implementation_->live_options.budget_ms = budget_ms;
+}
+LiveStatus LiveSession::status() const {
+  return implementation_->status();
+}
+
+std::shared_ptr<const LiveFrame> LiveSession::wait_for_frame(
+    std::size_t after, std::chrono::milliseconds timeout) const {
+  const Implementation& self = *implementation_;
+  const auto end = std::chrono::steady_clock::now() + timeout;
+  while (true) {
+    const std::size_t seen = self.published.count();
+    {
+      const std::lock_guard lock(self.mutex);
+      if (self.latest && self.latest->number > after) return self.latest;
+    }
+    const auto left = end - std::chrono::steady_clock::now();
+    if (self.stopped || left.count() <= 0) return nullptr;
+    self.published.wait(seen, left);
+  }
+}
+
+std::shared_ptr<void> LiveSession::on_frame(
+    std::function<void(const std::shared_ptr<const LiveFrame>&)> call) {
+  auto listener = std::make_shared<Implementation::Listener>(std::move(call));
+  const std::lock_guard lock(implementation_->listeners_mutex);
+  implementation_->listeners.push_back(listener);
+  return listener;
+}
+
+void LiveSession::stop() {
+  implementation_->stop();
+}
+
+}  // namespace diminish

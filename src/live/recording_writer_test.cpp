@@ -1,0 +1,111 @@
+#include "live/recording_writer.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "diminish/frame_source.h"
+#include "expect_error.h"
+#include "temporary_folder.h"
+
+namespace diminish {
+namespace {
+
+using testing::HasSubstr;
+
+const std::filesystem::path recordings = DIMINISH_RECORDINGS_DIR;
+
+std::vector<FrameSet> frames_of(const std::filesystem::path& folder) {
+  const Recording recording = load_recording(folder);
+  const auto source = open_recording(recording, {});
+  std::vector<FrameSet> frames;
+  for (FrameSet frame; source->next(frame);) frames.push_back(frame);
+  return frames;
+}
+
+double mean_difference(const Image<Bgr>& a, const Image<Bgr>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    sum += std::abs(a.data()[i].b - b.data()[i].b) + std::abs(a.data()[i].g - b.data()[i].g) +
+           std::abs(a.data()[i].r - b.data()[i].r);
+  }
+  return sum / static_cast<double>(3 * a.size());
+}
+
+class Writer : public testing::TestWithParam<const char*> {
+ protected:
+  std::unique_ptr<RecordingWriter> write_to(const std::filesystem::path& folder) const {
+    return std::make_unique<RecordingWriter>(folder, source_ / "rig.yaml", recording_.rig,
+                                             source_ / "scene.yaml", recording_.scene);
+  }
+
+  std::filesystem::path source_ = recordings / GetParam();
+  Recording recording_ = load_recording(source_);
+  TemporaryFolder folder_;
+};
+
+TEST_P(Writer, WhatIsWrittenIsReadAgain) {
+  const std::vector<FrameSet> original = frames_of(source_);
+  const auto copy = folder_.path() / "copy";
+  {
+    const auto writer = write_to(copy);
+    for (const FrameSet& frame : original) {
+      auto live = std::make_shared<LiveFrame>();
+      live->input = frame;
+      writer->offer(live);
+      writer->offer(live);  // as when two frames share an RGB-D image
+    }
+    writer->finish();
+    EXPECT_EQ(writer->status().problem, "");
+    EXPECT_EQ(writer->status().frames + writer->status().dropped, 2 * original.size());
+  }
+  const std::vector<FrameSet> read = frames_of(copy);  // with what scene.yaml names
+  ASSERT_EQ(read.size(), original.size());
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    EXPECT_NEAR(read[i].stamp_s, original[i].stamp_s, 1e-6);
+    EXPECT_LT(mean_difference(read[i].color, original[i].color), 2);
+    for (std::size_t k = 0; k < read[i].rgbd.size(); ++k) {
+      EXPECT_EQ(read[i].rgbd[k].depth, original[i].rgbd[k].depth) << "depth loses nothing";
+      EXPECT_LT(mean_difference(read[i].rgbd[k].color, original[i].rgbd[k].color), 2);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Recordings, Writer, testing::Values("calendar", "ball", "workbench"));
+
+class CalendarWriter : public Writer {};
+
+TEST_P(CalendarWriter, DropsAndCountsWhatItHasNoTimeFor) {
+  auto live = std::make_shared<LiveFrame>();
+  live->input = frames_of(source_).front();
+  const auto writer = write_to(folder_.path() / "copy");
+  constexpr std::size_t offered = 500;
+  for (std::size_t i = 0; i < offered; ++i) writer->offer(live);
+  writer->finish();
+  EXPECT_GT(writer->status().dropped, 0U);
+  EXPECT_EQ(writer->status().frames + writer->status().dropped, offered);
+}
+
+TEST_P(CalendarWriter, NothingThatIsThereIsLost) {
+  folder_.write("copy/notes.txt", "mine");
+  EXPECT_THAT(error_of([&] { write_to(folder_.path() / "copy"); }),
+              HasSubstr("copy: expected an empty folder"));
+  EXPECT_TRUE(std::filesystem::exists(folder_.path() / "copy" / "notes.txt"));
+}
+
+TEST_P(CalendarWriter, AFolderThatGoesAwayEndsItWithAReason) {
+  auto live = std::make_shared<LiveFrame>();
+  live->input = frames_of(source_).front();
+  const auto copy = folder_.path() / "copy";
+  const auto writer = write_to(copy);
+  std::filesystem::remove_all(copy);
+  writer->offer(live);
+  writer->finish();
+  EXPECT_FALSE(writer->status().active);
+  EXPECT_THAT(writer->status().problem, HasSubstr("cannot be written"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Recordings, CalendarWriter, testing::Values("calendar"));
+
+}  // namespace
+}  // namespace diminish

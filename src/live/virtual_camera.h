@@ -1,0 +1,30 @@
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "diminish/live.h"
+
+namespace diminish {
+
+/// Hands a session's results to a video device, so that any program that takes a camera can use
+/// them; through GStreamer. A thread of its own writes the newest frame.
+class VirtualCamera {
+ public:
+  /// target: "/dev/videoN" of v4l2loopback, or "gst:" and the end of a pipeline.
+  /// Throws Error that names the target if it cannot be opened.
+  VirtualCamera(const LiveSession& session, const std::string& target, double frames_per_second);
+  ~VirtualCamera();
+  VirtualCamera(const VirtualCamera&) = delete;
+  VirtualCamera& operator=(const VirtualCamera&) = delete;
+
+ private:
+  struct Writer;
+  std::unique_ptr<Writer> writer_;
+  std::atomic<bool> stopped_ = false;
+  std::thread thread_;
+};
+
+}  // namespace diminish

@@ -1,0 +1,290 @@
+#include "diminish/web_server.h"
+
+#include <gmock/gmock.h>
+#include <httplib.h>
+
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <thread>
+
+#include "core/mat.h"
+#include "diminish/frame_source.h"
+#include "expect_error.h"
+#include "temporary_folder.h"
+
+namespace diminish {
+namespace {
+
+using nlohmann::json;
+using std::chrono::seconds;
+using testing::HasSubstr;
+
+const std::filesystem::path folder = std::filesystem::path(DIMINISH_RECORDINGS_DIR) / "calendar";
+
+class Web : public testing::Test {
+ protected:
+  Web() { EXPECT_TRUE(session_.wait_for_frame(0, seconds(30))); }
+
+  WebServerOptions options() const {
+    WebServerOptions options;
+    options.port = 0;
+    options.recordings = recordings_.path();
+    options.rig_file = folder / "rig.yaml";
+    options.scene_file = folder / "scene.yaml";
+    return options;
+  }
+  static httplib::Client client(const WebServer& server) {
+    httplib::Client client("127.0.0.1", server.port());
+    client.set_read_timeout(30);
+    return client;
+  }
+  static json post(const WebServer& server, const char* path, const json& body, int status = 200) {
+    const auto response = client(server).Post(path, body.dump(), "application/json");
+    if (!response) throw std::runtime_error("no answer");
+    EXPECT_EQ(response->status, status) << response->body;
+    return json::parse(response->body);
+  }
+  static json get(const WebServer& server, const char* path) {
+    const auto response = client(server).Get(path);
+    if (!response) throw std::runtime_error("no answer");
+    return json::parse(response->body);
+  }
+
+  /// The first `count` JPEGs of the stream, with their frames' numbers.
+  static std::vector<std::pair<int, cv::Mat>> stream(const WebServer& server, std::size_t count,
+                                                     const std::string& view) {
+    std::vector<std::pair<int, cv::Mat>> pictures;
+    std::string waiting;
+    client(server).Get("/api/stream.mjpg?view=" + view, [&](const char* data, std::size_t size) {
+      waiting.append(data, size);
+      while (pictures.size() < count) {
+        const std::size_t head = waiting.find("\r\n\r\n");
+        if (head == std::string::npos) return true;
+        const auto number_of = [&](const std::string& name) {
+          return std::stoi(waiting.substr(waiting.find(name) + name.size()));
+        };
+        const auto length = static_cast<std::size_t>(number_of("Content-Length: "));
+        if (waiting.size() < head + 4 + length + 2) return true;
+        const std::string bytes = waiting.substr(head + 4, length);
+        pictures.emplace_back(
+            number_of("X-Frame: "),
+            cv::imdecode(std::vector<char>(bytes.begin(), bytes.end()), cv::IMREAD_COLOR));
+        waiting.erase(0, head + 4 + length + 2);
+      }
+      return pictures.size() < count;
+    });
+    return pictures;
+  }
+
+  TemporaryFolder recordings_;
+  Recording recording_ = load_recording(folder);
+  std::string replay_ = "recording:" + folder.string() + "?loop";
+  LiveSession session_{
+      recording_.rig, recording_.scene, {}, {{"color", replay_}, {"rgbd0", replay_}}, {}};
+};
+
+TEST_F(Web, ServesThePage) {
+  const WebServer server(session_, options());
+  for (const char* path : {"/", "/viewer.js", "/stream.js", "/style.css"}) {
+    const auto response = client(server).Get(path);
+    ASSERT_TRUE(response);
+    EXPECT_EQ(response->status, 200) << path;
+    EXPECT_FALSE(response->body.empty());
+  }
+  EXPECT_EQ(client(server).Get("/nothing")->status, 404);
+}
+
+TEST_F(Web, StatusIsTheSessions) {
+  const WebServer server(session_, options());
+  const json status = get(server, "/api/status");
+  EXPECT_GT(status["frames"], 0);
+  EXPECT_EQ(status["cameras"].size(), 2U);
+  EXPECT_EQ(status["cameras"][0]["state"], "running");
+  EXPECT_EQ(status["stage_ms"].size(), stage_count);
+  EXPECT_EQ(status["objects"][0]["name"], "calendar");
+  EXPECT_EQ(status["objects"][0]["in_color"], true);
+}
+
+TEST_F(Web, StreamsPicturesThatMoveOn) {
+  const WebServer server(session_, options());
+  const auto pictures = stream(server, 4, "after");
+  ASSERT_EQ(pictures.size(), 4U);
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    EXPECT_EQ(pictures[i].second.cols, recording_.rig.color.width);
+    EXPECT_EQ(pictures[i].second.rows, recording_.rig.color.height);
+    EXPECT_TRUE(i == 0 || pictures[i].first > pictures[i - 1].first);
+  }
+}
+
+TEST_F(Web, APairShowsTheCamerasPictureAboveTheResult) {
+  const WebServer server(session_, options());
+  const cv::Mat pair = stream(server, 1, "pair").at(0).second;
+  const int height = recording_.rig.color.height;
+  ASSERT_EQ(pair.rows, 2 * height);
+  const cv::Mat before = pair.rowRange(0, height);
+  const cv::Mat after = pair.rowRange(height, 2 * height);
+  cv::Mat difference;
+  cv::absdiff(before, after, difference);
+  EXPECT_GT(cv::mean(difference)[0], 0.5);
+  // They differ where the object is, and are the same frame elsewhere.
+  EXPECT_LT(cv::mean(difference(cv::Rect(0, 0, 200, 200)))[0], 3);
+}
+
+TEST_F(Web, APngIsTheResultWithoutLoss) {
+  const WebServer server(session_, options());
+  session_.stop();
+  const auto response = client(server).Get("/api/frame.png");
+  ASSERT_TRUE(response);
+  ASSERT_EQ(response->status, 200);
+  const cv::Mat picture = cv::imdecode(
+      std::vector<char>(response->body.begin(), response->body.end()), cv::IMREAD_COLOR);
+  const auto last = session_.wait_for_frame(0, seconds(1));
+  EXPECT_EQ(cv::norm(picture, as_mat(last->result.picture), cv::NORM_INF), 0);
+}
+
+TEST_F(Web, EventsComeAgainAndAgain) {
+  const WebServer server(session_, options());
+  std::string text;
+  client(server).Get("/api/events", [&](const char* data, std::size_t size) {
+    text.append(data, size);
+    return std::count(text.begin(), text.end(), '\n') < 6;
+  });
+  const std::size_t second = text.find("\n\ndata: ") + 2;
+  const json event = json::parse(text.substr(second + 6, text.find('\n', second) - second - 6));
+  EXPECT_EQ(event["running"], true);
+}
+
+TEST_F(Web, SettingsChangeTheSession) {
+  const WebServer server(session_, options());
+  const json settings = post(server, "/api/settings", {{"mode", "outline"}, {"budget_ms", 50}});
+  EXPECT_EQ(session_.options().mode, "outline");
+  EXPECT_EQ(session_.live_options().budget_ms, 50);
+  EXPECT_EQ(settings["objects"], json({"calendar"}));
+  EXPECT_EQ(get(server, "/api/settings"), settings);
+}
+
+TEST_F(Web, WrongSettingsAreRefusedWithTheReason) {
+  const WebServer server(session_, options());
+  const auto complaint = [&](const json& body) -> std::string {
+    return post(server, "/api/settings", body, 400)["error"];
+  };
+  EXPECT_THAT(complaint({{"mode", "sideways"}}), HasSubstr("mode: expected one of"));
+  EXPECT_THAT(complaint({{"mask_margin_px", -5}}), HasSubstr("mask_margin_px: expected 0 to"));
+  EXPECT_THAT(complaint({{"keep", "teapot"}}), HasSubstr("'teapot'"));
+  EXPECT_THAT(complaint({{"mode", "half"}, {"what", 1}}), HasSubstr("'what'"));
+  EXPECT_EQ(session_.options().mode, "remove") << "all or nothing";
+  EXPECT_EQ(client(server).Get("/api/stream.mjpg?view=up")->status, 400);
+}
+
+TEST_F(Web, TooManyViewersAreAskedToComeBack) {
+  WebServerOptions few = options();
+  few.most_viewers = 1;
+  const WebServer server(session_, few);
+  std::atomic<bool> first_looks = false;
+  std::atomic<bool> first_may_go = false;
+  std::thread first([&] {
+    client(server).Get("/api/stream.mjpg", [&](const char*, std::size_t) {
+      first_looks = true;
+      return !first_may_go;
+    });
+  });
+  while (!first_looks) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  const auto refused = client(server).Get("/api/stream.mjpg");
+  ASSERT_TRUE(refused);
+  EXPECT_EQ(refused->status, 503);
+  EXPECT_THAT(refused->body, HasSubstr("already 1 viewers"));
+  first_may_go = true;
+  first.join();
+}
+
+TEST_F(Web, AViewerWhoDoesNotReadHoldsNobodyUp) {
+  const WebServer server(session_, options());
+  std::atomic<bool> stuck = false;
+  std::atomic<bool> may_go = false;
+  std::thread slow([&] {
+    client(server).Get("/api/stream.mjpg", [&](const char*, std::size_t) {
+      stuck = true;
+      while (!may_go) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      return false;
+    });
+  });
+  while (!stuck) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  const std::size_t before = session_.status().frames;
+  const auto pictures = stream(server, 5, "after");
+  EXPECT_EQ(pictures.size(), 5U);
+  EXPECT_GE(session_.status().frames, before + 4);
+  may_go = true;
+  slow.join();
+}
+
+TEST_F(Web, RecordsOnRequest) {
+  const WebServer server(session_, options());
+  while (get(server, "/api/status")["posed"] != json({true})) {  // its camera is there
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  const json started = post(server, "/api/recording", {{"active", true}});
+  EXPECT_EQ(started["active"], true);
+  const std::filesystem::path made = started["folder"].get<std::string>();
+  EXPECT_EQ(made.parent_path(), recordings_.path());
+  EXPECT_THAT(post(server, "/api/recording", {{"active", true}}, 400)["error"].get<std::string>(),
+              HasSubstr("already"));
+  while (get(server, "/api/status")["recording"]["frames"] < 3) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  const json ended = post(server, "/api/recording", {{"active", false}});
+  EXPECT_EQ(ended["active"], false);
+  EXPECT_EQ(ended["problem"], "");
+  const Recording recorded = load_recording(made);
+  const auto source = open_recording(recorded, {});
+  EXPECT_EQ(source->frame_count(), ended["frames"]);
+  FrameSet frame;
+  ASSERT_TRUE(source->next(frame));
+  EXPECT_TRUE(frame.rgbd[0].available());
+}
+
+TEST_F(Web, RecordsNothingUnlessAllowed) {
+  WebServerOptions none = options();
+  none.recordings.clear();
+  const WebServer server(session_, none);
+  EXPECT_THAT(post(server, "/api/recording", {{"active", true}}, 400)["error"].get<std::string>(),
+              HasSubstr("--recordings"));
+  EXPECT_THAT(post(server, "/api/recording", {{"on", true}}, 400)["error"].get<std::string>(),
+              HasSubstr("expected {\"active\": true}"));
+}
+
+TEST_F(Web, RefusesOtherSites) {
+  const WebServer server(session_, options());
+  EXPECT_EQ(client(server).Get("/api/status", {{"Host", "evil.example"}})->status, 403);
+  const auto form = client(server).Post("/api/settings", "{\"mode\":\"half\"}", "text/plain");
+  EXPECT_EQ(form->status, 415);
+  EXPECT_EQ(session_.options().mode, "remove");
+}
+
+TEST_F(Web, WithATokenNothingIsToldWithoutIt) {
+  WebServerOptions secret = options();
+  secret.token = "sesame";
+  const WebServer server(session_, secret);
+  EXPECT_THAT(server.url(), HasSubstr("?token=sesame"));
+  for (const char* path : {"/api/status", "/api/frame.jpg", "/api/stream.mjpg", "/api/events",
+                           "/api/settings", "/api/status?token=sesam"}) {
+    EXPECT_EQ(client(server).Get(path)->status, 401) << path;
+  }
+  EXPECT_EQ(client(server).Get("/api/status?token=sesame")->status, 200);
+  EXPECT_EQ(client(server).Get("/api/status", {{"Authorization", "Bearer sesame"}})->status, 200);
+}
+
+TEST_F(Web, AnOpenAddressNeedsAToken) {
+  WebServerOptions open = options();
+  open.address = "0.0.0.0";
+  EXPECT_THAT(error_of([&] { WebServer(session_, open); }), HasSubstr("needs a token"));
+}
+
+TEST_F(Web, APortThatIsTakenIsAnError) {
+  const WebServer first(session_, options());
+  WebServerOptions same = options();
+  same.port = first.port();
+  EXPECT_THAT(error_of([&] { WebServer(session_, same); }), HasSubstr("cannot listen there"));
+}
+
+}  // namespace
+}  // namespace diminish

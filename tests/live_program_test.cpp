@@ -1,0 +1,79 @@
+#include <gmock/gmock.h>
+
+#include <cstdlib>
+
+#include "diminish/frame_source.h"
+#include "run_program.h"
+
+namespace diminish {
+namespace {
+
+using testing::AllOf;
+using testing::ContainsRegex;
+using testing::HasSubstr;
+
+const std::string calendar = std::string(DIMINISH_RECORDINGS_DIR) + "/calendar";
+
+TEST(LiveProgram, RunsAndRecordsWhatCanBeRunAgain) {
+  const TemporaryFolder folder;
+  const std::string copy = (folder.path() / "copy").string();
+  const auto live = Program::run({"live", calendar, "--seconds", "4", "--record", copy});
+  EXPECT_EQ(live.exit_code, 0) << live.err;
+  EXPECT_THAT(live.out, AllOf(HasSubstr("frames/s"), HasSubstr("Latency: p50"),
+                              ContainsRegex("Recorded [1-9][0-9]* frames")));
+  const auto run = Program::run({"run", copy, "--out", (folder.path() / "out").string()});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+}
+
+TEST(LiveProgram, AFrameBudgetAndFaultyCamerasAreShown) {
+  const std::string faulty = "faults:torn=0.3;recording:" + calendar + "?loop";
+  const auto live = Program::run(
+      {"live", calendar, "--seconds", "3", "--color", faulty, "--rgbd", "rgbd0=" + faulty});
+  EXPECT_EQ(live.exit_code, 0) << live.err;
+  EXPECT_THAT(live.out, ContainsRegex("color +[0-9]+ +[0-9]+ +0 +0 +0 +[1-9]"));
+}
+
+TEST(LiveProgram, ARecordingThatIsNotLoopedEndsByItself) {
+  const std::string once = "recording:" + calendar;
+  const auto live = Program::run({"live", calendar, "--color", once, "--rgbd", once});
+  EXPECT_EQ(live.exit_code, 0) << live.err;
+}
+
+TEST(LiveProgram, MeasuresLatencyThroughEverything) {
+  const auto test = Program::run({"latency-test", calendar, "--seconds", "3"});
+  EXPECT_EQ(test.exit_code, 0) << test.err;
+  EXPECT_THAT(test.out, AllOf(ContainsRegex("to a viewer, decompressed +[0-9]"),
+                              HasSubstr(" 0 without a readable time")));
+}
+
+TEST(LiveProgram, ListsCameras) {
+  const auto devices = Program::run({"devices"});
+  EXPECT_EQ(devices.exit_code, 0);
+  EXPECT_THAT(devices.out, AllOf(HasSubstr("v4l2:/dev/video0"), HasSubstr("recording:FOLDER")));
+}
+
+TEST(LiveProgram, WithoutADisplayTheWindowSaysSo) {
+  for (const char* name : {"DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM"}) unsetenv(name);
+  const auto view = Program::run({"view", calendar});
+  EXPECT_EQ(view.exit_code, 1);
+  EXPECT_THAT(view.err, HasSubstr("there is no display"));
+}
+
+TEST(LiveProgram, WrongCamerasAreErrors) {
+  const auto complaint = [](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"live", calendar});
+    const auto live = Program::run(arguments);
+    EXPECT_EQ(live.exit_code, 1);
+    return live.err;
+  };
+  EXPECT_THAT(complaint({"--rgbd", "recording:x"}), HasSubstr("--color: expected a camera"));
+  EXPECT_THAT(complaint({"--color", "x:y", "--rgbd", "recording:x"}),
+              HasSubstr("unknown kind of camera 'x'"));
+  EXPECT_THAT(
+      complaint({"--color", "recording:x", "--rgbd", "recording:x", "--rgbd", "recording:x"}),
+      HasSubstr("the rig has only 1 RGB-D cameras"));
+  EXPECT_THAT(complaint({"--virtual-camera", "/dev/null/no"}), HasSubstr("/dev/null/no"));
+}
+
+}  // namespace
+}  // namespace diminish
