@@ -1,10 +1,11 @@
 # The two commands to know: `make demo` and `make test`. Everything they need, they install.
 
-.PHONY: help demo test build deps bench lint format sanitize fuzz clean
+.PHONY: help demo test test-page build deps bench lint format sanitize fuzz clean
 
 help:
 	@echo "make demo      remove the objects of the bundled recordings, print the figures"
 	@echo "make test      build and run all tests"
+	@echo "make test-page test the web page in a browser"
 	@echo "make build     build the program: build/release/diminish"
 	@echo "make bench     measure each stage beside its peer"
 	@echo "make lint      clang-format and clang-tidy"
@@ -23,6 +24,10 @@ demo: build
 test: deps
 	scripts/build
 	scripts/test
+
+test-page: build
+	scripts/install-deps page
+	scripts/test-page
 
 bench: deps
 	scripts/bench

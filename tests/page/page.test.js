@@ -1,0 +1,214 @@
+// The page of `diminish serve` in a real browser. Run by scripts/test-page.
+import assert from "node:assert/strict";
+import { spawn } from "node:child_process";
+import { cp, mkdtemp, readdir, readFile, rm, writeFile } from "node:fs/promises";
+import { tmpdir } from "node:os";
+import path from "node:path";
+import { after, before, test } from "node:test";
+import { fileURLToPath } from "node:url";
+import { chromium } from "playwright-core";
+
+const root = fileURLToPath(new URL("../..", import.meta.url));
+const program = process.env.DIMINISH_PROGRAM ?? path.join(root, "build/release/diminish");
+const recordings = path.join(root, "demo/recordings");
+const patience = { timeout: 60_000 };
+
+// The program as a user starts it; ends with `stop`.
+async function serve(...parameters) {
+  const process = spawn(program, ["serve", ...parameters, "--port", "0"]);
+  let errors = "";
+  process.stderr.on("data", (text) => { errors += text; });
+  const ended = new Promise((resolve) => process.on("exit", resolve));
+  const url = await new Promise((resolve, reject) => {
+    let text = "";
+    process.stdout.on("data", (data) => {
+      text += data;
+      const found = /Look at (\S+)/.exec(text);
+      if (found) resolve(found[1]);
+    });
+    ended.then((code) => reject(new Error(`diminish ended with ${code}: ${errors}`)));
+  });
+  return {
+    url,
+    async stop() {
+      process.kill("SIGINT");
+      assert.equal(await ended, 0, errors);
+    },
+  };
+}
+
+const frameNumber = (page) => page.locator("#picture").getAttribute("data-frame").then(Number);
+
+// The picture's pixels, summed over a part of it: [x, y, width, height] in shares of its size.
+function brightness(page, part) {
+  return page.evaluate(([x, y, width, height]) => {
+    const canvas = document.getElementById("picture");
+    const { data } = canvas.getContext("2d").getImageData(
+      x * canvas.width, y * canvas.height, width * canvas.width, height * canvas.height);
+    let sum = 0;
+    for (let i = 0; i < data.length; i += 4) sum += data[i] + data[i + 1] + data[i + 2];
+    return sum / (data.length / 4) / 3;
+  }, part);
+}
+
+async function eventually(isTrue, what) {
+  const end = Date.now() + patience.timeout;
+  while (Date.now() < end) {
+    if (await isTrue()) return;
+    await new Promise((resume) => setTimeout(resume, 50));
+  }
+  assert.fail(`never: ${what}`);
+}
+
+let browser, server, folder;
+
+before(async () => {
+  folder = await mkdtemp(path.join(tmpdir(), "diminish-page-"));
+  server = await serve(path.join(recordings, "calendar"), "--recordings", folder);
+  browser = await chromium.launch({
+    executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
+    args: ["--no-sandbox"],
+  });
+});
+
+after(async () => {
+  await browser?.close();
+  await server?.stop();
+  if (folder) await rm(folder, { recursive: true });
+});
+
+// A page that has shown a picture, and complains of nothing.
+async function open(url = server.url, options = { viewport: { width: 1280, height: 900 } }) {
+  const page = await browser.newPage(options);
+  page.errors = [];
+  page.on("pageerror", (error) => page.errors.push(error.message));
+  await page.goto(url);
+  await page.waitForSelector("#picture[data-frame]", { ...patience, state: "attached" });
+  return page;
+}
+
+test("the picture moves", async () => {
+  const page = await open();
+  const first = await frameNumber(page);
+  await eventually(async () => (await frameNumber(page)) > first + 5, "five more frames");
+  assert.ok((await brightness(page, [0, 0, 1, 1])) > 20, "it is not black");
+  await eventually(async () => Number(await page.locator("#rate").textContent()) > 1, "a frame rate");
+  assert.match(await page.locator("#latency").textContent(), /\d+ ms/);
+  assert.equal(await page.locator("#cameras tbody tr").count(), 2);
+  assert.deepEqual(page.errors, []);
+  await page.close();
+});
+
+test("the slider shows the camera's picture on its left", async () => {
+  const page = await open();
+  const sample = async () => {
+    const before = await frameNumber(page);
+    await eventually(async () => (await frameNumber(page)) > before + 8, "some frames");
+    return brightness(page, [0.3, 0.3, 0.4, 0.4]);
+  };
+  const result = await sample();
+  await page.locator("#before-after").fill("100");
+  await page.locator("#before-label").waitFor(patience);
+  const camera = await sample();
+  assert.ok(Math.abs(camera - result) > 3, `camera ${camera}, result ${result}`);
+  await page.locator("#before-after").fill("0");
+  await eventually(async () => Math.abs((await sample()) - result) < Math.abs(camera - result) / 2,
+    "the result again");
+  assert.deepEqual(page.errors, []);
+  await page.close();
+});
+
+test("modes, sliders and objects change the picture for all who look", async () => {
+  const [page, other] = [await open(), await open()];
+  await page.getByRole("radio", { name: "provenance" }).click();
+  await eventually(() => page.getByRole("radio", { name: "provenance", checked: true }).isVisible(), "mode");
+  const status = () => other.evaluate(() => fetch("api/status").then((answer) => answer.json()));
+  await eventually(async () => (await status()).mode === "provenance", "the mode");
+  await page.getByRole("radio", { name: "remove" }).click();
+
+  await page.getByRole("checkbox", { name: "calendar" }).uncheck();
+  await eventually(async () => (await status()).mask_share === 0, "nothing is removed");
+  await page.getByText("left in the picture").waitFor(patience);
+  await page.getByRole("checkbox", { name: "calendar" }).check();
+  await eventually(async () => (await status()).mask_share > 0, "it is removed again");
+
+  await page.locator("input[name=mask_margin_px]").fill("12");
+  await page.locator("input[name=mask_margin_px]").dispatchEvent("change");
+  const settings = () => other.evaluate(() => fetch("api/settings").then((answer) => answer.json()));
+  const margin = async () => (await settings()).settings.find(({ name }) => name === "mask_margin_px").value;
+  await eventually(async () => (await margin()) === 12, "the margin");
+
+  // Both see pictures go on.
+  for (const viewer of [page, other]) {
+    const first = await frameNumber(viewer);
+    await eventually(async () => (await frameNumber(viewer)) > first + 3, "both see it move");
+    assert.deepEqual(viewer.errors, []);
+  }
+  await Promise.all([page.close(), other.close()]);
+});
+
+test("the record button makes a recording", async () => {
+  const page = await open();
+  await page.getByRole("button", { name: "Record" }).click();
+  await page.getByRole("button", { name: "Stop recording" }).waitFor(patience);
+  await page.getByText(/: [1-9]\d* frames/).waitFor(patience);
+  await page.getByRole("button", { name: "Stop recording" }).click();
+  await page.getByRole("button", { name: "Record", exact: true }).waitFor(patience);
+  const [made] = await readdir(folder);
+  const list = await readFile(path.join(folder, made, "rgbd0_depth.txt"), "utf8");
+  assert.ok(list.split("\n").filter((line) => line.endsWith(".png")).length > 0);
+  assert.deepEqual(page.errors, []);
+  await page.close();
+});
+
+test("wrong values are refused in plain words", async () => {
+  const page = await open();
+  await page.getByText("All settings").click();
+  const input = page.locator("#all-settings input[name=surroundings_px]");
+  await input.fill("-3");
+  await input.press("Enter");
+  await page.locator("#warnings").getByText("surroundings_px: expected 1 to 10000").waitFor(patience);
+  await page.close();
+});
+
+test("a camera that is gone is said in the warning bar", async () => {
+  const calendar = path.join(recordings, "calendar");
+  const lame = await serve(calendar, "--color", `recording:${calendar}?loop`, "--rgbd", "recording:/nowhere");
+  const page = await open(lame.url);
+  await page.locator("#warnings").getByText(/rgbd0: camera lost/).waitFor(patience);
+  assert.deepEqual(page.errors, []);
+  await page.close();
+  await lame.stop();
+});
+
+test("a marker that is hidden is said in the warning bar", async () => {
+  // The scene's world marker is one that nobody sees.
+  const hidden = await mkdtemp(path.join(tmpdir(), "diminish-hidden-"));
+  const calendar = path.join(recordings, "calendar");
+  await cp(calendar, hidden, { recursive: true });
+  const scene = await readFile(path.join(hidden, "scene.yaml"), "utf8");
+  await writeFile(path.join(hidden, "scene.yaml"), scene.replace(/(world_marker:\s*\{\s*id:\s*)\d+/, "$149"));
+  const lame = await serve(hidden);
+  const page = await open(lame.url);
+  await page.locator("#warnings").getByText(/world marker 49 not visible in/).first().waitFor(patience);
+  await page.close();
+  await lame.stop();
+  await rm(hidden, { recursive: true });
+});
+
+test("it fits a phone", async () => {
+  const page = await open(server.url, { viewport: { width: 390, height: 844 }, isMobile: true, hasTouch: true });
+  const width = await page.evaluate(() => document.documentElement.scrollWidth);
+  assert.ok(width <= 390, `the page is ${width} pixels wide`);
+  const button = await page.getByRole("radio", { name: "half" }).boundingBox();
+  assert.ok(button.height >= 40, "buttons are large enough for fingers");
+  await page.close();
+});
+
+test("a screenshot for the docs", { skip: !process.env.DIMINISH_SCREENSHOT }, async () => {
+  const page = await open();
+  await page.locator("#before-after").fill("50");
+  await page.waitForTimeout(8000);
+  await page.screenshot({ path: process.env.DIMINISH_SCREENSHOT, type: "jpeg", quality: 85 });
+  await page.close();
+});
