@@ -8,6 +8,7 @@ namespace diminish {
 // leaves the program's exit code: 0 done, 3 done but for frames that could not be used.
 // Errors are thrown as Error.
 void add_bench(CLI::App& program, int& exit_code);
+void add_calibrate(CLI::App& program, int& exit_code);
 void add_markers(CLI::App& program, int& exit_code);
 void add_report(CLI::App& program, int& exit_code);
 void add_run(CLI::App& program, int& exit_code);

@@ -51,7 +51,7 @@ struct BoardDetector::Implementation {
     BoardView view;
     std::vector<cv::Point2f> corners;
     if (!cv::findChessboardCornersSB(grey, {board.columns, board.rows}, corners,
-                                     cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_ACCURACY)) {
+                                     cv::CALIB_CB_NORMALIZE_IMAGE)) {
       return view;
     }
     for (std::size_t i = 0; i < corners.size(); ++i) add(static_cast<int>(i), corners[i], view);

@@ -48,11 +48,11 @@ std::size_t tilt_of(const BoardView& view, int width, int height) {
   }
   cv::Matx33d matrix;
   cv::Rodrigues(rotation, matrix);
-  // The board's normal against the line of sight.
+  // Against the image plane: a board parallel to it tells nothing of the focal length.
   cv::Vec3d normal(matrix(0, 2), matrix(1, 2), matrix(2, 2));
   if (normal[2] < 0) normal = -normal;
-  const double x = normal[0] / normal[2] - translation[0] / translation[2];
-  const double y = normal[1] / normal[2] - translation[1] / translation[2];
+  const double x = normal[0] / normal[2];
+  const double y = normal[1] / normal[2];
   constexpr double tan_15_degrees = 0.268;
   if (std::max(std::abs(x), std::abs(y)) < tan_15_degrees) return 0;
   if (std::abs(x) > std::abs(y)) return x < 0 ? 1 : 2;
