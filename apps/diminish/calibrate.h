@@ -5,5 +5,6 @@
 namespace diminish {
 
 void add_calibrate_intrinsics(CLI::App& calibrate, int& exit_code);
+void add_calibrate_rig(CLI::App& calibrate, int& exit_code);
 
 }  // namespace diminish

@@ -56,11 +56,13 @@ void expect_camera_name(const std::string& camera) {
       printable(camera) + "'");
 }
 
-RigFile::RigFile(std::filesystem::path file) : file_(std::move(file)) {
+RigFile::RigFile(std::filesystem::path file, const std::filesystem::path& start)
+    : file_(std::move(file)) {
   std::error_code ignored;
-  if (!std::filesystem::exists(file_, ignored)) return;
+  const bool exists = std::filesystem::exists(file_, ignored);
+  if (!exists && !std::filesystem::exists(start, ignored)) return;
   constexpr std::size_t max_bytes = 1 << 20;
-  text_ = read_text_file(file_, max_bytes);
+  text_ = read_text_file(exists ? file_ : start, max_bytes);
   if (!text_.empty()) yaml_has(text_, {}, file_);
 }
 

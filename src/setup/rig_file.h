@@ -14,8 +14,9 @@ namespace diminish {
 /// may lack what has not been calibrated yet.
 class RigFile {
  public:
-  /// Empty if there is no such file. Throws Error if it is no YAML.
-  explicit RigFile(std::filesystem::path file);
+  /// If there is no such file, it begins as `start`; empty if that is not there either. Throws
+  /// Error if it is no YAML.
+  explicit RigFile(std::filesystem::path file, const std::filesystem::path& start = {});
 
   /// camera: "color", or an RGB-D camera's sensor, such as "rgbd0_color" or "rgbd0_depth".
   void set_intrinsics(const std::string& camera, const Intrinsics& intrinsics);
