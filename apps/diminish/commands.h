@@ -9,6 +9,7 @@ namespace diminish {
 // Errors are thrown as Error.
 void add_bench(CLI::App& program, int& exit_code);
 void add_calibrate(CLI::App& program, int& exit_code);
+void add_check(CLI::App& program, int& exit_code);
 void add_markers(CLI::App& program, int& exit_code);
 void add_report(CLI::App& program, int& exit_code);
 void add_run(CLI::App& program, int& exit_code);

@@ -31,6 +31,7 @@ int main(int argc, char** argv) {
     diminish::add_train_color(program, exit_code);
     diminish::add_markers(program, exit_code);
     diminish::add_calibrate(program, exit_code);
+    diminish::add_check(program, exit_code);
     diminish::add_bench(program, exit_code);
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
