@@ -29,7 +29,8 @@ constexpr double depth_tolerance = 0.04;  ///< of measured by computed depth
 constexpr double largest_spread = 0.02;   ///< of depth over one marker
 constexpr double unit_factor = 1.6;       ///< beyond this it is the depth's unit, not a print
 constexpr double least_improvement =
-    0.04;  ///< of the pictures' correlation, to blame a focal length
+    0.04;                                ///< of the pictures' correlation, to blame a focal length
+constexpr double least_agreement = 0.4;  ///< below that the pictures do not agree at all
 constexpr double focal_tolerance = 0.04;
 constexpr double small_marker_px = 24;
 constexpr double dark_level = 35;
@@ -525,7 +526,10 @@ class Checker {
       best = *value;
       best_factor = factor;
     }
-    if (best < *as_is + least_improvement || std::abs(best_factor - 1) < focal_tolerance) return;
+    if (best < least_agreement || best < *as_is + least_improvement ||
+        std::abs(best_factor - 1) < focal_tolerance) {
+      return;
+    }
     blame_focal_length(
         0, best_factor,
         fmt::format("so the cameras' pictures agree by {:.2f}, now by {:.2f}", best, *as_is));
@@ -539,7 +543,8 @@ class Checker {
       const double error = median_of(survey_.between_px[k]);
       note(fmt::format("reprojection error of markers from {} to color", rig_.rgbd[k].name), error,
            "pixels");
-      if (explained_ || error < most || (fixed && check_swapped_cameras(k, most))) continue;
+      if (error < most || (explained_ && !fixed)) continue;
+      if (fixed && check_swapped_cameras(k, most)) continue;
       explained_ = true;
       find(Severity::serious, "disagreement",
            fmt::format("{} and color do not agree where markers are", rig_.rgbd[k].name),
@@ -575,6 +580,7 @@ class Checker {
           fmt::format("markers agree to {:.1f} pixels with the place of {}, to {:.1f} with its own",
                       median_of(errors), rig_.rgbd[other].name, median_of(survey_.between_px[k])),
           "exchange the cameras' names, in the recording or the driver");
+      explained_ = true;
       return true;
     }
     return false;
