@@ -85,6 +85,7 @@ class TargetRenderer {
   Image<Bgr> color(const std::vector<Target>& targets, const RigidTransform& camera_from_world,
                    double blur_px, double noise_levels, unsigned seed) const {
     const std::vector<View> views = look(targets, camera_from_world);
+    const RigidTransform world_from_camera = camera_from_world.inverse();
     constexpr int samples = 4;
     cv::Mat picture(height_, width_, CV_32F);
     for (int y = 0; y < height_; ++y) {
@@ -96,7 +97,7 @@ class TargetRenderer {
           const Eigen::Vector2d ray =
               (1 - v) * ((1 - u) * corners_(x, y) + u * corners_(x + 1, y)) +
               v * ((1 - u) * corners_(x, y + 1) + u * corners_(x + 1, y + 1));
-          sum += brightness(views, camera_from_world, ray);
+          sum += brightness(views, world_from_camera, ray);
         }
         picture.at<float>(y, x) = sum / (samples * samples);
       }
@@ -119,12 +120,13 @@ class TargetRenderer {
                              const RigidTransform& camera_from_world, double unit_m, double noise_m,
                              unsigned seed) const {
     const std::vector<View> views = look(targets, camera_from_world);
+    const RigidTransform world_from_camera = camera_from_world.inverse();
     std::mt19937 random(seed);
     std::normal_distribution<double> gauss(0, noise_m);
     Image<std::uint16_t> image(width_, height_);
     for (int y = 0; y < height_; ++y) {
       for (int x = 0; x < width_; ++x) {
-        double nearest = wall_distance(camera_from_world, centres_(x, y));
+        double nearest = wall_distance(world_from_camera, centres_(x, y));
         for (const View& view : views) nearest = std::min(nearest, view.hit(centres_(x, y)).first);
         const double value = (nearest + gauss(random)) / unit_m;
         image(x, y) =
@@ -161,14 +163,13 @@ class TargetRenderer {
     return views;
   }
 
-  double wall_distance(const RigidTransform& camera_from_world, const Eigen::Vector2d& ray) const {
-    const RigidTransform world_from_camera = camera_from_world.inverse();
+  double wall_distance(const RigidTransform& world_from_camera, const Eigen::Vector2d& ray) const {
     const Eigen::Vector3d direction = world_from_camera.rotation * ray.homogeneous();
     const double z = (-wall_m - world_from_camera.translation.z()) / direction.z();
     return z > 0 ? z : std::numeric_limits<double>::infinity();
   }
 
-  float brightness(const std::vector<View>& views, const RigidTransform& camera_from_world,
+  float brightness(const std::vector<View>& views, const RigidTransform& world_from_camera,
                    const Eigen::Vector2d& ray) const {
     double nearest = std::numeric_limits<double>::infinity();
     float value = 0;
@@ -184,9 +185,9 @@ class TargetRenderer {
                                               std::clamp(static_cast<int>(u), 0, texture.cols - 1));
     }
     if (nearest < std::numeric_limits<double>::infinity()) return value;
-    const double z = wall_distance(camera_from_world, ray);
+    const double z = wall_distance(world_from_camera, ray);
     if (!std::isfinite(z)) return 120;
-    const Eigen::Vector3d p = camera_from_world.inverse() * (z * ray.homogeneous());
+    const Eigen::Vector3d p = world_from_camera * (z * ray.homogeneous());
     return static_cast<float>(130 + 30 * std::sin(p.x() * 62.8) * std::sin(p.y() * 50));
   }
 

@@ -38,7 +38,7 @@ struct SetupReport {
 
 /// Looks at a set-up's frames and says what is wrong with its configuration. Of causes that would
 /// explain the same figures the one that makes the cameras' pictures agree best is named, and what
-/// follows from a cause that was found is not complained of again. Keeps four frames in memory.
+/// follows from a cause that was found is not complained of again. Keeps six frames in memory.
 /// Throws Error on configurations that cannot be read at all. Cost: as running the first
 /// stages, and some seconds.
 SetupReport check_setup(const Rig& rig, const Scene& scene, FrameSource& source,

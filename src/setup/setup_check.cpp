@@ -73,8 +73,8 @@ class Checker {
     const bool fixed = rig_.pose_source == "fixed";
     if (fixed) check_between_cameras();
     check_focal_length();
-    if (!fixed) check_between_cameras();
     check_clocks();
+    if (!fixed) check_between_cameras();
     std::stable_sort(report_.findings.begin(), report_.findings.end(),
                      [](const Finding& a, const Finding& b) { return a.severity > b.severity; });
     return std::move(report_);
@@ -605,6 +605,7 @@ class Checker {
                        1000 * best->offset_s, 1000 * best->deviation_s, 1000 * half_frame),
            fmt::format("synchronise the clocks, or subtract {:.3f} s from its timestamps",
                        best->offset_s));
+      explained_ = true;
     }
   }
 

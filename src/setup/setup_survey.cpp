@@ -13,7 +13,7 @@
 namespace diminish {
 namespace {
 
-constexpr std::size_t frames_kept = 4;
+constexpr std::size_t most_frames_kept = 6;
 constexpr std::size_t most_faults_kept = 3;
 
 const Marker* find_marker(const std::vector<Marker>& markers, int id) {
@@ -82,17 +82,26 @@ class Surveyor {
             (frame.stamp_s - first_stamp) / static_cast<double>(survey_.frames);
       }
       Markers markers = look(frame);
-      // Evenly spread: the middles of as many parts.
-      const bool keep = survey_.frames == (2 * survey_.kept.size() + 1) * count / (2 * frames_kept);
-      if (keep && survey_.kept.size() < frames_kept) {
-        survey_.kept.push_back({frame, std::move(markers)});
-      }
+      keep(frame, std::move(markers));
       ++survey_.frames;
     }
     return std::move(survey_);
   }
 
  private:
+  /// Every so many frames; where these become too many, every second one of them. So they are
+  /// evenly spread however many there will be.
+  void keep(const FrameSet& frame, Markers&& markers) {
+    if (survey_.frames % stride_ != 0) return;
+    std::vector<SetupSurvey::Kept>& kept = survey_.kept;
+    if (kept.size() == most_frames_kept) {
+      for (std::size_t i = 1; 2 * i < kept.size(); ++i) kept[i] = std::move(kept[2 * i]);
+      kept.resize(most_frames_kept / 2);
+      stride_ *= 2;
+    }
+    if (survey_.frames % stride_ == 0) kept.push_back({frame, std::move(markers)});
+  }
+
   Markers look(const FrameSet& frame) {
     survey_.fault_count += frame.faults.size();
     for (const std::string& fault : frame.faults) {
@@ -173,6 +182,7 @@ class Surveyor {
   Lens color_lens_;
   std::vector<Lens> rgbd_lenses_;
   SetupSurvey survey_;
+  std::size_t stride_ = 1;
 };
 
 }  // namespace

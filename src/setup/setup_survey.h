@@ -61,7 +61,7 @@ std::vector<double> errors_between(const std::vector<Marker>& in_color,
                                    const Lens& rgbd_lens, const RigidTransform& color_from_rgbd,
                                    int skip = -1);
 
-/// Reads up to `most_frames` frames; keeps four of them.
+/// Reads up to `most_frames` frames; keeps six of them at most.
 SetupSurvey survey_setup(const Rig& rig, const Scene& scene, FrameSource& source,
                          std::size_t most_frames);
 
