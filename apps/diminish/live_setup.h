@@ -40,8 +40,8 @@ struct LiveSetup {
   std::filesystem::path scene_file() const { return folder / "scene.yaml"; }
   /// Loads the set-up and starts. Throws Error.
   LiveRun start() const;
-
- private:
+  /// The cameras that the flags name; without flags the folder as a recording. The first is the
+  /// user's view. Throws Error.
   std::vector<LiveCamera> cameras(const Rig& rig) const;
 };
 

@@ -26,15 +26,19 @@ int main(int argc, char** argv) {
   int exit_code = 0;
   try {
     diminish::add_run(program, exit_code);
-    diminish::add_score(program, exit_code);
-    diminish::add_report(program, exit_code);
-    diminish::add_train_color(program, exit_code);
-    diminish::add_bench(program, exit_code);
     diminish::add_serve(program, exit_code);
     diminish::add_view(program, exit_code);
     diminish::add_live(program, exit_code);
+    diminish::add_score(program, exit_code);
+    diminish::add_report(program, exit_code);
+    diminish::add_bench(program, exit_code);
+    diminish::add_markers(program, exit_code);
+    diminish::add_calibrate(program, exit_code);
+    diminish::add_check(program, exit_code);
+    diminish::add_sync_check(program, exit_code);
     diminish::add_latency_test(program, exit_code);
     diminish::add_devices(program, exit_code);
+    diminish::add_train_color(program, exit_code);
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return program.exit(error) == 0 ? 0 : wrong_usage;

@@ -1,45 +1,16 @@
 #include "diminish/marker_detector.h"
 
 #include <algorithm>
-#include <opencv2/aruco.hpp>
 #include <utility>
 
-#include "diminish/error.h"
 #include "pose/corner_refinement.h"
 #include "pose/dark_components.h"
 #include "pose/marker_code.h"
+#include "pose/marker_dictionary.h"
 #include "pose/quad_candidates.h"
 
 namespace diminish {
 namespace {
-
-using DictionaryName = std::pair<const char*, cv::aruco::PREDEFINED_DICTIONARY_NAME>;
-#define DIMINISH_DICTIONARY(name) \
-  DictionaryName {                \
-#name, cv::aruco::name        \
-  }
-constexpr DictionaryName dictionaries[] = {
-    DIMINISH_DICTIONARY(DICT_4X4_50),         DIMINISH_DICTIONARY(DICT_4X4_100),
-    DIMINISH_DICTIONARY(DICT_4X4_250),        DIMINISH_DICTIONARY(DICT_4X4_1000),
-    DIMINISH_DICTIONARY(DICT_5X5_50),         DIMINISH_DICTIONARY(DICT_5X5_100),
-    DIMINISH_DICTIONARY(DICT_5X5_250),        DIMINISH_DICTIONARY(DICT_5X5_1000),
-    DIMINISH_DICTIONARY(DICT_6X6_50),         DIMINISH_DICTIONARY(DICT_6X6_100),
-    DIMINISH_DICTIONARY(DICT_6X6_250),        DIMINISH_DICTIONARY(DICT_6X6_1000),
-    DIMINISH_DICTIONARY(DICT_7X7_50),         DIMINISH_DICTIONARY(DICT_7X7_100),
-    DIMINISH_DICTIONARY(DICT_7X7_250),        DIMINISH_DICTIONARY(DICT_7X7_1000),
-    DIMINISH_DICTIONARY(DICT_ARUCO_ORIGINAL), DIMINISH_DICTIONARY(DICT_APRILTAG_16h5),
-    DIMINISH_DICTIONARY(DICT_APRILTAG_25h9),  DIMINISH_DICTIONARY(DICT_APRILTAG_36h10),
-    DIMINISH_DICTIONARY(DICT_APRILTAG_36h11)};
-#undef DIMINISH_DICTIONARY
-
-cv::Ptr<cv::aruco::Dictionary> find_dictionary(const std::string& name) {
-  std::string known;
-  for (const auto& [candidate, id] : dictionaries) {
-    if (name == candidate) return cv::aruco::getPredefinedDictionary(id);
-    known += (known.empty() ? "" : ", ") + std::string(candidate);
-  }
-  throw Error("marker_dictionary: expected one of " + known + ", got '" + name + "'");
-}
 
 /// Of two finds of the same marker.
 constexpr double same_place_px = 6;

@@ -1,0 +1,135 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "calibrate.h"
+#include "diminish/frame_source.h"
+#include "diminish/rig_calibration.h"
+#include "setup/rig_file.h"
+
+namespace diminish {
+namespace {
+
+constexpr int done_with_warnings = 3;
+
+struct CalibrateRigCommand {
+  std::filesystem::path recording;
+  std::filesystem::path out;
+  std::string board;
+  bool depth = false;
+  bool fixed = false;
+  std::size_t frames = 300;
+
+  int execute() const;
+};
+
+/// The frames to look at: evenly spread. The source has to read all of them.
+RigCalibration collect(const Recording& recording, const std::optional<Board>& board,
+                       std::size_t most) {
+  RigCalibration calibration(recording.rig, recording.scene, board);
+  const auto source = open_recording(recording, Options{});
+  const std::size_t count = source->frame_count();
+  const std::size_t used = std::min(most, count);
+  FrameSet frame;
+  for (std::size_t i = 0, taken = 0; taken < used && source->next(frame); ++i) {
+    if (i != taken * count / used) continue;
+    ++taken;
+    calibration.add(frame);
+  }
+  return calibration;
+}
+
+void print(const std::string& name, const DepthToColor& result) {
+  fmt::print("{}: depth sensor in its own colour sensor's frame, from {} sightings\n", name,
+             result.sightings);
+  fmt::print("  depth is off the markers' planes by {:.1f} mm, was {:.1f} mm (rms)\n",
+             1000 * result.error_m, 1000 * result.error_before_m);
+  const Eigen::Vector3d t = 1000 * result.color_from_depth.translation;
+  fmt::print(
+      "  at {:.1f}, {:.1f}, {:.1f} mm, turned by {:.2f} degrees\n", t.x(), t.y(), t.z(),
+      rotation_difference_deg(result.color_from_depth.rotation, Eigen::Matrix3d::Identity()));
+}
+
+void print(const std::string& name, const ColorFromRgbd& result) {
+  fmt::print("{}: in the colour camera's frame, from {} of {} sightings\n", name, result.agreeing,
+             result.sightings);
+  fmt::print("  reprojection error {:.2f} pixels (a transform for each sighting: {:.2f})\n",
+             result.error_px, result.least_error_px);
+  const Eigen::Vector3d t = 1000 * result.color_from_depth.translation;
+  fmt::print("  at {:.1f}, {:.1f}, {:.1f} mm +- {:.1f} mm, +- {:.3f} degrees\n", t.x(), t.y(),
+             t.z(), 1000 * result.deviation_m, result.deviation_deg);
+}
+
+int CalibrateRigCommand::execute() const {
+  const Recording input = load_recording(recording);
+  RigFile rig(out, recording / "rig.yaml");
+  std::optional<Board> known_board;
+  if (!board.empty()) known_board = parse_board(board);
+  const RigCalibration calibration = collect(input, known_board, frames);
+
+  std::vector<std::string> warnings;
+  const auto note = [&](const std::vector<std::string>& more) {
+    warnings.insert(warnings.end(), more.begin(), more.end());
+  };
+  std::vector<std::pair<std::string, RigidTransform>> color_from_rgbd;
+  for (std::size_t k = 0; k < input.rig.rgbd.size(); ++k) {
+    const RgbdCamera& camera = input.rig.rgbd[k];
+    RigidTransform own = camera.color_from_depth;
+    if (depth) {
+      const DepthToColor result = calibration.depth_to_color(k);
+      print(camera.name, result);
+      note(result.warnings);
+      if (result.undetermined.empty()) {
+        own = result.color_from_depth;
+        rig.set_color_from_depth(camera.name, own);
+      } else {
+        fmt::print("  color_from_depth stays as it was\n");
+      }
+    }
+    if (fixed || !depth) {
+      const ColorFromRgbd result = calibration.color_from_rgbd(k, own);
+      print(camera.name, result);
+      note(result.warnings);
+      color_from_rgbd.emplace_back(camera.name, result.color_from_depth);
+    }
+  }
+  if (!color_from_rgbd.empty()) rig.set_fixed_poses(color_from_rgbd);
+  rig.write();
+  fmt::print("Written to {}\n", out.string());
+  for (const std::string& warning : warnings) fmt::print("Warning: {}\n", warning);
+  return warnings.empty() ? 0 : done_with_warnings;
+}
+
+}  // namespace
+
+void add_calibrate_rig(CLI::App& calibrate, int& exit_code) {
+  auto command = std::make_shared<CalibrateRigCommand>();
+  CLI::App* sub = calibrate.add_subcommand(
+      "rig", "Where cameras that do not move are, from markers or a board that they see");
+  sub->add_option("recording", command->recording,
+                  "A recording of the scene's markers, or of a board, in many places")
+      ->required();
+  sub->add_option("--out", command->out,
+                  "The rig.yaml to write; if it is not there, it begins as the recording's")
+      ->required();
+  sub->add_option("--board", command->board,
+                  "Look for this board instead of the markers: charuco:... or checkerboard:...");
+  sub->add_flag("--fixed", command->fixed,
+                "Where the RGB-D cameras are, seen from the colour camera: pose: {source: fixed} "
+                "(without --depth it is on)");
+  sub->add_flag("--depth", command->depth,
+                "Where each RGB-D camera's depth sensor is, seen from its own colour sensor: "
+                "color_from_depth");
+  sub->add_option("--frames", command->frames, "At most so many frames of the recording")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 100000))
+      ->type_name("N");
+  sub->callback([command, &exit_code] { exit_code = command->execute(); });
+}
+
+}  // namespace diminish

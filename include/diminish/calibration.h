@@ -1,0 +1,93 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "diminish/board.h"
+#include "diminish/image.h"
+#include "diminish/intrinsics.h"
+
+namespace diminish {
+
+/// A board's corners in one image.
+struct BoardView {
+  std::string name;                       ///< the image's
+  std::vector<int> ids;                   ///< of the corners: their index on the board
+  std::vector<Eigen::Vector2d> pixels;    ///< of the (distorted) image
+  std::vector<Eigen::Vector3d> points_m;  ///< in the board's frame; z = 0
+};
+
+/// Finds a board in images.
+class BoardDetector {
+ public:
+  /// Throws Error on boards that cannot be.
+  explicit BoardDetector(const Board& board);
+  ~BoardDetector();
+  BoardDetector(BoardDetector&&) noexcept;
+  BoardDetector& operator=(BoardDetector&&) noexcept;
+
+  /// The corners, sub-pixel; nothing if the board is not there. Of a checkerboard all must be
+  /// visible (cv::findChessboardCornersSB), of a ChArUco board six that do not lie on a line.
+  std::optional<BoardView> detect(const Image<Bgr>& image, const std::string& name) const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<const Implementation> implementation_;
+};
+
+/// Collects views of a board that help to calibrate a camera. Keeps some hundred at most.
+class ViewCollection {
+ public:
+  ViewCollection(int width, int height);
+
+  /// Keeps the view if it helps. Returns why it does not, in plain words; empty if it does.
+  std::string add(BoardView view);
+
+  const std::vector<BoardView>& views() const { return views_; }
+  int width() const { return width_; }
+  int height() const { return height_; }
+
+  /// Views with a corner in each cell of the image.
+  const Image<int>& cells() const { return cells_; }
+  /// The share of cells that have any.
+  double coverage() const;
+  /// How many of the five are there: the board faces the camera, or leans left, right, forward,
+  /// back by 15 degrees and more. Leaning boards tell the focal length from the distance.
+  int tilts() const;
+
+ private:
+  int width_, height_;
+  Image<int> cells_;
+  std::array<int, 5> tilt_counts_{};
+  std::vector<BoardView> views_;
+};
+
+/// What was found out about a camera.
+struct IntrinsicsCalibration {
+  struct View {
+    std::string name;
+    double error_px;  ///< root mean square over its corners
+    bool used;        ///< false: left out, as it does not agree with the others
+  };
+
+  Intrinsics intrinsics;
+  /// Standard deviations of fx, fy, cx, cy, k1, k2, p1, p2, k3; 0 of what was not fitted.
+  std::array<double, 9> deviations{};
+  double error_px = 0;  ///< root mean square over the corners of the views used
+  std::vector<View> views;
+  /// Each corner's reprojection error by view, pixels: seen minus computed.
+  std::vector<std::vector<Eigen::Vector2d>> residuals_px;
+  /// What makes the figures doubtful, in plain words.
+  std::vector<std::string> warnings;
+};
+
+/// Calibrates a camera (Zhang 2000, by cv::calibrateCamera). Views whose error stands out are left
+/// out. k3 is fitted only if it is more than three standard deviations from 0. Throws Error with
+/// fewer than three views, or if no camera explains them. Cost: some seconds for a hundred views.
+IntrinsicsCalibration calibrate_intrinsics(const ViewCollection& views);
+
+}  // namespace diminish

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "diminish/board.h"
+
+namespace diminish {
+
+/// Square markers to print.
+struct MarkerSheet {
+  std::string dictionary = "DICT_4X4_50";
+  std::vector<int> ids;
+  double size_m = 0.1;       ///< side of the black square
+  double quiet_modules = 1;  ///< white around a marker, in the marker's own cells
+};
+
+/// Paper, upright. `paper` turns it where that holds more.
+struct Paper {
+  std::string name;
+  double width_mm = 0, height_mm = 0;
+};
+
+/// The known papers: A4, A3, letter.
+const std::vector<Paper>& papers();
+
+/// Throws Error that lists the known names.
+const Paper& find_paper(const std::string& name);
+
+/// Writes the sheet at true size, with ids and size beneath each marker and a ruler to check the
+/// print. The format is the file's extension: svg, pdf or png. Markers that one page does not hold
+/// go to further pages, which only PDF has. Throws Error: an unknown dictionary, an id that it does
+/// not have, a marker that the paper does not hold, a file that cannot be written.
+void write_marker_sheet(const MarkerSheet& sheet, const Paper& paper,
+                        const std::filesystem::path& file);
+
+/// The same for a board: one page, with the text that `parse_board` reads beneath it.
+void write_board(const Board& board, const Paper& paper, const std::filesystem::path& file);
+
+}  // namespace diminish

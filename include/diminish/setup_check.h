@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "diminish/frame_source.h"
+#include "diminish/rig.h"
+#include "diminish/scene.h"
+
+namespace diminish {
+
+/// Something that is wrong with a set-up.
+struct Finding {
+  enum class Severity { warning, serious };
+
+  Severity severity = Severity::warning;
+  std::string code;    ///< one word, for programs: "marker-size"
+  std::string what;    ///< in plain words
+  std::string figure;  ///< what was measured, with its unit
+  std::string remedy;  ///< what to do
+};
+
+/// Something that was measured, wrong or not.
+struct SetupFigure {
+  std::string name;
+  double value = 0;
+  std::string unit;
+};
+
+struct SetupReport {
+  std::size_t frames = 0;
+  std::vector<Finding> findings;
+  std::vector<SetupFigure> figures;
+
+  bool fine() const { return findings.empty(); }
+};
+
+/// Looks at a set-up's frames and says what is wrong with its configuration. Of causes that would
+/// explain the same figures the one that makes the cameras' pictures agree best is named, and what
+/// follows from a cause that was found is not complained of again. Keeps six frames in memory.
+/// Throws Error on configurations that cannot be read at all. Cost: as running the first
+/// stages, and some seconds.
+SetupReport check_setup(const Rig& rig, const Scene& scene, FrameSource& source,
+                        std::size_t most_frames = 300);
+
+/// For people.
+std::string setup_report_text(const SetupReport& report);
+/// For programs: {"frames", "findings": [...], "figures": [...]}.
+std::string setup_report_json(const SetupReport& report);
+
+}  // namespace diminish

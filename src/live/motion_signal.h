@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "diminish/image.h"
+
+namespace diminish {
+
+/// How much moved in a camera's picture, and when.
+struct Motion {
+  double stamp_s = 0;  ///< halfway between two images
+  double amount = 0;   ///< mean absolute difference of brightness, levels
+};
+
+/// Compares each image with the one before, thinned to some hundred pixels a side.
+class MotionMeter {
+ public:
+  /// Nothing for the first image.
+  std::optional<Motion> add(const Image<Bgr>& image, double stamp_s);
+
+ private:
+  Image<std::uint8_t> last_, thinned_;
+  double last_stamp_s_ = 0;
+};
+
+struct SyncOffset {
+  double offset_s = 0;  ///< the second clock shows so much more than the first at the same moment
+  double correlation = 0;  ///< of the two signals at that offset, up to 1
+};
+
+/// The shift in time at which two cameras' motion agrees best: the peak of the normalised
+/// cross-correlation, to a fraction of a frame. In the order of time. Nothing if too little moves,
+/// or not alike. Cost: 0.1 ms a second of signal and 0.1 s of `largest_s`.
+std::optional<SyncOffset> estimate_sync_offset(const std::vector<Motion>& first,
+                                               const std::vector<Motion>& second,
+                                               double largest_s = 0.5);
+
+}  // namespace diminish

@@ -1,0 +1,182 @@
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "diminish/calibration.h"
+#include "expect_error.h"
+#include "rendered_targets.h"
+
+namespace diminish {
+namespace {
+
+using ::testing::HasSubstr;
+
+const Intrinsics truth{640, 480, 556.3, 554.9, 322.7, 236.1, {-0.21, 0.11, 0.0011, -0.0007, 0}};
+
+/// Poses of a board that is waved before a camera: near and far, leaning, in all corners.
+RigidTransform board_pose(int index) {
+  const double lean = (index % 5 == 0 ? 5 : 32) * std::numbers::pi / 180;
+  const double direction = index * 2.4;
+  RigidTransform camera_from_target;
+  camera_from_target.rotation =
+      (Eigen::AngleAxisd(lean, Eigen::Vector3d(std::cos(direction), std::sin(direction), 0)) *
+       Eigen::AngleAxisd(0.3 * std::sin(index), Eigen::Vector3d::UnitZ()))
+          .toRotationMatrix() *
+      Eigen::Vector3d(1, -1, -1).asDiagonal();
+  const double z = 0.38 + 0.03 * (index % 4);
+  camera_from_target.translation = {0.3 * z * (index % 3 - 1), 0.22 * z * (index / 3 % 3 - 1), z};
+  return camera_from_target;
+}
+
+struct Views {
+  Image<Bgr> image(int index) const {
+    return renderer.color({testing::board_target(board, board_pose(index))}, {}, 0.7, 2.5,
+                          static_cast<unsigned>(index));
+  }
+
+  Board board;
+  testing::TargetRenderer renderer{truth};
+};
+
+/// The largest distance between what the two cameras make of the same ray, in the whole picture.
+double largest_difference_px(const Intrinsics& a, const Intrinsics& b) {
+  double largest = 0;
+  const Lens lens_a(a);
+  const Lens lens_b(b);
+  for (int y = 0; y < a.height; y += 16) {
+    for (int x = 0; x < a.width; x += 16) {
+      const Eigen::Vector2d pixel(x, y);
+      const auto other = lens_b.distort(lens_a.undistort(pixel));
+      if (!other) return std::numeric_limits<double>::infinity();
+      largest = std::max(largest, (*other - pixel).norm());
+    }
+  }
+  return largest;
+}
+
+class CalibrateIntrinsics : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(CalibrateIntrinsics, RecoversTheCameraOfRenderedBoards) {
+  const Views views{parse_board(GetParam())};
+  const BoardDetector detector(views.board);
+  ViewCollection collection(truth.width, truth.height);
+  for (int i = 0; i < 24; ++i) {
+    auto view = detector.detect(views.image(i), std::to_string(i));
+    if (!view) continue;
+    EXPECT_EQ(collection.add(std::move(*view)), "") << i;
+  }
+  ASSERT_GE(collection.views().size(), 14U);
+  EXPECT_GT(collection.coverage(), 0.7);
+  EXPECT_GE(collection.tilts(), 4);
+  const IntrinsicsCalibration result = calibrate_intrinsics(collection);
+  EXPECT_THAT(result.warnings, ::testing::IsEmpty());
+  const Intrinsics& found = result.intrinsics;
+  std::printf(
+      "%s: fx %+.2f fy %+.2f cx %+.2f cy %+.2f (sd %.2f %.2f %.2f %.2f), rms %.3f px, "
+      "largest difference %.2f px, %zu views\n",
+      GetParam(), found.fx - truth.fx, found.fy - truth.fy, found.cx - truth.cx,
+      found.cy - truth.cy, result.deviations[0], result.deviations[1], result.deviations[2],
+      result.deviations[3], result.error_px, largest_difference_px(truth, found),
+      result.views.size());
+  EXPECT_NEAR(found.fx, truth.fx, 0.002 * truth.fx);
+  EXPECT_NEAR(found.fy, truth.fy, 0.002 * truth.fy);
+  EXPECT_NEAR(found.cx, truth.cx, 1);
+  EXPECT_NEAR(found.cy, truth.cy, 1);
+  EXPECT_EQ(found.distortion[4], 0) << "k3 is not there, and not fitted";
+  // In the picture's very corners, where no board was.
+  EXPECT_LT(largest_difference_px(truth, found), 1.5);
+  EXPECT_LT(result.error_px, 0.15);
+  // What it says of its own uncertainty is true.
+  const double errors[] = {found.fx - truth.fx, found.fy - truth.fy, found.cx - truth.cx,
+                           found.cy - truth.cy};
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_GT(result.deviations[i], 0);
+    EXPECT_LT(std::abs(errors[i]), 6 * result.deviations[i]) << i;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Boards, CalibrateIntrinsics,
+                         ::testing::Values("charuco:7x5:30:22:DICT_4X4_50", "checkerboard:8x5:30"));
+
+/// Views without pictures: projected corners.
+BoardView projected_view(int index, const Intrinsics& camera) {
+  BoardView view;
+  view.name = std::to_string(index);
+  const Lens lens(camera);
+  for (int row = 0; row < 6; ++row) {
+    for (int column = 0; column < 9; ++column) {
+      const Eigen::Vector3d point((column - 4) * 0.025, (row - 2.5) * 0.025, 0);
+      const auto pixel = lens.project(board_pose(index) * point);
+      if (!pixel) continue;
+      view.ids.push_back(9 * row + column);
+      view.points_m.push_back(point);
+      view.pixels.push_back(*pixel);
+    }
+  }
+  return view;
+}
+
+TEST(CalibrateIntrinsicsToo, IsExactForExactCornersAndFindsK3) {
+  Intrinsics camera = truth;
+  camera.distortion = {-0.2, 0.1, 0.001, -0.002, 0.05};
+  ViewCollection collection(camera.width, camera.height);
+  for (int i = 0; i < 12; ++i) EXPECT_EQ(collection.add(projected_view(i, camera)), "");
+  const IntrinsicsCalibration result = calibrate_intrinsics(collection);
+  EXPECT_LT(result.error_px, 1e-3);
+  EXPECT_LT(largest_difference_px(camera, result.intrinsics), 0.02);
+  EXPECT_NEAR(result.intrinsics.distortion[4], 0.05, 0.02);
+}
+
+TEST(CalibrateIntrinsicsToo, LeavesOutAViewThatDoesNotAgree) {
+  ViewCollection collection(truth.width, truth.height);
+  for (int i = 0; i < 12; ++i) {
+    BoardView view = projected_view(i, truth);
+    // As of a bent board, and of a picture that was taken while it moved.
+    for (std::size_t c = 0; c < view.pixels.size(); ++c) {
+      if (i == 4) view.pixels[c].x() += 3 * std::sin(static_cast<double>(c));
+      if (i == 7) view.pixels[c].y() += 0.05 * view.pixels[c].x() * (c % 2 == 0 ? 1 : 0);
+    }
+    collection.add(std::move(view));
+  }
+  const IntrinsicsCalibration result = calibrate_intrinsics(collection);
+  ASSERT_EQ(result.views.size(), 12U);
+  for (std::size_t i = 0; i < 12; ++i) {
+    EXPECT_EQ(result.views[i].used, i != 4 && i != 7) << i;
+    EXPECT_EQ(result.views[i].error_px > 0.5, i == 4 || i == 7) << i;
+  }
+  EXPECT_LT(largest_difference_px(truth, result.intrinsics), 0.05);
+}
+
+TEST(ViewCollection, SaysWhichViewsDoNotHelp) {
+  ViewCollection collection(truth.width, truth.height);
+  EXPECT_EQ(collection.add(projected_view(1, truth)), "");
+  BoardView again = projected_view(1, truth);
+  again.pixels[3].x() += 5;
+  again.name = "again";
+  EXPECT_THAT(collection.add(again), HasSubstr("as 1 does"));
+  EXPECT_EQ(collection.add(projected_view(2, truth)), "");
+  EXPECT_EQ(collection.views().size(), 2U);
+}
+
+TEST(CalibrateIntrinsicsToo, WarnsOfWhatTheViewsDoNotShow) {
+  ViewCollection few(truth.width, truth.height);
+  few.add(projected_view(0, truth));
+  EXPECT_THAT(error_of([&] { calibrate_intrinsics(few); }), HasSubstr("got 1"));
+  // Boards that all face the camera.
+  for (int i = 1; i < 3; ++i) few.add(projected_view(5 * i, truth));
+  const auto result = calibrate_intrinsics(few);
+  EXPECT_THAT(result.warnings, ::testing::Contains(HasSubstr("hardly leans")));
+  EXPECT_THAT(result.warnings, ::testing::Contains(HasSubstr("only 3 views")));
+  EXPECT_THAT(result.warnings, ::testing::Contains(HasSubstr("% of the picture")));
+}
+
+TEST(BoardDetector, FindsNothingWhereThereIsNoBoard) {
+  const Image<Bgr> grey(640, 480, {90, 90, 90});
+  for (const char* text : {"charuco:7x5:30:22", "checkerboard:8x5:30"}) {
+    EXPECT_FALSE(BoardDetector(parse_board(text)).detect(grey, "grey"));
+  }
+}
+
+}  // namespace
+}  // namespace diminish
