@@ -1,0 +1,143 @@
+#include "gl/reconstructor.h"
+
+#include <algorithm>
+
+#include "diminish/error.h"
+#include "reconstruct/clear_outside.h"
+
+namespace diminish::gl {
+namespace {
+
+/// work.glsl's block.
+constexpr std::size_t work_bytes = (8 + 256 + 256) * 4;
+
+std::vector<std::string> files(const Rasterizer& rasterizer, const char* last) {
+  std::vector<std::string> names = {"frame.glsl", "sdct.glsl", "texture.glsl", "work.glsl"};
+  for (std::string& name : rasterizer.seen_files()) names.push_back(std::move(name));
+  names.emplace_back(last);
+  return names;
+}
+
+std::size_t pixels_of(const Rect& region) {
+  return static_cast<std::size_t>(region.width) * static_cast<std::size_t>(region.height);
+}
+
+/// A pixel as resolve.comp writes it.
+struct ResultPixel {
+  std::uint8_t b, g, r, source;
+  float depth_m;
+};
+
+}  // namespace
+
+struct GlReconstructor::Resources {
+  Resources(const Rig& rig, const MakeRasterizer& make_rasterizer)
+      : upload(rig),
+        rasterizer(make_rasterizer(rig, upload)),
+        count(compute_program(files(*rasterizer, "count.comp"))),
+        order(compute_program({"frame.glsl", "work.glsl", "order.comp"})),
+        resolve(compute_program(files(*rasterizer, "resolve.comp"))) {
+    const std::size_t bytes = pixels_of(rig.color.bounds()) * sizeof(ResultPixel);
+    work.reserve(work_bytes);
+    result.reserve(bytes);
+    downloaded.reserve(bytes);
+  }
+
+  FrameUpload upload;
+  std::unique_ptr<Rasterizer> rasterizer;
+  Program count, order, resolve;
+  Buffer work, result;
+  MappedBuffer downloaded{MappedBuffer::Use::download};
+  PassTimer timer;
+};
+
+GlReconstructor::GlReconstructor(const Rig& rig, const MakeRasterizer& make_rasterizer)
+    : color_(rig.color), device_(context_.driver().name) {
+  const Current current(context_);
+  resources_ = std::make_unique<Resources>(rig, make_rasterizer);
+  context_.check("making programs and buffers");
+}
+
+GlReconstructor::~GlReconstructor() {
+  try {
+    const Current current(context_);
+    resources_.reset();
+  } catch (const Error&) {
+    // The context is gone, and what it held with it.
+    static_cast<void>(resources_.release());
+  }
+}
+
+void GlReconstructor::reconstruct(const FrameSet& frame, const DepthImages& depths,
+                                  const Poses& poses, const OcclusionMasks& masks,
+                                  const Rect& region, const Options& options,
+                                  Reconstruction& reconstruction) {
+  passes_.clear();
+  clear_outside(color_, region, reconstruction);
+  resources_->upload.pack(frame, depths, poses, masks, region, options);
+  if (region.empty() || resources_->upload.cameras() == 0) {
+    reconstruction.color.fill(region, {});
+    reconstruction.depth_m.fill(region, 0.F);
+    reconstruction.source.fill(region, 0);
+    return;
+  }
+  {
+    const Current current(context_);
+    draw(region);
+    wait_until_done();
+    context_.check("reconstruction");
+    resources_->timer.read(passes_);
+  }
+  const auto* pixel = reinterpret_cast<const ResultPixel*>(resources_->downloaded.data());
+  for (int y = region.y; y < region.bottom(); ++y) {
+    Bgra* const color = reconstruction.color.row(y) + region.x;
+    float* const depth_m = reconstruction.depth_m.row(y) + region.x;
+    std::uint8_t* const source = reconstruction.source.row(y) + region.x;
+    for (int x = 0; x < region.width; ++x, ++pixel) {
+      const auto alpha = static_cast<std::uint8_t>(pixel->source != 0 ? 255 : 0);
+      color[x] = {pixel->b, pixel->g, pixel->r, alpha};
+      depth_m[x] = pixel->depth_m;
+      source[x] = pixel->source;
+    }
+  }
+}
+
+void GlReconstructor::draw(const Rect& region) {
+  Resources& r = *resources_;
+  const auto groups = static_cast<GLuint>((pixels_of(region) + 63) / 64);
+  const auto cameras = static_cast<GLuint>(r.upload.cameras());
+  r.timer.begin_frame();
+  r.timer.measure("upload", [&] {
+    r.upload.send();
+    const GLuint zero = 0;
+    glClearNamedBufferData(r.work.name(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &zero);
+    // Both lists: no groups (whose second and third dimensions are 1), no triangles.
+    const GLuint none[4] = {0, 1, 1, 0};
+    glClearNamedBufferSubData(r.work.name(), GL_RGBA32UI, 0, 2 * sizeof(none), GL_RGBA_INTEGER,
+                              GL_UNSIGNED_INT, none);
+    r.work.bind(4);
+  });
+  r.rasterizer->draw(r.upload, region, r.timer);
+  r.rasterizer->bind_seen();
+  r.work.bind(4);
+  r.timer.measure("merge", [&] {
+    if (cameras > 1) {
+      r.count.use();
+      glDispatchCompute(groups, cameras, 1);
+      glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+      r.order.use();
+      glDispatchCompute(1, 1, 1);
+      glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    }
+    r.resolve.use();
+    r.result.bind(7);
+    glDispatchCompute(groups, 1, 1);
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  });
+  r.timer.measure("download", [&] {
+    copy(r.result.name(), r.downloaded.name(), pixels_of(region) * sizeof(ResultPixel));
+    glMemoryBarrier(GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT);
+  });
+}
+
+}  // namespace diminish::gl
