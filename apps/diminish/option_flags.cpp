@@ -6,6 +6,7 @@
 
 #include "diminish/color_corrector.h"
 #include "diminish/inpainter.h"
+#include "diminish/reconstructor.h"
 #include "diminish/view_mode.h"
 
 namespace diminish {
@@ -22,6 +23,7 @@ std::string choices(const Options& options, const std::string& value) {
   if (&value == &options.color_correct) return Registry<ColorCorrector>::known();
   if (&value == &options.inpaint) return Registry<Inpainter>::known();
   if (&value == &options.mode) return Registry<ViewMode>::known();
+  if (&value == &options.backend) return "auto, " + Registry<Reconstructor>::known();
   return {};
 }
 

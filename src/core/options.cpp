@@ -8,6 +8,7 @@
 #include "diminish/color_corrector.h"
 #include "diminish/error.h"
 #include "diminish/inpainter.h"
+#include "diminish/reconstructor.h"
 #include "diminish/view_mode.h"
 
 namespace diminish {
@@ -28,6 +29,18 @@ void check_registered(const char* option, const std::string& name) {
                           printable(name)));
 }
 
+void check_backend(const std::string& name) {
+  if (name == "auto" || Registry<Reconstructor>::contains(name)) return;
+  if (name == "gl" || name == "gl_geometry") {
+    throw Error(
+        fmt::format("backend: expected one of auto, {}, got '{}', which this build is "
+                    "without (it was built without libepoxy and EGL)",
+                    Registry<Reconstructor>::known(), name));
+  }
+  throw Error(fmt::format("backend: expected one of auto, {}, got '{}'",
+                          Registry<Reconstructor>::known(), printable(name)));
+}
+
 }  // namespace
 
 void check(const Options& options) {
@@ -43,6 +56,7 @@ void check(const Options& options) {
   check_registered<ColorCorrector>("color_correct", options.color_correct);
   check_registered<Inpainter>("inpaint", options.inpaint);
   check_registered<ViewMode>("mode", options.mode);
+  check_backend(options.backend);
 }
 
 }  // namespace diminish

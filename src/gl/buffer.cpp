@@ -1,5 +1,7 @@
 #include "gl/buffer.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "diminish/error.h"
@@ -11,6 +13,19 @@ void Buffer::reserve(std::size_t bytes) {
   name_.create();
   glNamedBufferStorage(name_.get(), static_cast<GLsizeiptr>(bytes), nullptr, 0);
   size_ = bytes;
+}
+
+void BufferTexture::create(const Buffer& buffer, GLenum format, std::size_t texels) {
+  GLint most = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
+  if (texels > static_cast<std::size_t>(most)) {
+    throw Error(
+        fmt::format("gl: expected a driver with buffer textures of {} texels, this one has "
+                    "{}: the RGB-D cameras' images are too large for it",
+                    texels, most));
+  }
+  glCreateTextures(GL_TEXTURE_BUFFER, 1, &name_);
+  glTextureBuffer(name_, format, buffer.name());
 }
 
 void MappedBuffer::reserve(std::size_t bytes) {

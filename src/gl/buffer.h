@@ -49,6 +49,25 @@ class Buffer {
   std::size_t size_ = 0;
 };
 
+/// A buffer as a texture of `format`: what shaders that only read it do best.
+class BufferTexture {
+ public:
+  BufferTexture() = default;
+  ~BufferTexture() {
+    if (name_ != 0) glDeleteTextures(1, &name_);
+  }
+  BufferTexture(const BufferTexture&) = delete;
+  BufferTexture& operator=(const BufferTexture&) = delete;
+
+  /// The buffer as it is now: it must not grow afterwards. Throws Error where it has more texels
+  /// than the driver takes.
+  void create(const Buffer& buffer, GLenum format, std::size_t texels);
+  void bind(GLuint unit) const { glBindTextureUnit(unit, name_); }
+
+ private:
+  GLuint name_ = 0;
+};
+
 /// Memory that the processor and the GPU both reach, mapped for as long as it lives: what is
 /// uploaded and downloaded passes through it.
 class MappedBuffer {

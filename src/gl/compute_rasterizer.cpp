@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstddef>
 
 #include "gl/reconstructor.h"
 
@@ -10,8 +11,7 @@ namespace {
 class ComputeRasterizer : public Rasterizer {
  public:
   ComputeRasterizer(const Rig& rig, const FrameUpload& upload)
-      : vertices_(compute_program(
-            {"frame.glsl", "sdct.glsl", "vertices.glsl", "rule1.glsl", "vertices.comp"})),
+      : vertices_(compute_program({"frame.glsl", "sdct.glsl", "rule1.glsl", "vertices.comp"})),
         cells_(compute_program(drawing("cells.comp"))),
         nearest_small_(compute_program(drawing("draw_small.comp"), "#define FIND_NEAREST\n")),
         nearest_large_(compute_program(drawing("draw_large.comp"), "#define FIND_NEAREST\n")),
@@ -21,6 +21,9 @@ class ComputeRasterizer : public Rasterizer {
     positions_.reserve(pixels * 16);
     places_.reserve(pixels * 8);
     triangles_.reserve(2 * pixels * 4);
+    position_texture_.create(positions_, GL_RGBA32I, pixels);
+    place_texture_.create(places_, GL_RG32F, pixels);
+    triangle_texture_.create(triangles_, GL_R32UI, 2 * pixels);
     layers_.reserve(std::max<std::size_t>(rig.rgbd.size(), 1) * 8 *
                     static_cast<std::size_t>(rig.color.width) *
                     static_cast<std::size_t>(rig.color.height));
@@ -30,40 +33,46 @@ class ComputeRasterizer : public Rasterizer {
     return {"vertices.glsl", "triangles.glsl", "seen_triangles.glsl"};
   }
 
-  void draw(const FrameUpload& upload, const Rect& region, PassTimer& timer) override {
-    const auto groups = static_cast<GLuint>((upload.most_depth_pixels() + 63) / 64);
-    const auto cameras = static_cast<GLuint>(upload.cameras());
+  void draw(const FrameUpload& upload, const Rect& region, const Buffer& work,
+            PassTimer& timer) override {
     positions_.bind(2);
     places_.bind(3);
     timer.measure("vertices", [&] {
-      upload.bind_rays(5);
+      upload.bind_rays(4);
       vertices_.use();
-      glDispatchCompute(groups, cameras, 1);
-      glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+      for (int k = 0; k < upload.cameras(); ++k) {
+        upload.bind_camera(k);
+        glDispatchCompute(groups_of(upload.camera(k)), 1, 1);
+      }
+      glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
     });
     bind_seen();
-    timer.measure("cells", [&] {
-      cells_.use();
-      glDispatchCompute(groups, cameras, 1);
-      glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
-    });
-    timer.measure("draw", [&] {
-      const GLuint nothing[2] = {0, ~0U};
-      glClearNamedBufferSubData(layers_.name(), GL_RG32UI, 0,
-                                static_cast<GLsizeiptr>(cameras) * region.width * region.height * 8,
-                                GL_RG_INTEGER, GL_UNSIGNED_INT, nothing);
-      GLint work = 0;
-      glGetIntegeri_v(GL_SHADER_STORAGE_BUFFER_BINDING, 4, &work);
-      glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, static_cast<GLuint>(work));
-      draw_list(nearest_small_, nearest_large_);
-      draw_list(seen_small_, seen_large_);
-    });
+    triangles_.bind(5);
+    triangle_texture_.bind(5);
+    glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, work.name());
+    for (int k = 0; k < upload.cameras(); ++k) {
+      upload.bind_camera(k);
+      bind_work(work, k);
+      timer.measure("cells", [&] {
+        cells_.use();
+        glDispatchCompute(groups_of(upload.camera(k)), 1, 1);
+        glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
+                        GL_COMMAND_BARRIER_BIT);
+      });
+      timer.measure("draw", [&] {
+        const GLuint nothing[2] = {0, ~0U};
+        const GLsizeiptr bytes = GLsizeiptr{8} * region.width * region.height;
+        glClearNamedBufferSubData(layers_.name(), GL_RG32UI, k * bytes, bytes, GL_RG_INTEGER,
+                                  GL_UNSIGNED_INT, nothing);
+        draw_lists(nearest_small_, nearest_large_, k);
+        draw_lists(seen_small_, seen_large_, k);
+      });
+    }
   }
 
   void bind_seen() const override {
-    positions_.bind(2);
-    places_.bind(3);
-    triangles_.bind(5);
+    position_texture_.bind(2);
+    place_texture_.bind(3);
     layers_.bind(6);
   }
 
@@ -72,16 +81,22 @@ class ComputeRasterizer : public Rasterizer {
     return {"frame.glsl", "sdct.glsl", "vertices.glsl", "work.glsl", "triangles.glsl", last};
   }
 
-  static void draw_list(const Program& small, const Program& large) {
+  static GLuint groups_of(const CameraBlock& camera) {
+    return static_cast<GLuint>((camera.depth_width * camera.depth_height + 63) / 64);
+  }
+
+  static void draw_lists(const Program& small, const Program& large, int camera) {
+    const auto at = static_cast<GLintptr>(camera) * static_cast<GLintptr>(sizeof(WorkBlock));
     small.use();
-    glDispatchComputeIndirect(0);
+    glDispatchComputeIndirect(at + static_cast<GLintptr>(offsetof(WorkBlock, small_groups)));
     large.use();
-    glDispatchComputeIndirect(16);
+    glDispatchComputeIndirect(at + static_cast<GLintptr>(offsetof(WorkBlock, large_groups)));
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   }
 
   Program vertices_, cells_, nearest_small_, nearest_large_, seen_small_, seen_large_;
   Buffer positions_, places_, triangles_, layers_;
+  BufferTexture position_texture_, place_texture_, triangle_texture_;
 };
 
 const bool registered = Registry<Reconstructor>::add("gl", [](const Rig& rig) {

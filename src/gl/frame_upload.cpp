@@ -11,9 +11,14 @@
 namespace diminish::gl {
 namespace {
 
-/// A triangle is named by 24 bits, its camera by 8 (triangles.glsl).
-constexpr std::size_t most_depth_pixels_of_a_camera = std::size_t{1} << 23U;
+/// As many groups of 64 as one dispatch may have.
+constexpr std::size_t most_depth_pixels_of_a_camera = 64 * 65535;
 constexpr std::size_t most_cameras = 253;
+
+/// The frame's block, and then the cameras'.
+constexpr std::size_t block_at(std::size_t index) {
+  return index * block_alignment;
+}
 
 std::size_t whole_words(std::size_t bytes) {
   return (bytes + 3) / 4 * 4;
@@ -32,11 +37,11 @@ FrameUpload::FrameUpload(const Rig& rig) {
     throw Error(fmt::format("gl: expected at most {} RGB-D cameras", most_cameras));
   }
   frame_.color = LensBlock(Projection(Lens(rig.color)));
-  std::size_t bytes = sizeof(FrameBlock) + rig.rgbd.size() * sizeof(CameraBlock);
+  std::size_t bytes = block_at(1 + rig.rgbd.size());
   for (const RgbdCamera& camera : rig.rgbd) {
-    CameraBlock block;
+    CameraBlock block{};
     block.rgbd_color = LensBlock(Projection(Lens(camera.color)));
-    block.rgbd_color_from_depth = FloatTransform(camera.color_from_depth);
+    block.rgbd_color_from_depth = TransformBlock(FloatTransform(camera.color_from_depth));
     block.unit_m = static_cast<float>(camera.depth_unit_m);
     block.depth_width = camera.depth.width;
     block.depth_height = camera.depth.height;
@@ -58,6 +63,7 @@ FrameUpload::FrameUpload(const Rig& rig) {
   bytes += 4;
   mapped_.reserve(bytes);
   on_gpu_.reserve(bytes);
+  word_texture_.create(on_gpu_, GL_R32UI, bytes / 4);
   upload_rays(rig);
 }
 
@@ -70,6 +76,7 @@ void FrameUpload::upload_rays(const Rig& rig) {
   }
   const std::size_t bytes = all.size() * sizeof(Eigen::Vector2f);
   rays_.reserve(std::max<std::size_t>(bytes, 4));
+  ray_texture_.create(rays_, GL_RG32F, all.size());
   MappedBuffer staging(MappedBuffer::Use::upload);
   staging.reserve(std::max<std::size_t>(bytes, 4));
   std::memcpy(staging.data(), all.data(), bytes);
@@ -80,8 +87,7 @@ void FrameUpload::upload_rays(const Rig& rig) {
 void FrameUpload::pack(const FrameSet& frame, const DepthImages& depths, const Poses& poses,
                        const OcclusionMasks& masks, const Rect& region, const Options& options) {
   blocks_.clear();
-  most_depth_pixels_ = 0;
-  std::size_t at = sizeof(FrameBlock) + of_rig_.size() * sizeof(CameraBlock);
+  std::size_t at = block_at(1 + of_rig_.size());
   const auto append = [&](const auto& image) {
     const std::size_t start = at;
     const std::size_t bytes = image.size() * sizeof(*image.data());
@@ -92,17 +98,17 @@ void FrameUpload::pack(const FrameSet& frame, const DepthImages& depths, const P
   for (std::size_t k = 0; k < of_rig_.size(); ++k) {
     if (!frame.rgbd[k].available() || !poses.color_from_depth[k]) continue;
     CameraBlock block = of_rig_[k];
-    block.color_from_depth = FloatTransform(*poses.color_from_depth[k]);
+    block.color_from_depth = TransformBlock(FloatTransform(*poses.color_from_depth[k]));
     block.depth_at = append(depths[k]);
     block.depth_mask_at = append(masks.rgbd_depth[k]);
     block.color_mask_at = append(masks.rgbd_color[k]);
     block.color_at = append(frame.rgbd[k].color);
     block.source = static_cast<std::uint32_t>(k + 1);
-    most_depth_pixels_ = std::max(most_depth_pixels_, block.depth_width * block.depth_height);
+    block.layer = static_cast<std::uint32_t>(blocks_.size());
+    std::memcpy(mapped_.data() + block_at(1 + blocks_.size()), &block, sizeof(block));
     blocks_.push_back(block);
   }
   bytes_ = at + 4;
-  cameras_ = static_cast<int>(blocks_.size());
 
   const sdct::Threshold threshold(options.discontinuity_threshold_m, options.discontinuity_reach_m);
   frame_.region_x = region.x;
@@ -114,14 +120,18 @@ void FrameUpload::pack(const FrameSet& frame, const DepthImages& depths, const P
   frame_.agreement_m = static_cast<float>(options.depth_agreement_m);
   frame_.camera_count = static_cast<std::uint32_t>(blocks_.size());
   std::memcpy(mapped_.data(), &frame_, sizeof(frame_));
-  std::memcpy(mapped_.data() + sizeof(frame_), blocks_.data(),
-              blocks_.size() * sizeof(CameraBlock));
 }
 
 void FrameUpload::send() {
   copy(mapped_.name(), on_gpu_.name(), bytes_);
-  on_gpu_.bind(0);
-  on_gpu_.bind(1);
+  word_texture_.bind(1);
+  glBindBufferRange(GL_UNIFORM_BUFFER, 0, on_gpu_.name(), 0, sizeof(FrameBlock));
+}
+
+void FrameUpload::bind_camera(int camera) const {
+  glBindBufferRange(GL_UNIFORM_BUFFER, 1, on_gpu_.name(),
+                    static_cast<GLintptr>(block_at(1 + static_cast<std::size_t>(camera))),
+                    sizeof(CameraBlock));
 }
 
 }  // namespace diminish::gl

@@ -1,8 +1,6 @@
-#include <fmt/format.h>
+#include <algorithm>
+#include <vector>
 
-#include <array>
-
-#include "diminish/error.h"
 #include "gl/reconstructor.h"
 
 namespace diminish::gl {
@@ -34,9 +32,6 @@ class GeometryRasterizer : public Rasterizer {
             {{GL_VERTEX_SHADER, {"frame.glsl", "sdct.glsl", "rule1.glsl", "geometry.vert"}, {}},
              {GL_GEOMETRY_SHADER, {"frame.glsl", "sdct.glsl", "geometry.geom"}, {}},
              {GL_FRAGMENT_SHADER, {"frame.glsl", "texture.glsl", "geometry.frag"}, {}}}) {
-    expect_storage_blocks(GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS, 3, "vertex");
-    expect_storage_blocks(GL_MAX_GEOMETRY_SHADER_STORAGE_BLOCKS, 1, "geometry");
-    expect_storage_blocks(GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS, 2, "fragment");
     const GLsizei layers = static_cast<GLsizei>(std::max<std::size_t>(rig.rgbd.size(), 1));
     glCreateTextures(GL_TEXTURE_2D_ARRAY, 1, &seen_.value);
     glTextureStorage3D(seen_.value, 1, GL_RG32UI, picture_.width, picture_.height, layers);
@@ -56,7 +51,8 @@ class GeometryRasterizer : public Rasterizer {
 
   std::vector<std::string> seen_files() const override { return {"seen_fragments.glsl"}; }
 
-  void draw(const FrameUpload& upload, const Rect& region, PassTimer& timer) override {
+  void draw(const FrameUpload& upload, const Rect& region, const Buffer& /*work*/,
+            PassTimer& timer) override {
     timer.measure("draw", [&] {
       glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target_.value);
       glViewport(0, 0, picture_.width, picture_.height);
@@ -67,7 +63,7 @@ class GeometryRasterizer : public Rasterizer {
       glEnable(GL_DEPTH_TEST);
       glDepthFunc(GL_GREATER);
       glBindVertexArray(no_attributes_.value);
-      upload.bind_rays(5);
+      upload.bind_rays(4);
       program_.use();
       glProgramUniform2f(program_.name(), program_.location("picture_size"),
                          static_cast<float>(picture_.width), static_cast<float>(picture_.height));
@@ -102,23 +98,13 @@ class GeometryRasterizer : public Rasterizer {
     GLsizei count = 0;
   };
 
-  static void expect_storage_blocks(GLenum limit, GLint wanted, const char* stage) {
-    GLint blocks = 0;
-    glGetIntegerv(limit, &blocks);
-    if (blocks >= wanted) return;
-    throw Error(
-        fmt::format("gl_geometry: expected a driver with {} storage blocks in {} shaders, "
-                    "this one has {}",
-                    wanted, stage, blocks));
-  }
-
   void draw_camera(const FrameUpload& upload, int camera) const {
     glNamedFramebufferTextureLayer(target_.value, GL_COLOR_ATTACHMENT0, seen_.value, 0, camera);
     const GLuint nothing[4] = {};
     const GLfloat farthest = 0;
     glClearNamedFramebufferuiv(target_.value, GL_COLOR, 0, nothing);
     glClearNamedFramebufferfv(target_.value, GL_DEPTH, 0, &farthest);
-    program_.set("camera", camera);
+    upload.bind_camera(camera);
     const Indices& indices = indices_[upload.camera(camera).source - 1];
     glVertexArrayElementBuffer(no_attributes_.value, indices.name.get());
     glDrawElements(GL_TRIANGLES, indices.count, GL_UNSIGNED_INT, nullptr);

@@ -1,15 +1,13 @@
 #include "gl/reconstructor.h"
 
 #include <algorithm>
+#include <array>
 
 #include "diminish/error.h"
 #include "reconstruct/clear_outside.h"
 
 namespace diminish::gl {
 namespace {
-
-/// work.glsl's block.
-constexpr std::size_t work_bytes = (8 + 256 + 256) * 4;
 
 std::vector<std::string> files(const Rasterizer& rasterizer, const char* last) {
   std::vector<std::string> names = {"frame.glsl", "sdct.glsl", "texture.glsl", "work.glsl"};
@@ -22,30 +20,32 @@ std::size_t pixels_of(const Rect& region) {
   return static_cast<std::size_t>(region.width) * static_cast<std::size_t>(region.height);
 }
 
-/// A pixel as resolve.comp writes it.
+/// A pixel as color.comp leaves it.
 struct ResultPixel {
-  std::uint8_t b, g, r, source;
+  std::uint8_t b, g, r;
+  std::uint8_t place;  ///< among the cameras that take part, from 1 on; 0: nothing
   float depth_m;
 };
 
 }  // namespace
 
 struct GlReconstructor::Resources {
-  Resources(const Rig& rig, const MakeRasterizer& make_rasterizer)
+  Resources(const Context& context, const Rig& rig, const MakeRasterizer& make_rasterizer)
       : upload(rig),
         rasterizer(make_rasterizer(rig, upload)),
         count(compute_program(files(*rasterizer, "count.comp"))),
-        order(compute_program({"frame.glsl", "work.glsl", "order.comp"})),
-        resolve(compute_program(files(*rasterizer, "resolve.comp"))) {
+        merge(compute_program(files(*rasterizer, "merge.comp"))),
+        color(compute_program(files(*rasterizer, "color.comp"))),
+        timer(context.driver().software) {
     const std::size_t bytes = pixels_of(rig.color.bounds()) * sizeof(ResultPixel);
-    work.reserve(work_bytes);
+    work.reserve(std::max<std::size_t>(rig.rgbd.size(), 1) * sizeof(WorkBlock));
     result.reserve(bytes);
     downloaded.reserve(bytes);
   }
 
   FrameUpload upload;
   std::unique_ptr<Rasterizer> rasterizer;
-  Program count, order, resolve;
+  Program count, merge, color;
   Buffer work, result;
   MappedBuffer downloaded{MappedBuffer::Use::download};
   PassTimer timer;
@@ -54,7 +54,7 @@ struct GlReconstructor::Resources {
 GlReconstructor::GlReconstructor(const Rig& rig, const MakeRasterizer& make_rasterizer)
     : color_(rig.color), device_(context_.driver().name) {
   const Current current(context_);
-  resources_ = std::make_unique<Resources>(rig, make_rasterizer);
+  resources_ = std::make_unique<Resources>(context_, rig, make_rasterizer);
   context_.check("making programs and buffers");
 }
 
@@ -88,16 +88,21 @@ void GlReconstructor::reconstruct(const FrameSet& frame, const DepthImages& dept
     context_.check("reconstruction");
     resources_->timer.read(passes_);
   }
+  std::array<std::uint8_t, 256> sources{};
+  for (int k = 0; k < resources_->upload.cameras(); ++k) {
+    sources[static_cast<std::size_t>(k + 1)] =
+        static_cast<std::uint8_t>(resources_->upload.camera(k).source);
+  }
   const auto* pixel = reinterpret_cast<const ResultPixel*>(resources_->downloaded.data());
   for (int y = region.y; y < region.bottom(); ++y) {
     Bgra* const color = reconstruction.color.row(y) + region.x;
     float* const depth_m = reconstruction.depth_m.row(y) + region.x;
     std::uint8_t* const source = reconstruction.source.row(y) + region.x;
     for (int x = 0; x < region.width; ++x, ++pixel) {
-      const auto alpha = static_cast<std::uint8_t>(pixel->source != 0 ? 255 : 0);
+      const auto alpha = static_cast<std::uint8_t>(pixel->place != 0 ? 255 : 0);
       color[x] = {pixel->b, pixel->g, pixel->r, alpha};
       depth_m[x] = pixel->depth_m;
-      source[x] = pixel->source;
+      source[x] = sources[pixel->place];
     }
   }
 }
@@ -105,7 +110,7 @@ void GlReconstructor::reconstruct(const FrameSet& frame, const DepthImages& dept
 void GlReconstructor::draw(const Rect& region) {
   Resources& r = *resources_;
   const auto groups = static_cast<GLuint>((pixels_of(region) + 63) / 64);
-  const auto cameras = static_cast<GLuint>(r.upload.cameras());
+  const int cameras = r.upload.cameras();
   r.timer.begin_frame();
   r.timer.measure("upload", [&] {
     r.upload.send();
@@ -113,25 +118,34 @@ void GlReconstructor::draw(const Rect& region) {
     glClearNamedBufferData(r.work.name(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &zero);
     // Both lists: no groups (whose second and third dimensions are 1), no triangles.
     const GLuint none[4] = {0, 1, 1, 0};
-    glClearNamedBufferSubData(r.work.name(), GL_RGBA32UI, 0, 2 * sizeof(none), GL_RGBA_INTEGER,
-                              GL_UNSIGNED_INT, none);
-    r.work.bind(4);
-  });
-  r.rasterizer->draw(r.upload, region, r.timer);
-  r.rasterizer->bind_seen();
-  r.work.bind(4);
-  r.timer.measure("merge", [&] {
-    if (cameras > 1) {
-      r.count.use();
-      glDispatchCompute(groups, cameras, 1);
-      glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-      r.order.use();
-      glDispatchCompute(1, 1, 1);
-      glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    for (int k = 0; k < cameras; ++k) {
+      glClearNamedBufferSubData(r.work.name(), GL_RGBA32UI,
+                                static_cast<GLintptr>(k) * static_cast<GLintptr>(sizeof(WorkBlock)),
+                                2 * sizeof(none), GL_RGBA_INTEGER, GL_UNSIGNED_INT, none);
     }
-    r.resolve.use();
-    r.result.bind(7);
+  });
+  r.rasterizer->draw(r.upload, region, r.work, r.timer);
+  r.rasterizer->bind_seen();
+  r.result.bind(7);
+  r.timer.measure("merge", [&] {
+    for (int k = 0; k < cameras && cameras > 1; ++k) {
+      r.upload.bind_camera(k);
+      bind_work(r.work, k);
+      r.count.use();
+      glDispatchCompute(groups, 1, 1);
+    }
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    r.work.bind(1);
+    r.merge.use();
     glDispatchCompute(groups, 1, 1);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  });
+  r.timer.measure("color", [&] {
+    r.color.use();
+    for (int k = 0; k < cameras; ++k) {
+      r.upload.bind_camera(k);
+      glDispatchCompute(groups, 1, 1);
+    }
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   });
   r.timer.measure("download", [&] {

@@ -13,15 +13,24 @@
 
 namespace diminish::gl {
 
+/// Binds a camera's WorkBlock for shaders (triangles.glsl).
+inline void bind_work(const Buffer& work, int camera) {
+  glBindBufferRange(GL_SHADER_STORAGE_BUFFER, 4, work.name(),
+                    static_cast<GLintptr>(camera) * static_cast<GLintptr>(sizeof(WorkBlock)),
+                    sizeof(WorkBlock));
+}
+
 /// One way to find what is seen in each pixel. Made, used and deleted while the context is current.
 class Rasterizer {
  public:
   virtual ~Rasterizer() = default;
 
-  /// The files that define inverse_z_at() and color_at() for the passes that follow.
+  /// The files that define inverse_z_at() and seen_color() for the passes that follow.
   virtual std::vector<std::string> seen_files() const = 0;
-  /// Finds what each camera sees, in the frame that is bound as blocks 0 and 1.
-  virtual void draw(const FrameUpload& upload, const Rect& region, PassTimer& timer) = 0;
+  /// Finds what the cameras see, in the frame that is bound. work: a WorkBlock for each of them,
+  /// with nothing in it.
+  virtual void draw(const FrameUpload& upload, const Rect& region, const Buffer& work,
+                    PassTimer& timer) = 0;
   /// Binds what those functions read.
   virtual void bind_seen() const = 0;
 };

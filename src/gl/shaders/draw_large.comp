@@ -2,13 +2,11 @@
 
 layout(local_size_x = 64) in;
 
-void draw(uint entry) {
-  uint camera = entry >> id_bits;
-  uint id = entry & ((1u << id_bits) - 1u);
-  uvec3 corners = corners_of(camera, id);
-  ivec4 a = positions[corners.x];
-  ivec4 b = positions[corners.y];
-  ivec4 c = positions[corners.z];
+void draw(uint id) {
+  uvec3 corners = corners_of(id);
+  ivec4 a = position_of(corners.x);
+  ivec4 b = position_of(corners.y);
+  ivec4 c = position_of(corners.z);
   ivec4 box = pixels_of_bounding_box(a.xy, b.xy, c.xy);
   vec3 inverse_z = vec3(inverse_z_of(a), inverse_z_of(b), inverse_z_of(c));
   float scale = 1.0 / cross_product(b.xy - a.xy, c.xy - a.xy);
@@ -26,7 +24,7 @@ void draw(uint entry) {
     if (!((inside.x || on_owned.x) && (inside.y || on_owned.y) && (inside.z || on_owned.z))) continue;
     vec3 weights;
     uint nearness = floatBitsToUint(inverse_z_from(edges, scale, inverse_z, weights));
-    uint index = layer_index(camera, pixel);
+    uint index = layer_index(layer, pixel);
 #ifdef FIND_NEAREST
     atomicMax(layers[index], nearness);
 #else
@@ -36,7 +34,7 @@ void draw(uint entry) {
 }
 
 void main() {
-  for (uint i = gl_WorkGroupID.x; i < large_count; i += large_groups[0]) {
-    draw(triangles[uint(triangles.length()) - 1u - i]);
+  for (uint i = gl_WorkGroupID.x; i < work.large_count; i += work.large_groups[0]) {
+    draw(texelFetch(listed, textureSize(listed) - 1 - int(i)).x);
   }
 }

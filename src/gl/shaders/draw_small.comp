@@ -4,13 +4,11 @@
 
 layout(local_size_x = 64) in;
 
-void draw(uint entry) {
-  uint camera = entry >> id_bits;
-  uint id = entry & ((1u << id_bits) - 1u);
-  uvec3 corners = corners_of(camera, id);
-  ivec4 a = positions[corners.x];
-  ivec4 b = positions[corners.y];
-  ivec4 c = positions[corners.z];
+void draw(uint id) {
+  uvec3 corners = corners_of(id);
+  ivec4 a = position_of(corners.x);
+  ivec4 b = position_of(corners.y);
+  ivec4 c = position_of(corners.z);
   ivec4 box = pixels_of_bounding_box(a.xy, b.xy, c.xy);
   vec3 inverse_z = vec3(inverse_z_of(a), inverse_z_of(b), inverse_z_of(c));
   float scale = 1.0 / cross_product(b.xy - a.xy, c.xy - a.xy);
@@ -29,7 +27,7 @@ void draw(uint entry) {
   step_y *= subpixels;
   for (int y = box.y; y <= box.w; ++y) {
     ivec3 values = edges;
-    uint index = layer_index(camera, ivec2(box.x, y));
+    uint index = layer_index(layer, ivec2(box.x, y));
     for (int x = box.x; x <= box.z; ++x) {
       if (all(greaterThanEqual(values, least))) {
         vec3 weights;
@@ -48,6 +46,6 @@ void draw(uint entry) {
 }
 
 void main() {
-  uint stride = small_groups[0] * 64u;
-  for (uint i = gl_GlobalInvocationID.x; i < small_count; i += stride) draw(triangles[i]);
+  uint stride = work.small_groups[0] * 64u;
+  for (uint i = gl_GlobalInvocationID.x; i < work.small_count; i += stride) draw(texelFetch(listed, int(i)).x);
 }

@@ -1,10 +1,8 @@
 // The paper's way: a vertex for each depth pixel.
 
-uniform int camera;
-
 flat out ivec4 position;
 flat out vec2 place;
 
 void main() {
-  if (!find_vertex(uint(camera), uint(gl_VertexID), position, place)) position = ivec4(0);
+  if (!find_vertex(uint(gl_VertexID), position, place)) position = ivec4(0);
 }

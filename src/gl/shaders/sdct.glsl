@@ -33,7 +33,5 @@ bool joined(vec3 depths_m) {
 ivec4 pixels_of_bounding_box(ivec2 a, ivec2 b, ivec2 c) {
   ivec2 first = (min(min(a, b), c) + (subpixels - 1)) >> SUBPIXEL_BITS;
   ivec2 last = max(max(a, b), c) >> SUBPIXEL_BITS;
-  ivec2 region = ivec2(region_x, region_y);
-  ivec2 size = ivec2(region_width, region_height);
-  return ivec4(max(first, region), min(last, region + size - 1));
+  return ivec4(max(first, region.xy), min(last, region.xy + region.zw - 1));
 }

@@ -2,9 +2,8 @@
 
 layout(binding = 0) uniform usampler2DArray seen;
 
-// A float's bits; 0: nothing is seen.
-uint inverse_z_at(uint camera, ivec2 pixel) { return texelFetch(seen, ivec3(pixel, camera), 0).y; }
+// 1 / z as a float's bits; 0: the camera sees nothing.
+uint inverse_z_at(uint which, ivec2 pixel) { return texelFetch(seen, ivec3(pixel, which), 0).y; }
 
-uint color_at(uint camera, ivec2 pixel, float z) {
-  return texelFetch(seen, ivec3(pixel, camera), 0).x;
-}
+// Of the camera whose turn it is.
+uint seen_color(ivec2 pixel, float z) { return texelFetch(seen, ivec3(pixel, layer), 0).x; }

@@ -1,9 +1,13 @@
-// What the passes that draw are dispatched with, and how many triangles there are.
-layout(std430, binding = 4) buffer Work {
+// Of a camera: what the passes that draw are dispatched with, how many triangles there are, and how
+// many pixels are drawn.
+struct Work {
   uint small_groups[3];
   uint small_count;
   uint large_groups[3];
   uint large_count;
-  uint drawn_pixels[256];  // by each camera
-  uint order[256];         // of the cameras, by drawn pixels
+  uint drawn_pixels;
+  uint padding[55];
 };
+
+// Of the camera whose turn it is.
+layout(std430, binding = 4) buffer CameraWork { Work work; };
