@@ -1,4 +1,5 @@
-// The triangles that are drawn: small ones from the start of the list, large ones from its end.
+// What is drawn: small cells from the start of the list (four times the index of the first pixel,
+// plus 1 if the first triangle is drawn, plus 2 if the second is), large triangles from its end.
 
 // Larger ones are shared by a work group.
 const int small_side_px = 16;

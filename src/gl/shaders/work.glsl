@@ -1,4 +1,4 @@
-// Of a camera: what the passes that draw are dispatched with, how many triangles there are, and how
+// Of a camera: what the passes that draw are dispatched with, how long the list is, and how
 // many pixels are drawn.
 struct Work {
   uint small_groups[3];
