@@ -55,7 +55,9 @@ class ComputeRasterizer : public Rasterizer {
       bind_work(work, k);
       timer.measure("cells", [&] {
         cells_.use();
-        glDispatchCompute(groups_of(upload.camera(k)), 1, 1);
+        const CameraBlock& camera = upload.camera(k);
+        glDispatchCompute(static_cast<GLuint>((camera.depth_width + 63) / 64),
+                          static_cast<GLuint>(std::max(camera.depth_height - 1, 0)), 1);
         glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
                         GL_COMMAND_BARRIER_BIT);
       });

@@ -109,7 +109,11 @@ void GlReconstructor::reconstruct(const FrameSet& frame, const DepthImages& dept
 
 void GlReconstructor::draw(const Rect& region) {
   Resources& r = *resources_;
-  const auto groups = static_cast<GLuint>((pixels_of(region) + 63) / 64);
+  // Rows of pixels, 64 at a time.
+  const auto dispatch = [&] {
+    glDispatchCompute(static_cast<GLuint>((region.width + 63) / 64),
+                      static_cast<GLuint>(region.height), 1);
+  };
   const int cameras = r.upload.cameras();
   r.timer.begin_frame();
   r.timer.measure("upload", [&] {
@@ -132,19 +136,19 @@ void GlReconstructor::draw(const Rect& region) {
       r.upload.bind_camera(k);
       bind_work(r.work, k);
       r.count.use();
-      glDispatchCompute(groups, 1, 1);
+      dispatch();
     }
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     r.work.bind(1);
     r.merge.use();
-    glDispatchCompute(groups, 1, 1);
+    dispatch();
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   });
   r.timer.measure("color", [&] {
     r.color.use();
     for (int k = 0; k < cameras; ++k) {
       r.upload.bind_camera(k);
-      glDispatchCompute(groups, 1, 1);
+      dispatch();
     }
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   });

@@ -20,12 +20,12 @@ bool is_small(ivec2 a, ivec2 b, ivec2 c) {
 void main() {
   if (gl_LocalInvocationIndex < 2u) found[gl_LocalInvocationIndex] = 0u;
   barrier();
-  uint cell = gl_GlobalInvocationID.x;
   uint width = uint(depth_size.x);
+  uint cell = gl_GlobalInvocationID.y * width + gl_GlobalInvocationID.x;
   uint drawn = 0u;  // 1: the first triangle, 2: the second
   bool small_cell = false;
   uint place = 0u;
-  if (cell < width * uint(depth_size.y - 1) && cell % width != width - 1u) {
+  if (gl_GlobalInvocationID.x + 1u < width) {
     uint first = first_pixel + cell;
     ivec4 a = position_of(first);
     ivec4 b = position_of(first + 1u);

@@ -7,9 +7,8 @@ shared uint drawn;
 void main() {
   if (gl_LocalInvocationIndex == 0u) drawn = 0u;
   barrier();
-  int index = int(gl_GlobalInvocationID.x);
-  ivec2 pixel = region.xy + ivec2(index % region.z, index / region.z);
-  if (index < region.z * region.w && inverse_z_at(layer, pixel) != 0u) atomicAdd(drawn, 1u);
+  ivec2 place = ivec2(gl_GlobalInvocationID.xy);
+  if (place.x < region.z && inverse_z_at(layer, region.xy + place) != 0u) atomicAdd(drawn, 1u);
   barrier();
   if (gl_LocalInvocationIndex == 0u && drawn > 0u) atomicAdd(work.drawn_pixels, drawn);
 }

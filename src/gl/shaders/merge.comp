@@ -15,9 +15,10 @@ bool is_before(uint a, uint b) {
 }
 
 void main() {
-  int index = int(gl_GlobalInvocationID.x);
-  if (index >= region.z * region.w) return;
-  ivec2 pixel = region.xy + ivec2(index % region.z, index / region.z);
+  ivec2 place = ivec2(gl_GlobalInvocationID.xy);
+  if (place.x >= region.z) return;
+  int index = place.y * region.z + place.x;
+  ivec2 pixel = region.xy + place;
   float nearest = 0.0;
   uint chosen = 0u;
   uint last = camera_count;  // whose turn was last; none
