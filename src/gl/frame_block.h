@@ -67,7 +67,7 @@ constexpr std::size_t block_alignment = 256;
 struct WorkBlock {
   std::uint32_t small_groups[3], small_count;
   std::uint32_t large_groups[3], large_count;
-  std::uint32_t drawn_pixels, padding[55];
+  std::uint32_t drawn_pixels, turn, padding[54];
 };
 static_assert(sizeof(WorkBlock) == block_alignment);
 

@@ -34,6 +34,7 @@ struct GlReconstructor::Resources {
       : upload(rig),
         rasterizer(make_rasterizer(rig, upload)),
         count(compute_program(files(*rasterizer, "count.comp"))),
+        order(compute_program({"frame.glsl", "work.glsl", "order.comp"})),
         merge(compute_program(files(*rasterizer, "merge.comp"))),
         color(compute_program(files(*rasterizer, "color.comp"))),
         timer(context.driver().software) {
@@ -45,7 +46,7 @@ struct GlReconstructor::Resources {
 
   FrameUpload upload;
   std::unique_ptr<Rasterizer> rasterizer;
-  Program count, merge, color;
+  Program count, order, merge, color;
   Buffer work, result;
   MappedBuffer downloaded{MappedBuffer::Use::download};
   PassTimer timer;
@@ -140,6 +141,12 @@ void GlReconstructor::draw(const Rect& region) {
     }
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     r.work.bind(1);
+    // One camera's turn is the first: that is what the block holds already.
+    if (cameras > 1) {
+      r.order.use();
+      glDispatchCompute(1, 1, 1);
+      glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    }
     r.merge.use();
     dispatch();
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);

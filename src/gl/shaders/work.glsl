@@ -6,7 +6,8 @@ struct Work {
   uint large_groups[3];
   uint large_count;
   uint drawn_pixels;
-  uint padding[55];
+  uint turn;  // the i-th: which camera is merged in the i-th turn
+  uint padding[54];
 };
 
 // Of the camera whose turn it is.
