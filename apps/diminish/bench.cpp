@@ -34,7 +34,10 @@ struct Figures {
   std::size_t frames = 0, left_out = 0, measured = 0;
   std::array<Distribution, stage_count + 1> times_ms;  ///< per stage, and last the whole frame
   double throughput_fps = 0;
-  Distribution allocated_bytes, allocations;  ///< a frame
+  std::string device;                                         ///< the GPU; empty: the processor
+  std::vector<std::pair<std::string, double>> gpu_passes_ms;  ///< medians
+  double drawing_ms = 0, processor_drawing_ms = 0;            ///< medians, by turns
+  Distribution allocated_bytes, allocations;                  ///< a frame
   std::size_t peak_memory_bytes = 0;
 };
 
@@ -51,6 +54,8 @@ struct BenchCommand {
  private:
   std::vector<FrameSet> load(const Recording& input, Figures& figures) const;
   void measure_latency(const Recording& input, const std::vector<FrameSet>& frames,
+                       Figures& figures) const;
+  void measure_drawing(const Recording& input, const std::vector<FrameSet>& frames,
                        Figures& figures) const;
   void measure_throughput(const Recording& input, std::vector<FrameSet> frames,
                           Figures& figures) const;
@@ -112,6 +117,42 @@ void BenchCommand::measure_latency(const Recording& input, const std::vector<Fra
   figures.allocations = distribution_of(std::move(counts));
 }
 
+/// The chosen backend beside the processor's: by turns, so that a machine whose speed drifts slows
+/// both.
+void BenchCommand::measure_drawing(const Recording& input, const std::vector<FrameSet>& loaded,
+                                   Figures& figures) const {
+  Options by_processor = options;
+  by_processor.backend = "cpu";
+  Pipeline chosen(input.rig, input.scene, options);
+  Pipeline processor(input.rig, input.scene, by_processor);
+  DiminishedFrame result;
+  std::vector<double> chosen_ms;
+  std::vector<double> processor_ms;
+  std::vector<std::pair<std::string, std::vector<double>>> passes;
+  constexpr std::size_t fewest_frames = 20;
+  const Clock::time_point start = Clock::now();
+  for (std::size_t i = 0; i < fewest_frames || seconds_since(start) < seconds; ++i) {
+    const FrameSet& frame = loaded[i % loaded.size()];
+    processor.process(frame, result);
+    if (i > 0) processor_ms.push_back(result.report.drawing.milliseconds);
+    chosen.process(frame, result);
+    const DrawingReport& drawing = result.report.drawing;
+    if (i == 0) continue;  // memory grows to its size
+    chosen_ms.push_back(drawing.milliseconds);
+    figures.device = drawing.device;
+    passes.resize(drawing.passes.size());
+    for (std::size_t k = 0; k < passes.size(); ++k) {
+      passes[k].first = drawing.passes[k].name;
+      passes[k].second.push_back(drawing.passes[k].milliseconds);
+    }
+  }
+  figures.drawing_ms = distribution_of(std::move(chosen_ms)).p50;
+  figures.processor_drawing_ms = distribution_of(std::move(processor_ms)).p50;
+  for (auto& [name, times] : passes) {
+    figures.gpu_passes_ms.emplace_back(name, distribution_of(std::move(times)).p50);
+  }
+}
+
 void BenchCommand::measure_throughput(const Recording& input, std::vector<FrameSet> loaded,
                                       Figures& figures) const {
   const double frame_s = figures.times_ms[stage_count].average / 1000;
@@ -147,6 +188,17 @@ void print(const Figures& figures, int threads) {
   fmt::print("One at a time: p50 {:.2f}, p95 {:.2f}, p99 {:.2f} ms; {:.1f} frames/s\n", total.p50,
              total.p95, total.p99, 1000 / total.average);
   fmt::print("Pipelined, {} threads: {:.1f} frames/s\n", threads, figures.throughput_fps);
+  if (figures.drawing_ms > 0) {
+    fmt::print("Drawing on {}: p50 {:.2f} ms; by the processor's backend {:.2f} ms, ratio {:.2f}\n",
+               figures.device.empty() ? "the processor" : figures.device, figures.drawing_ms,
+               figures.processor_drawing_ms, figures.processor_drawing_ms / figures.drawing_ms);
+  }
+  double gpu_ms = 0;
+  for (const auto& [name, ms] : figures.gpu_passes_ms) {
+    fmt::print("  GPU time, {:<10}{:>9.3f} ms\n", name, ms);
+    gpu_ms += ms;
+  }
+  if (gpu_ms > 0) fmt::print("  GPU time, {:<10}{:>9.3f} ms\n", "in all", gpu_ms);
   fmt::print("Peak memory: {:.0f} MB\n", static_cast<double>(figures.peak_memory_bytes) / 1e6);
   if (allocations_are_counted()) {
     fmt::print("Allocated in a frame: {:.0f} bytes (at most {:.0f}) in {:.0f} pieces\n",
@@ -184,6 +236,12 @@ void write_json(const BenchCommand& command, const Figures& figures) {
   for (std::size_t stage = 0; stage < stage_count; ++stage) {
     json["stages"][stage_names[stage]] = to_json(figures.times_ms[stage]);
   }
+  if (figures.drawing_ms > 0) {
+    json["drawing"] = {{"device", figures.device},
+                       {"p50_ms", figures.drawing_ms},
+                       {"cpu_p50_ms", figures.processor_drawing_ms}};
+    for (const auto& [name, ms] : figures.gpu_passes_ms) json["drawing"]["gpu_ms"][name] = ms;
+  }
   json["peak_memory_bytes"] = figures.peak_memory_bytes;
   if (allocations_are_counted()) {
     json["allocated_bytes_per_frame"] = figures.allocated_bytes.p50;
@@ -197,6 +255,7 @@ int BenchCommand::execute() const {
   Figures figures;
   std::vector<FrameSet> loaded = load(input, figures);
   measure_latency(input, loaded, figures);
+  if (options.backend != "cpu") measure_drawing(input, loaded, figures);
   measure_throughput(input, std::move(loaded), figures);
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);

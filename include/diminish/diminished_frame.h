@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "diminish/gpu_pass.h"
 #include "diminish/image.h"
 #include "diminish/occlusion_masks.h"
 #include "diminish/poses.h"
@@ -39,6 +40,7 @@ struct FrameReport {
   std::size_t valid_pixels = 0;    ///< of these, seen by an RGB-D camera
   std::size_t missing_pixels = 0;  ///< of these, not seen by any
   StageTimes milliseconds{};
+  DrawingReport drawing;  ///< a part of the reconstruction
   /// The frame's colour image could not be read: there is no picture.
   bool skipped = false;
   /// Images that could not be used (see FrameSet::faults).

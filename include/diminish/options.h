@@ -30,6 +30,7 @@ struct Options {
   std::string mode = "remove";
   std::string keep;
   double transparency = 0.5;
+  std::string backend = "cpu";
 };
 
 /// An option's description. The range is inclusive and means nothing for texts and switches.
@@ -108,6 +109,7 @@ void for_each_option(AnyOptions& options, Visit&& visit) {
   visit(OptionInfo{"transparency", "",
                    "Of the object, in the mode half: 0 shows it as it is, 1 not at all", 0, 1},
         options.transparency);
+  visit(OptionInfo{"backend", "method", "What draws the reconstruction"}, options.backend);
 }
 
 /// Throws Error that names the option and what was given, if a value is out of range or names no

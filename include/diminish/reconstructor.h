@@ -2,9 +2,11 @@
 
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "diminish/frame_set.h"
+#include "diminish/gpu_pass.h"
 #include "diminish/occlusion_masks.h"
 #include "diminish/options.h"
 #include "diminish/poses.h"
@@ -32,6 +34,17 @@ class Reconstructor {
   virtual void reconstruct(const FrameSet& frame, const DepthImages& depths, const Poses& poses,
                            const OcclusionMasks& masks, const Rect& region, const Options& options,
                            Reconstruction& reconstruction) = 0;
+
+  /// The GPU that draws, by its driver's name; empty where the processor does.
+  virtual const std::string& device() const {
+    static const std::string processor;
+    return processor;
+  }
+  /// What the GPU did in the last frame, pass by pass.
+  virtual const std::vector<GpuPass>& gpu_passes() const {
+    static const std::vector<GpuPass> none;
+    return none;
+  }
 };
 
 }  // namespace diminish

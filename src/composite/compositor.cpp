@@ -4,6 +4,7 @@
 
 #include "core/rows.h"
 #include "core/stopwatch.h"
+#include "diminish/error.h"
 
 namespace diminish {
 namespace {
@@ -76,6 +77,29 @@ void sort_pixels(const Image<Bgr>& camera, const OcclusionMasks& masks, Diminish
   report.valid_pixels = report.mask_pixels - report.missing_pixels;
 }
 
+/// Calls work(method). Where the frame was drawn on the GPU, and there is a method "gl_" + name, by
+/// that; where it fails, by the processor's.
+template <class Interface, class Work>
+void on_gpu_or_processor(const std::string& name,
+                         std::map<std::string, std::unique_ptr<Interface>>& made,
+                         FrameReport& report, const Work& work) {
+  const std::string prefix = "gl_";
+  const bool is_asked_for = name.starts_with(prefix);
+  const std::string on_processor = is_asked_for ? name.substr(prefix.size()) : name;
+  const std::string on_gpu = prefix + on_processor;
+  const bool is_drawn_on_gpu = !report.drawing.device.empty();
+  if ((is_asked_for || is_drawn_on_gpu) && Registry<Interface>::contains(on_gpu)) {
+    try {
+      return work(on_gpu);
+    } catch (const Error& error) {
+      // The next frame begins anew.
+      made.erase(on_gpu);
+      report.messages.push_back(std::string(error.what()) + "; done by the processor instead");
+    }
+  }
+  work(on_processor);
+}
+
 }  // namespace
 
 void Compositor::composite(const Image<Bgr>& camera, const OcclusionMasks& masks,
@@ -87,8 +111,7 @@ void Compositor::composite(const Image<Bgr>& camera, const OcclusionMasks& masks
   }
   if (result.report.valid_pixels > 0) {
     const ScopedTimer timer(milliseconds, Stage::color_correction);
-    corrector(options.color_correct)
-        .correct(camera, masks.color, result.reconstruction, result.picture);
+    correct_colors(camera, masks.color, options.color_correct, result);
   }
   const bool has_shadows = !result.reconstruction.light.empty();
   if (has_shadows) {
@@ -97,8 +120,7 @@ void Compositor::composite(const Image<Bgr>& camera, const OcclusionMasks& masks
   }
   if (result.report.missing_pixels > 0) {
     const ScopedTimer timer(milliseconds, Stage::inpainting);
-    if (!inpainter(options.inpaint)
-             .inpaint({missing_, masks.color, result.reconstruction}, options, result.picture)) {
+    if (!inpaint({missing_, masks.color, result.reconstruction}, options, result)) {
       std::replace(result.provenance.begin(), result.provenance.end(), provenance::inpainted,
                    provenance::unknown);
     }
@@ -111,6 +133,21 @@ void Compositor::composite(const Image<Bgr>& camera, const OcclusionMasks& masks
     const ScopedTimer timer(milliseconds, Stage::compositing);
     view_mode(options.mode).show(camera, options, result);
   }
+}
+
+void Compositor::correct_colors(const Image<Bgr>& camera, const Mask& occlusion,
+                                const std::string& name, DiminishedFrame& result) {
+  on_gpu_or_processor(name, correctors_, result.report, [&](const std::string& method) {
+    corrector(method).correct(camera, occlusion, result.reconstruction, result.picture);
+  });
+}
+
+bool Compositor::inpaint(const Holes& holes, const Options& options, DiminishedFrame& result) {
+  bool filled = false;
+  on_gpu_or_processor(options.inpaint, inpainters_, result.report, [&](const std::string& method) {
+    filled = inpainter(method).inpaint(holes, options, result.picture);
+  });
+  return filled;
 }
 
 ColorCorrector& Compositor::corrector(const std::string& name) {

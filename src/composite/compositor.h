@@ -23,6 +23,10 @@ class Compositor {
                  DiminishedFrame& result);
 
  private:
+  void correct_colors(const Image<Bgr>& camera, const Mask& occlusion, const std::string& name,
+                      DiminishedFrame& result);
+  bool inpaint(const Holes& holes, const Options& options, DiminishedFrame& result);
+
   ColorCorrector& corrector(const std::string& name);
   Inpainter& inpainter(const std::string& name);
   const ViewMode& view_mode(const std::string& name);

@@ -1,3 +1,4 @@
+#include "composite/membrane_methods.h"
 #include "composite/membrane_picture.h"
 #include "composite/membrane_solver.h"
 #include "core/rows.h"
@@ -13,24 +14,27 @@ constexpr float tolerance_levels = 1.F;
 /// has the least squared gradient of all fillings; it invents no edges.
 class HarmonicInpainting : public Inpainter {
  public:
+  explicit HarmonicInpainting(std::unique_ptr<MembraneSolver> solver)
+      : solver_(std::move(solver)) {}
+
   bool inpaint(const Holes& holes, const Options&, Image<Bgr>& picture) override {
     const Mask& missing = holes.missing;
     const Rect box = bounding_box(missing);
     if (box.empty()) return true;
     const Rect window = intersect(grow(box, 1), picture.bounds());
-    solver_.begin(window.width, window.height);
+    solver_->begin(window.width, window.height);
     for_rows(window.height, [&](Rows rows) {
       for (int row = rows.first; row < rows.last; ++row) {
         const std::uint8_t* mask = missing.row(window.y + row) + window.x;
-        std::uint8_t* keys = solver_.keys(row);
+        std::uint8_t* keys = solver_->keys(row);
         for (int i = 0; i < window.width; ++i) keys[i] = mask[i] != 0 ? 1 : MembraneSolver::fixed;
       }
     });
-    solver_.connect();
+    solver_->connect();
     bool anything_known = false;
-    solver_.for_each_fixed([&](int x, int y) {
+    solver_->for_each_fixed([&](int x, int y) {
       const Bgr& color = picture(window.x + x, window.y + y);
-      solver_.set_fixed(
+      solver_->set_fixed(
           x, y,
           {static_cast<float>(color.b), static_cast<float>(color.g), static_cast<float>(color.r)});
       anything_known = true;
@@ -39,17 +43,22 @@ class HarmonicInpainting : public Inpainter {
       picture.fill(box, {});
       return false;
     }
-    solver_.solve(tolerance_levels);
-    write_solution(solver_, window, picture);
+    solver_->solve(tolerance_levels);
+    write_solution(*solver_, window, picture);
     return true;
   }
 
  private:
-  MembraneSolver solver_;
+  std::unique_ptr<MembraneSolver> solver_;
 };
 
-const bool registered =
-    Registry<Inpainter>::add("harmonic", [] { return std::make_unique<HarmonicInpainting>(); });
+const bool registered = Registry<Inpainter>::add(
+    "harmonic", [] { return make_harmonic_inpainting(std::make_unique<MembraneSolver>()); });
 
 }  // namespace
+
+std::unique_ptr<Inpainter> make_harmonic_inpainting(std::unique_ptr<MembraneSolver> solver) {
+  return std::make_unique<HarmonicInpainting>(std::move(solver));
+}
+
 }  // namespace diminish

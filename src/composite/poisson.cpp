@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "composite/channels.h"
+#include "composite/membrane_methods.h"
 #include "composite/membrane_picture.h"
 #include "composite/membrane_solver.h"
 #include "core/rows.h"
@@ -31,19 +32,21 @@ struct Difference {
 /// boundary value get the mean correction.
 class PoissonCorrection : public ColorCorrector {
  public:
+  explicit PoissonCorrection(std::unique_ptr<MembraneSolver> solver) : solver_(std::move(solver)) {}
+
   void correct(const Image<Bgr>& camera, const Mask& occlusion,
                const Reconstruction& reconstruction, Image<Bgr>& picture) override {
     const Rect objects = bounding_box(occlusion, reconstruction.region);
     const Rect region = intersect(grow(objects, 1), reconstruction.region);
     if (region.empty()) return;
-    solver_.begin(region.width, region.height);
+    solver_->begin(region.width, region.height);
     std::atomic<unsigned> sources = 0;
     for_rows(region.height, [&](Rows rows) {
       unsigned found = 0;
       for (int row = rows.first; row < rows.last; ++row) {
         const std::uint8_t* mask = occlusion.row(region.y + row) + region.x;
         const std::uint8_t* source = reconstruction.source.row(region.y + row) + region.x;
-        std::uint8_t* keys = solver_.keys(row);
+        std::uint8_t* keys = solver_->keys(row);
         for (int i = 0; i < region.width; ++i) {
           const std::uint8_t outside = source[i] != 0 ? MembraneSolver::fixed : 0;
           keys[i] = mask[i] != 0 ? source[i] : outside;
@@ -52,15 +55,15 @@ class PoissonCorrection : public ColorCorrector {
       }
       sources |= found;
     });
-    solver_.connect();
-    if (solver_.size() == 0) return;
+    solver_->connect();
+    if (solver_->size() == 0) return;
 
     double sum[MembraneSolver::channels] = {};
     std::size_t count = 0;
-    solver_.for_each_fixed([&](int x, int y) {
+    solver_->for_each_fixed([&](int x, int y) {
       const Difference difference(camera(region.x + x, region.y + y),
                                   reconstruction.color(region.x + x, region.y + y));
-      solver_.set_fixed(x, y, difference.value);
+      solver_->set_fixed(x, y, difference.value);
       for (int c = 0; c < MembraneSolver::channels; ++c) {
         sum[c] += static_cast<double>(difference.value[c]);
       }
@@ -70,7 +73,7 @@ class PoissonCorrection : public ColorCorrector {
     for (int c = 0; c < MembraneSolver::channels && count > 0; ++c) {
       mean[c] = static_cast<float>(sum[c] / static_cast<double>(count));
     }
-    for (const LooseRun& run : solver_.take_out_loose_parts()) {
+    for (const LooseRun& run : solver_->take_out_loose_parts()) {
       const int y = region.y + run.y;
       for (int x = region.x + run.first; x < region.x + run.last; ++x) {
         const Bgra& color = reconstruction.color(x, y);
@@ -80,13 +83,13 @@ class PoissonCorrection : public ColorCorrector {
     // One camera has no seams.
     const bool has_seams = !std::has_single_bit(sources.load());
     if (has_seams) even_out_seams(reconstruction, region);
-    solver_.solve(tolerance_levels);
-    add_solution(solver_, region, reconstruction.color, picture);
+    solver_->solve(tolerance_levels);
+    add_solution(*solver_, region, reconstruction.color, picture);
   }
 
  private:
   void even_out_seams(const Reconstruction& reconstruction, const Rect& region) {
-    solver_.for_each_irregular([&](int column, int row) {
+    solver_->for_each_irregular([&](int column, int row) {
       const int x = region.x + column;
       const int y = region.y + row;
       for (const auto& [dx, dy] : neighbour_offsets) {
@@ -95,16 +98,21 @@ class PoissonCorrection : public ColorCorrector {
         if (other == 0 || other == reconstruction.source(x, y)) continue;
         const Bgra& color = reconstruction.color(x + dx, y + dy);
         const Difference difference({color.b, color.g, color.r}, reconstruction.color(x, y));
-        solver_.add_source(column, row, difference.value);
+        solver_->add_source(column, row, difference.value);
       }
     });
   }
 
-  MembraneSolver solver_;
+  std::unique_ptr<MembraneSolver> solver_;
 };
 
-const bool registered =
-    Registry<ColorCorrector>::add("poisson", [] { return std::make_unique<PoissonCorrection>(); });
+const bool registered = Registry<ColorCorrector>::add(
+    "poisson", [] { return make_poisson_correction(std::make_unique<MembraneSolver>()); });
 
 }  // namespace
+
+std::unique_ptr<ColorCorrector> make_poisson_correction(std::unique_ptr<MembraneSolver> solver) {
+  return std::make_unique<PoissonCorrection>(std::move(solver));
+}
+
 }  // namespace diminish

@@ -10,6 +10,7 @@
 #include "diminish/color_corrector.h"
 #include "diminish/error.h"
 #include "diminish/inpainter.h"
+#include "diminish/reconstructor.h"
 #include "diminish/scene.h"
 #include "diminish/view_mode.h"
 
@@ -31,10 +32,22 @@ void check_method(const char* option, const std::string& name) {
       fmt::format("{}: expected one of {}, got '{}'", option, join(known), printable(name)));
 }
 
+void check_backend(const std::string& name) {
+  const std::vector<std::string> known = method_names("backend");
+  const bool is_left_out = name == "gl" || name == "gl_geometry";
+  if (is_left_out && std::find(known.begin(), known.end(), name) == known.end()) {
+    throw Error(
+        fmt::format("backend: expected one of {}, got '{}', which this build is without (it was "
+                    "built without libepoxy and EGL)",
+                    join(known), name));
+  }
+  check_method("backend", name);
+}
+
 }  // namespace
 
 void check(const Options& options) {
-  for_each_option(options, [](const OptionInfo& info, const auto& value) {
+  for_each_option(options, [&](const OptionInfo& info, const auto& value) {
     using Value = std::decay_t<decltype(value)>;
     if constexpr (std::is_same_v<Value, int> || std::is_same_v<Value, double>) {
       // Written so that NaN is out of range.
@@ -42,7 +55,11 @@ void check(const Options& options) {
         throw Error(fmt::format("{}: expected {}, got {}", info.name, allowed_range(info), value));
       }
     } else if constexpr (std::is_same_v<Value, std::string>) {
-      check_method(info.name, value);
+      if (&value == &options.backend) {
+        check_backend(value);
+      } else {
+        check_method(info.name, value);
+      }
     }
   });
 }
@@ -62,6 +79,11 @@ std::vector<std::string> method_names(const std::string& option) {
   if (option == "color_correct") return Registry<ColorCorrector>::names();
   if (option == "inpaint") return Registry<Inpainter>::names();
   if (option == "mode") return Registry<ViewMode>::names();
+  if (option == "backend") {
+    std::vector<std::string> names = Registry<Reconstructor>::names();
+    names.insert(names.begin(), "auto");
+    return names;
+  }
   return {};
 }
 

@@ -56,6 +56,16 @@ TEST_F(OptionsCheck, MethodsMustBeRegistered) {
   options_.inpaint = "telea";
   options_.color_correct = "";
   EXPECT_THAT(error_of([&] { check(options_); }), HasSubstr("color_correct: expected one of "));
+  options_ = {};
+  options_.backend = "metal";
+  EXPECT_THAT(error_of([&] { check(options_); }),
+              AllOf(HasSubstr("backend: expected one of auto, cpu, "), HasSubstr("got 'metal'")));
+  options_.backend = "auto";
+  EXPECT_NO_THROW(check(options_));
+#ifndef DIMINISH_HAS_GL
+  options_.backend = "gl";
+  EXPECT_THAT(error_of([&] { check(options_); }), HasSubstr("without libepoxy and EGL"));
+#endif
 }
 
 }  // namespace

@@ -62,6 +62,7 @@ struct LiveSession::Implementation {
         pipeline(rig, scene, options),
         assembler{make_inboxes(), rgbd_inboxes()} {  // braces: from left to right
     check_cameras(rig, cameras);
+    last_good_options = options;
     const double epoch_s = monotonic_now_s();
     for (const LiveCamera& camera : cameras) {
       CameraInbox& inbox = **std::find_if(inboxes.begin(), inboxes.end(), [&](const auto& box) {
@@ -148,7 +149,14 @@ struct LiveSession::Implementation {
   void process(LiveFrame& frame) {
     {
       const std::lock_guard lock(mutex);
-      pipeline.set_options(QualityLadder::simplified(options, ladder.level()));
+      try {
+        pipeline.set_options(QualityLadder::simplified(options, ladder.level()));
+      } catch (const Error& error) {  // a backend that does not work here
+        settings_problem = error.what();
+        options = last_good_options;
+        pipeline.set_options(QualityLadder::simplified(options, ladder.level()));
+      }
+      last_good_options = options;
     }
     pipeline.process(frame.input, frame.result);
   }
@@ -194,7 +202,8 @@ struct LiveSession::Implementation {
   SlidingWindow latencies_ms{window_frames};
   SlidingWindow publish_times_s{window_frames};
   std::size_t skipped = 0, failed = 0;
-  std::string failure;
+  std::string failure, settings_problem;
+  Options last_good_options;
 
   Pipeline pipeline;
   FramePool pool;
@@ -237,6 +246,7 @@ LiveStatus LiveSession::Implementation::status() const {
   status.budget_ms = live_options.budget_ms;
   status.quality_level = ladder.level();
   status.quality = QualityLadder::description(ladder.level());
+  if (!settings_problem.empty()) status.problems.push_back(settings_problem);
   if (!failure.empty()) status.problems.push_back("the last frame failed: " + failure);
   if (!latest) return status;
   const FrameReport& report = latest->result.report;
@@ -283,6 +293,7 @@ void LiveSession::set_options(const Options& options) {
   check(options, implementation_->scene);
   const std::lock_guard lock(implementation_->mutex);
   implementation_->options = options;
+  implementation_->settings_problem.clear();
 }
 LiveOptions LiveSession::live_options() const {
   const std::lock_guard lock(implementation_->mutex);

@@ -10,7 +10,7 @@
 #include "core/stopwatch.h"
 #include "detect/occlusion_masks.h"
 #include "diminish/marker_detector.h"
-#include "diminish/reconstructor.h"
+#include "pipeline/backend.h"
 #include "pose/camera_poses.h"
 #include "pose/pose_refinement.h"
 #include "reconstruct/background_planes.h"
@@ -52,7 +52,7 @@ struct Pipeline::Implementation {
         color_lens(rig.color),
         camera_poses(rig, scene),
         occluders(rig, scene),
-        reconstructor(Registry<Reconstructor>::get("cpu")(rig)),
+        backend(rig),
         sampler(rig),
         pose_refinement(rig.color),
         background_planes(rig.color),
@@ -92,8 +92,9 @@ struct Pipeline::Implementation {
     });
   }
 
-  void reconstruct(const FrameSet& frame, const Rect& objects, Poses& poses,
+  void reconstruct(const FrameSet& frame, const Rect& objects, FrameReport& report,
                    Reconstruction& reconstruction) {
+    Poses& poses = report.poses;
     const Rect whole = rig.color.bounds();
     Rect region =
         options.whole_view ? whole : intersect(grow(objects, options.surroundings_px), whole);
@@ -106,7 +107,8 @@ struct Pipeline::Implementation {
         },
         [&] { clean_depths(frame); });
     const auto draw = [&] {
-      reconstructor->reconstruct(frame, depths, poses, masks, region, options, reconstruction);
+      backend.reconstruct(frame, depths, poses, masks, region, options, reconstruction,
+                          report.drawing);
     };
     if (options.remove_shadows) {
       find_background(objects, reconstruction);
@@ -139,6 +141,9 @@ struct Pipeline::Implementation {
     FrameReport& report = result.report;
     report.mask_pixels = report.valid_pixels = report.missing_pixels = 0;
     report.milliseconds.fill(0);
+    report.drawing.milliseconds = 0;
+    report.drawing.device.clear();
+    report.drawing.passes.clear();
     report.skipped = frame.color.empty();
     report.faults = frame.faults;
     report.messages.clear();
@@ -155,7 +160,7 @@ struct Pipeline::Implementation {
   std::vector<MarkerDetector> marker_detectors;  ///< of the colour camera and each RGB-D camera
   CameraPoses camera_poses;
   OccluderStage occluders;
-  std::unique_ptr<Reconstructor> reconstructor;
+  Backend backend;
   std::vector<DepthCleaner> depth_cleaners;
   DepthImages depths;
   SceneSampler sampler;
@@ -176,6 +181,7 @@ Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;
 
 void Pipeline::set_options(const Options& options) {
   check(options, implementation_->scene);
+  implementation_->backend.choose(options.backend);
   implementation_->options = options;
 }
 const Options& Pipeline::options() const {
@@ -202,8 +208,9 @@ void Pipeline::process(const FrameSet& frame, DiminishedFrame& result) {
   }
   {  // 3.3 Reconstruction of what is behind them
     const ScopedTimer timer(report.milliseconds, Stage::reconstruction);
-    self.reconstruct(frame, bounding_box(self.masks.color), report.poses, result.reconstruction);
+    self.reconstruct(frame, bounding_box(self.masks.color), report, result.reconstruction);
   }
+  if (!self.backend.message().empty()) report.messages.push_back(self.backend.message());
   // 3.4 Compositing, colour correction, inpainting
   self.compositor.composite(frame.color, self.masks, self.options, result);
 

@@ -7,6 +7,7 @@
 #include "diminish/error.h"
 #include "diminish/reconstructor.h"
 #include "reconstruct/cell_rasterizer.h"
+#include "reconstruct/clear_outside.h"
 #include "reconstruct/sdct.h"
 #include "reconstruct/texture_lookup.h"
 #include "reconstruct/vertex_row.h"
@@ -94,7 +95,7 @@ class VectorizedReconstructor : public Reconstructor {
   void reconstruct(const FrameSet& frame, const DepthImages& depths, const Poses& poses,
                    const OcclusionMasks& masks, const Rect& region, const Options& options,
                    Reconstruction& reconstruction) override {
-    clear_outside(region, reconstruction);
+    clear_outside(color_, region, reconstruction);
     drawn_.clear();
     for (std::size_t k = 0; k < meshes_.size(); ++k) {
       if (!frame.rgbd[k].available() || !poses.color_from_depth[k]) continue;
@@ -129,31 +130,6 @@ class VectorizedReconstructor : public Reconstructor {
     std::size_t camera;
     int pixels;
   };
-
-  /// Everything outside `region` becomes empty; the region's pixels are written later.
-  void clear_outside(const Rect& region, Reconstruction& reconstruction) const {
-    const bool same_size = reconstruction.color.width() == color_.width &&
-                           reconstruction.color.height() == color_.height;
-    if (same_size) {
-      clear_outside(region, reconstruction.region, reconstruction.color);
-      clear_outside(region, reconstruction.region, reconstruction.depth_m);
-      clear_outside(region, reconstruction.region, reconstruction.source);
-    } else {
-      reconstruction.color.resize(color_.width, color_.height, {});
-      reconstruction.depth_m.resize(color_.width, color_.height, 0.F);
-      reconstruction.source.resize(color_.width, color_.height, 0);
-    }
-    reconstruction.region = region;
-  }
-  template <class Pixel>
-  static void clear_outside(const Rect& region, const Rect& drawn, Image<Pixel>& image) {
-    const Rect both = intersect(region, drawn);
-    if (both.empty()) return image.fill(drawn, {});
-    image.fill({drawn.x, drawn.y, drawn.width, both.y - drawn.y}, {});
-    image.fill({drawn.x, both.y, both.x - drawn.x, both.height}, {});
-    image.fill({both.right(), both.y, drawn.right() - both.right(), both.height}, {});
-    image.fill({drawn.x, both.bottom(), drawn.width, drawn.bottom() - both.bottom()}, {});
-  }
 
   /// The camera that sees most of the region first, as merge_layers does.
   void sort_by_coverage(const Rect& region) {

@@ -1,0 +1,90 @@
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "analytic_scene.h"
+#include "beside_peer.h"
+#include "diminish/error.h"
+#include "diminish/frame_source.h"
+#include "diminish/pipeline.h"
+#include "diminish/reconstructor.h"
+
+namespace diminish {
+namespace {
+
+double median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
+                   values.end());
+  return values[values.size() / 2];
+}
+
+/// Draws a bundled recording's first frame by the compute rasteriser, the paper's geometry shader
+/// and the processor, in turn. The benchmark's time is the first's; the others' are counters, and
+/// their time divided by the first's. The label names the driver.
+void draw(benchmark::State& state, const char* name, bool whole_view) {
+  const Recording recording = load_recording(std::filesystem::path(DIMINISH_RECORDINGS_DIR) / name);
+  const Options options;
+  FrameSet frame;
+  DiminishedFrame result;
+  open_recording(recording, options)->next(frame);
+  Pipeline(recording.rig, recording.scene, options).process(frame, result);
+  const DepthImages depths = testing::depths_of(frame);
+  const OcclusionMasks masks = testing::empty_masks(recording.rig);
+  const Rect region = whole_view ? recording.rig.color.bounds() : result.reconstruction.region;
+  std::vector<std::unique_ptr<Reconstructor>> variants;
+  try {
+    for (const char* variant : {"gl", "gl_geometry", "cpu"}) {
+      variants.push_back(Registry<Reconstructor>::get(variant)(recording.rig));
+    }
+  } catch (const Error& error) {
+    state.SkipWithError(error.what());
+    return;
+  }
+  Reconstruction reconstruction;
+  const auto milliseconds_of = [&](Reconstructor& reconstructor) {
+    return milliseconds([&] {
+      reconstructor.reconstruct(frame, depths, result.report.poses, masks, region, options,
+                                reconstruction);
+    });
+  };
+  for (const auto& variant : variants) milliseconds_of(*variant);  // memory grows to its size
+  std::vector<double> times[3];
+  std::vector<double> gpu_ms;
+  for (auto _ : state) {
+    for (std::size_t i = 0; i < variants.size(); ++i) {
+      times[i].push_back(milliseconds_of(*variants[i]));
+    }
+    state.SetIterationTime(times[0].back() / 1000);
+    double sum_ms = 0;
+    for (const GpuPass& pass : variants[0]->gpu_passes()) sum_ms += pass.milliseconds;
+    gpu_ms.push_back(sum_ms);
+  }
+  const double ours = median(times[0]);
+  state.SetLabel(variants[0]->device());
+  state.counters["p50_ms"] = ours;
+  state.counters["gpu_ms"] = median(gpu_ms);
+  state.counters["geometry_ms"] = median(times[1]);
+  state.counters["cpu_ms"] = median(times[2]);
+  state.counters["to_geometry"] = median(times[1]) / ours;
+  state.counters["to_cpu"] = median(times[2]) / ours;
+}
+BENCHMARK_CAPTURE(draw, calendar_mask, "calendar", false)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(draw, calendar_whole_view, "calendar", true)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(draw, ball_mask, "ball", false)->UseManualTime()->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(draw, workbench_two_cameras_mask, "workbench", false)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(draw, workbench_two_cameras_whole_view, "workbench", true)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace diminish

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstdint>
+
+#include "geometry/projection.h"
+
+namespace diminish::gl {
+
+// What frame.glsl declares, member by member, by the rules of std140.
+
+struct LensBlock {
+  float fx, fy, cx, cy;
+  float k1, k2, p1, p2;
+  float k3, max_radius_squared, padding[2];
+
+  LensBlock() = default;
+  explicit LensBlock(const Projection& p)
+      : fx(p.fx),
+        fy(p.fy),
+        cx(p.cx),
+        cy(p.cy),
+        k1(p.k1),
+        k2(p.k2),
+        p1(p.p1),
+        p2(p.p2),
+        k3(p.k3),
+        max_radius_squared(p.max_radius_squared),
+        padding{} {}
+};
+
+struct TransformBlock {
+  float rows[3][4];
+
+  TransformBlock() = default;
+  explicit TransformBlock(const FloatTransform& transform) {
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) rows[i][j] = transform.r[i][j];
+      rows[i][3] = transform.t[i];
+    }
+  }
+};
+
+struct FrameBlock {
+  LensBlock color;
+  std::int32_t region_x, region_y, region_width, region_height;
+  float threshold_m, inverse_reach, agreement_m;
+  std::uint32_t camera_count;
+};
+static_assert(sizeof(FrameBlock) == 80);
+
+struct CameraBlock {
+  LensBlock rgbd_color;
+  TransformBlock rgbd_color_from_depth, color_from_depth;
+  std::int32_t depth_width, depth_height, color_width, color_height;
+  std::uint32_t depth_at, depth_mask_at, color_mask_at, color_at;
+  float unit_m;
+  std::uint32_t first_pixel;
+  std::uint32_t source;
+  std::uint32_t layer;
+};
+static_assert(sizeof(CameraBlock) == 192);
+
+/// Ranges of buffers that shaders see as blocks begin at multiples of this: what any driver takes.
+constexpr std::size_t block_alignment = 256;
+
+/// work.glsl's Work.
+struct WorkBlock {
+  std::uint32_t small_groups[3], small_count;
+  std::uint32_t large_groups[3], large_count;
+  std::uint32_t drawn_pixels, turn, padding[54];
+};
+static_assert(sizeof(WorkBlock) == block_alignment);
+
+}  // namespace diminish::gl

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "diminish/reconstructor.h"
+#include "gl/buffer.h"
+#include "gl/frame_block.h"
+
+namespace diminish::gl {
+
+/// A frame's way to the GPU: the RGB-D images and masks as they are, and where the cameras are, in
+/// one piece of memory and one copy.
+class FrameUpload {
+ public:
+  /// Made while the context is current. Throws Error where a camera's images are too large.
+  explicit FrameUpload(const Rig& rig);
+
+  /// Writes the frame into mapped memory; needs no context. The GPU must be done with the last.
+  void pack(const FrameSet& frame, const DepthImages& depths, const Poses& poses,
+            const OcclusionMasks& masks, const Rect& region, const Options& options);
+  /// Copies it to the GPU's own memory and binds the frame and the images (frame.glsl).
+  void send();
+  /// Makes it the turn of one of the cameras that take part.
+  void bind_camera(int camera) const;
+
+  /// The cameras that take part.
+  int cameras() const { return static_cast<int>(blocks_.size()); }
+  const CameraBlock& camera(int index) const { return blocks_[static_cast<std::size_t>(index)]; }
+
+  /// Depth pixels of all the rig's cameras, and every one's ray (x, y), in the rig's order.
+  std::size_t depth_pixels() const { return depth_pixels_; }
+  void bind_rays(GLuint unit) const { ray_texture_.bind(unit); }
+
+ private:
+  void upload_rays(const Rig& rig);
+
+  std::vector<CameraBlock> of_rig_;  ///< with what does not change
+  std::vector<CameraBlock> blocks_;  ///< of the cameras that take part
+  FrameBlock frame_{};
+  std::size_t depth_pixels_ = 0;
+  std::size_t bytes_ = 0;
+  MappedBuffer mapped_{MappedBuffer::Use::upload};
+  Buffer on_gpu_;
+  Buffer rays_;
+  BufferTexture word_texture_, ray_texture_;
+};
+
+}  // namespace diminish::gl

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "diminish/reconstructor.h"
+#include "gl/buffer.h"
+#include "gl/context.h"
+#include "gl/frame_upload.h"
+#include "gl/pass_timer.h"
+#include "gl/program.h"
+
+namespace diminish::gl {
+
+/// Binds a camera's WorkBlock for shaders (triangles.glsl).
+inline void bind_work(const Buffer& work, int camera) {
+  glBindBufferRange(GL_SHADER_STORAGE_BUFFER, 4, work.name(),
+                    static_cast<GLintptr>(camera) * static_cast<GLintptr>(sizeof(WorkBlock)),
+                    sizeof(WorkBlock));
+}
+
+/// One way to find what is seen in each pixel. Made, used and deleted while the context is current.
+class Rasterizer {
+ public:
+  virtual ~Rasterizer() = default;
+
+  /// The files that define inverse_z_at() and seen_color() for the passes that follow.
+  virtual std::vector<std::string> seen_files() const = 0;
+  /// Finds what the cameras see, in the frame that is bound. work: a WorkBlock for each of them,
+  /// with nothing in it.
+  virtual void draw(const FrameUpload& upload, const Rect& region, const Buffer& work,
+                    PassTimer& timer) = 0;
+  /// Binds what those functions read.
+  virtual void bind_seen() const = 0;
+};
+
+/// The frame around a Rasterizer: one upload, the cameras merged by layers.h's rule, one download.
+class GlReconstructor : public Reconstructor {
+ public:
+  using MakeRasterizer =
+      std::function<std::unique_ptr<Rasterizer>(const Rig& rig, const FrameUpload& upload)>;
+
+  /// Throws Error where there is no driver that can do it.
+  GlReconstructor(const Rig& rig, const MakeRasterizer& make_rasterizer);
+  ~GlReconstructor() override;
+
+  void reconstruct(const FrameSet& frame, const DepthImages& depths, const Poses& poses,
+                   const OcclusionMasks& masks, const Rect& region, const Options& options,
+                   Reconstruction& reconstruction) override;
+  const std::string& device() const override { return device_; }
+  const std::vector<GpuPass>& gpu_passes() const override { return passes_; }
+
+ private:
+  struct Resources;
+
+  void draw(const Rect& region);
+
+  Intrinsics color_;
+  Context context_;
+  std::string device_;
+  std::vector<GpuPass> passes_;
+  std::unique_ptr<Resources> resources_;
+};
+
+}  // namespace diminish::gl

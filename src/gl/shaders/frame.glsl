@@ -1,0 +1,44 @@
+// A frame as the processor uploads it: src/gl/frame_block.h.
+
+struct Lens {
+  vec4 pinhole;  // fx, fy, cx, cy
+  vec4 distortion;  // k1, k2, p1, p2
+  float k3, max_radius_squared;
+};
+
+// Rows of the rotation, each with its coordinate of the translation.
+struct Transform {
+  vec4 rows[3];
+};
+
+layout(std140, binding = 0) uniform Frame {
+  Lens color_lens;
+  ivec4 region;  // x, y, width, height
+  float threshold_m, inverse_reach, agreement_m;
+  uint camera_count;
+};
+
+// The RGB-D camera whose turn it is.
+layout(std140, binding = 1) uniform Camera {
+  Lens rgbd_color;
+  Transform rgbd_color_from_depth, color_from_depth;
+  ivec2 depth_size, color_size;
+  uint depth_at, depth_mask_at, color_mask_at, color_at;  // in `words`
+  float unit_m;
+  uint first_pixel;  // of this camera's depth image, in the arrays of rays and vertices
+  uint source;
+  uint layer;  // its place among the cameras that take part
+};
+
+// All images, as they are.
+layout(binding = 1) uniform usamplerBuffer words;
+
+uint word_at(uint index) { return texelFetch(words, int(index)).x; }
+
+uint read_byte(uint word, uint index) {
+  return (word_at(word + (index >> 2)) >> (8u * (index & 3u))) & 0xFFu;
+}
+
+uint read_short(uint word, uint index) {
+  return (word_at(word + (index >> 1)) >> (16u * (index & 1u))) & 0xFFFFu;
+}

@@ -1,0 +1,17 @@
+// In which order cameras are merged: the one that sees most of the region first (layers.cpp).
+
+layout(local_size_x = 1) in;
+
+layout(std430, binding = 1) buffer AllWork { Work works[]; };
+
+void main() {
+  for (uint camera = 0u; camera < camera_count; ++camera) {
+    uint place = camera;
+    for (; place > 0u; --place) {
+      uint before = works[place - 1u].turn;
+      if (works[before].drawn_pixels >= works[camera].drawn_pixels) break;
+      works[place].turn = before;
+    }
+    works[place].turn = camera;
+  }
+}

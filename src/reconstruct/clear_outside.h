@@ -1,0 +1,38 @@
+#pragma once
+
+#include "diminish/intrinsics.h"
+#include "diminish/reconstruction.h"
+
+namespace diminish {
+
+namespace detail {
+template <class Pixel>
+void clear_outside(const Rect& region, const Rect& drawn, Image<Pixel>& image) {
+  const Rect both = intersect(region, drawn);
+  if (both.empty()) return image.fill(drawn, {});
+  image.fill({drawn.x, drawn.y, drawn.width, both.y - drawn.y}, {});
+  image.fill({drawn.x, both.y, both.x - drawn.x, both.height}, {});
+  image.fill({both.right(), both.y, drawn.right() - both.right(), both.height}, {});
+  image.fill({drawn.x, both.bottom(), drawn.width, drawn.bottom() - both.bottom()}, {});
+}
+}  // namespace detail
+
+/// Gives a reconstruction its size and its region. Everything outside becomes empty; the region's
+/// pixels are to be written afterwards. Cost: what the last region had that this one has not.
+inline void clear_outside(const Intrinsics& color, const Rect& region,
+                          Reconstruction& reconstruction) {
+  const bool same_size =
+      reconstruction.color.width() == color.width && reconstruction.color.height() == color.height;
+  if (same_size) {
+    detail::clear_outside(region, reconstruction.region, reconstruction.color);
+    detail::clear_outside(region, reconstruction.region, reconstruction.depth_m);
+    detail::clear_outside(region, reconstruction.region, reconstruction.source);
+  } else {
+    reconstruction.color.resize(color.width, color.height, {});
+    reconstruction.depth_m.resize(color.width, color.height, 0.F);
+    reconstruction.source.resize(color.width, color.height, 0);
+  }
+  reconstruction.region = region;
+}
+
+}  // namespace diminish
