@@ -62,7 +62,9 @@ struct BoardDetector::Implementation {
     const int columns = charuco ? board.columns - 1 : board.columns;
     view.ids.push_back(id);
     view.pixels.emplace_back(corner.x, corner.y);
-    view.points_m.emplace_back(id % columns * board.square_m, id / columns * board.square_m, 0);
+    const int column = id % columns;
+    const int row = id / columns;
+    view.points_m.emplace_back(column * board.square_m, row * board.square_m, 0);
   }
 };
 

@@ -42,7 +42,7 @@ Fit fit(const std::vector<TimedPoint>& first, const std::vector<TimedPoint>& sec
     Eigen::Vector3d velocity;
     const auto place = interpolate(first, point.stamp_s - offset_s, largest_gap_s, velocity);
     if (!place) continue;
-    differences.push_back(*place - point.place);
+    differences.emplace_back(*place - point.place);
     velocities.push_back(velocity);
     mean += differences.back();
     mean_velocity += velocity;

@@ -68,7 +68,7 @@ void DepthAlignment::add(const TargetView& in_color, const Image<std::uint16_t>&
     for (int x = part.x; x < part.right(); x += step) {
       if (depth(x, y) == 0) continue;
       const double z = depth(x, y) * depth_unit_m_;
-      plane.points_m.push_back(z * depth_lens_.undistort(Eigen::Vector2d(x, y)).homogeneous());
+      plane.points_m.emplace_back(z * depth_lens_.undistort(Eigen::Vector2d(x, y)).homogeneous());
     }
   }
   Row row;

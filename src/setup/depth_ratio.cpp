@@ -13,6 +13,7 @@ std::optional<DepthRatio> of_pose(const RigidTransform& depth_from_marker, doubl
                                   const Lens& depth_lens, double depth_unit_m,
                                   const Image<std::uint16_t>& depth) {
   constexpr int places = 9;  // per side
+  constexpr std::size_t least_places = places * places / 2 + 1;
   std::vector<double> ratios;
   for (int row = 0; row < places; ++row) {
     for (int column = 0; column < places; ++column) {
@@ -27,7 +28,7 @@ std::optional<DepthRatio> of_pose(const RigidTransform& depth_from_marker, doubl
       ratios.push_back(depth(x, y) * depth_unit_m / p.z());
     }
   }
-  if (2 * ratios.size() < static_cast<std::size_t>(places * places)) return std::nullopt;
+  if (ratios.size() < least_places) return std::nullopt;
   DepthRatio result;
   result.ratio = median(ratios);
   for (double& ratio : ratios) ratio = std::abs(ratio - result.ratio);

@@ -109,8 +109,9 @@ class Calibrator {
     const double usual = median(sorted);
     // Detection alone leaves some hundredths of a pixel.
     const double most = std::max(2.5 * usual, 0.15);
-    std::vector<bool> used;
-    for (const double error : errors) used.push_back(error <= most);
+    std::vector<bool> used(errors.size());
+    std::transform(errors.begin(), errors.end(), used.begin(),
+                   [most](double error) { return error <= most; });
     if (used == used_ || std::count(used.begin(), used.end(), true) < std::ptrdiff_t{least_views}) {
       return false;
     }

@@ -1,3 +1,4 @@
+#include <fmt/printf.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -72,13 +73,14 @@ TEST_P(CalibrateIntrinsics, RecoversTheCameraOfRenderedBoards) {
   const IntrinsicsCalibration result = calibrate_intrinsics(collection);
   EXPECT_THAT(result.warnings, ::testing::IsEmpty());
   const Intrinsics& found = result.intrinsics;
-  std::printf(
-      "%s: fx %+.2f fy %+.2f cx %+.2f cy %+.2f (sd %.2f %.2f %.2f %.2f), rms %.3f px, "
-      "largest difference %.2f px, %zu views\n",
-      GetParam(), found.fx - truth.fx, found.fy - truth.fy, found.cx - truth.cx,
-      found.cy - truth.cy, result.deviations[0], result.deviations[1], result.deviations[2],
-      result.deviations[3], result.error_px, largest_difference_px(truth, found),
-      result.views.size());
+  RecordProperty(
+      "figures",
+      fmt::sprintf("%s: fx %+.2f fy %+.2f cx %+.2f cy %+.2f (sd %.2f %.2f %.2f %.2f), rms %.3f px, "
+                   "largest difference %.2f px, %zu views",
+                   GetParam(), found.fx - truth.fx, found.fy - truth.fy, found.cx - truth.cx,
+                   found.cy - truth.cy, result.deviations[0], result.deviations[1],
+                   result.deviations[2], result.deviations[3], result.error_px,
+                   largest_difference_px(truth, found), result.views.size()));
   EXPECT_NEAR(found.fx, truth.fx, 0.002 * truth.fx);
   EXPECT_NEAR(found.fy, truth.fy, 0.002 * truth.fy);
   EXPECT_NEAR(found.cx, truth.cx, 1);

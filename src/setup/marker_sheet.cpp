@@ -133,8 +133,10 @@ void write_marker_sheet(const MarkerSheet& sheet, const Paper& paper,
   for (std::size_t i = 0; i < sheet.ids.size(); ++i) {
     const auto place = static_cast<int>(i % static_cast<std::size_t>(grid.places()));
     if (place == 0) pages.push_back(empty_page(used, cell));
-    const double x = page_margin + place % grid.columns * (width + between_cells);
-    const double y = page_margin + place / grid.columns * (height + between_cells);
+    const int column = place % grid.columns;
+    const int row = place / grid.columns;
+    const double x = page_margin + column * (width + between_cells);
+    const double y = page_margin + row * (height + between_cells);
     Page& page = pages.back();
     add_marker(*dictionary, sheet.ids[i], x + quiet, y + quiet, size, page.black);
     page.texts.push_back(

@@ -1,5 +1,6 @@
 #include "diminish/rig_calibration.h"
 
+#include <fmt/printf.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -96,9 +97,10 @@ TEST(RigCalibration, FindsTheCamerasOfASyntheticBenchByAMarker) {
   EXPECT_GE(result.sightings, 8U);
   const double degrees =
       rotation_difference_deg(result.color_from_depth.rotation, bench.color_from_depth.rotation);
-  std::printf("marker: %.2f mm, %.3f degrees (sd %.2f mm, %.3f degrees), %.3f px\n",
-              distance_mm(result.color_from_depth, bench.color_from_depth), degrees,
-              1000 * result.deviation_m, result.deviation_deg, result.error_px);
+  RecordProperty("figures",
+                 fmt::sprintf("marker: %.2f mm, %.3f degrees (sd %.2f mm, %.3f degrees), %.3f px",
+                              distance_mm(result.color_from_depth, bench.color_from_depth), degrees,
+                              1000 * result.deviation_m, result.deviation_deg, result.error_px));
   EXPECT_LT(distance_mm(result.color_from_depth, bench.color_from_depth), 3);
   EXPECT_LT(degrees, 0.15);
   EXPECT_LT(result.error_px, 0.3);
@@ -150,15 +152,17 @@ TEST(RigCalibration, FindsTheDepthSensorByABoardThatLeansInAllDirections) {
   EXPECT_THAT(result.warnings, IsEmpty());
   const RigidTransform& truth = bench.rig.rgbd[0].color_from_depth;
   const double degrees = rotation_difference_deg(result.color_from_depth.rotation, truth.rotation);
-  std::printf(
-      "depth to colour: %.2f mm, %.3f degrees (sd %.2f mm), planes off by %.2f mm, were "
-      "%.2f mm, %zu boards\n",
-      distance_mm(result.color_from_depth, truth), degrees, 1000 * result.deviation_m,
-      1000 * result.error_m, 1000 * result.error_before_m, result.sightings);
+  RecordProperty(
+      "figures_2",
+      fmt::sprintf(
+          "depth to colour: %.2f mm, %.3f degrees (sd %.2f mm), planes off by %.2f mm, were "
+          "%.2f mm, %zu boards",
+          distance_mm(result.color_from_depth, truth), degrees, 1000 * result.deviation_m,
+          1000 * result.error_m, 1000 * result.error_before_m, result.sightings));
   // Where the boards were.
   const Eigen::Vector3d at_boards(0, 0, 1);
   const double there_mm = 1000 * (result.color_from_depth * at_boards - truth * at_boards).norm();
-  std::printf("at the boards' place: %.2f mm\n", there_mm);
+  RecordProperty("figures_3", fmt::sprintf("at the boards' place: %.2f mm", there_mm));
   EXPECT_LT(there_mm, 2);
   EXPECT_LT(degrees, 0.35);
   EXPECT_LT(result.error_m, 0.001);
@@ -222,11 +226,12 @@ TEST(RigCalibration, AgreesWithTheTruthOfADemoRecording) {
       const double error_mm =
           1000 *
           (result.color_from_depth * in_depth - *poses.color_from_depth[k] * in_depth).norm();
-      std::printf("%s %s: %.1f mm at the scene, %.2f degrees, %.2f px\n", name,
-                  recording.rig.rgbd[k].name.c_str(), error_mm,
-                  rotation_difference_deg(result.color_from_depth.rotation,
-                                          poses.color_from_depth[k]->rotation),
-                  result.error_px);
+      RecordProperty(std::string(name) + "_" + recording.rig.rgbd[k].name,
+                     fmt::sprintf("%s %s: %.1f mm at the scene, %.2f degrees, %.2f px", name,
+                                  recording.rig.rgbd[k].name.c_str(), error_mm,
+                                  rotation_difference_deg(result.color_from_depth.rotation,
+                                                          poses.color_from_depth[k]->rotation),
+                                  result.error_px));
       EXPECT_LT(error_mm, 12);
       EXPECT_LT(rotation_difference_deg(result.color_from_depth.rotation,
                                         poses.color_from_depth[k]->rotation),

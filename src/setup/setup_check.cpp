@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <opencv2/core.hpp>
+#include <opencv2/aruco.hpp>
+#include <opencv2/imgproc.hpp>
 #include <optional>
 #include <set>
 
@@ -32,7 +33,7 @@ constexpr double least_improvement =
     0.04;                                ///< of the pictures' correlation, to blame a focal length
 constexpr double least_agreement = 0.4;  ///< below that the pictures do not agree at all
 constexpr double focal_tolerance = 0.04;
-constexpr double small_marker_px = 24;
+constexpr double small_marker_px = 40;
 constexpr double dark_level = 35;
 constexpr double overexposed_share = 0.2;
 
@@ -254,13 +255,37 @@ class Checker {
     note(fmt::format("{}: frames with the world marker", sensor.name), static_cast<double>(count),
          "");
     if (2 * count >= sensor.images) return;
-    if (count == 0) mark_unusable(index);
+    if (count == 0) {
+      mark_unusable(index);
+      if (check_too_small(sensor, index, id)) return;
+    }
     find(count == 0 ? Severity::serious : Severity::warning, "marker-not-visible",
          fmt::format("world marker {} is {} visible in {}", id, count == 0 ? "never" : "seldom",
                      sensor.name),
          fmt::format("{} of {} frames", count, sensor.images),
          "turn the camera or move the marker until every camera sees all of it; check its id and "
          "its white rim");
+  }
+
+  /// Markers that are too small for the detector, but not for OpenCV's, which takes its time.
+  bool check_too_small(const SensorSurvey& sensor, std::size_t index, int id) {
+    std::vector<double> sides;
+    for (const SetupSurvey::Kept& kept : survey_.kept) {
+      if (image_of(kept, index).empty()) continue;
+      std::vector<std::vector<cv::Point2f>> corners;
+      std::vector<int> ids;
+      cv::aruco::detectMarkers(as_mat(image_of(kept, index)),
+                               find_dictionary(scene_.marker_dictionary), corners, ids);
+      for (std::size_t i = 0; i < ids.size(); ++i) {
+        if (ids[i] == id) sides.push_back(cv::arcLength(corners[i], true) / 4);
+      }
+    }
+    if (sides.empty()) return false;
+    find(Severity::serious, "marker-small",
+         fmt::format("world marker {} is too small in {}", id, sensor.name),
+         fmt::format("{:.0f} pixels; expected {:.0f} and more", median_of(sides), small_marker_px),
+         "print it larger, or bring it nearer");
+    return true;
   }
 
   void check_marker_sizes(const SensorSurvey& sensor) {

@@ -26,7 +26,8 @@ std::string setup_report_text(const SetupReport& report) {
   }
   fmt::format_to(out, "\n{} frames: {}\n", report.frames,
                  report.fine() ? "nothing wrong was found"
-                               : fmt::format("{} findings", report.findings.size()));
+                               : fmt::format("{} {}", report.findings.size(),
+                                             report.findings.size() == 1 ? "finding" : "findings"));
   return text;
 }
 

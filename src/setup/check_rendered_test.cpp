@@ -1,4 +1,4 @@
-#include <fmt/format.h>
+#include <fmt/printf.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -105,11 +105,66 @@ TEST(CheckSetup, FindsAClockOffsetByAWavedMarker) {
                 ::testing::HasSubstr(late > 0 ? "ahead of color's" : "behind color's"));
     for (const SetupFigure& figure : report.figures) {
       if (figure.name != "clock of rgbd0 after color's") continue;
-      std::printf("clock offset %.1f ms, truth %.1f ms\n", figure.value, late * 1000 * period_s);
+      RecordProperty("figures", fmt::sprintf("clock offset %.1f ms, truth %.1f ms", figure.value,
+                                             late * 1000 * period_s));
       EXPECT_NEAR(figure.value, late * 1000 * period_s, 10);
     }
   }
 }
+
+/// One frame, again and again.
+class OneFrame final : public FrameSource {
+ public:
+  explicit OneFrame(const FrameSet& frame) : frame_(frame) {}
+  bool next(FrameSet& frame) override {
+    frame = frame_;
+    frame.stamp_s = count_ * period_s;
+    return ++count_ <= 3;
+  }
+
+ private:
+  const FrameSet& frame_;
+  int count_ = 0;
+};
+
+class SmallMarker : public ::testing::TestWithParam<double> {};
+
+// Both what the detector just finds, and what it does not find any more.
+TEST_P(SmallMarker, IsSaid) {
+  const double distance_m = GetParam();
+  Rig rig;
+  rig.color = {480, 384, 424, 424, 241, 190, {}};
+  RgbdCamera camera;
+  camera.name = "rgbd0";
+  camera.color = rig.color;
+  camera.depth = {160, 132, 115, 115, 79, 65, {}};
+  rig.rgbd.push_back(camera);
+  const Scene scene = read_scene(
+      Config::parse("world_marker: {id: 0, size_m: 0.055}\n"
+                    "occluders: [{name: a, detector: box, frame: world, min: [0, 0, 0], max: [1, "
+                    "1, 1]}]\n"));
+  RigidTransform far;
+  far.rotation = Eigen::Vector3d(1, -1, -1).asDiagonal();
+  far.translation = {0.02, 0.01, distance_m};
+  RigidTransform near = far;
+  near.translation.z() = 0.4;
+  const std::vector<testing::Target> targets = {testing::marker_target(0, 0.055, {})};
+  const testing::TargetRenderer renderer(rig.color);
+  FrameSet frame;
+  frame.color = renderer.color(targets, far, 0.4, 1, 1);
+  frame.rgbd.resize(1);
+  frame.rgbd[0].color = renderer.color(targets, near, 0.4, 1, 2);
+  frame.rgbd[0].depth = testing::TargetRenderer(camera.depth).depth(targets, near, 0.001, 0.001, 3);
+  OneFrame source(frame);
+  const SetupReport report = check_setup(rig, scene, source);
+  ASSERT_EQ(report.findings.size(), 1U) << setup_report_text(report);
+  EXPECT_EQ(report.findings[0].code, "marker-small");
+  EXPECT_THAT(report.findings[0].what, ::testing::HasSubstr("small in color"));
+  const double side_px = rig.color.fx * 0.055 / distance_m;
+  EXPECT_NEAR(std::stod(report.findings[0].figure), side_px, 1.5) << report.findings[0].figure;
+}
+
+INSTANTIATE_TEST_SUITE_P(Sizes, SmallMarker, ::testing::Values(0.65, 1.05));
 
 }  // namespace
 }  // namespace diminish
