@@ -46,6 +46,24 @@ TEST(LiveProgram, MeasuresLatencyThroughEverything) {
                               HasSubstr(" 0 without a readable time")));
 }
 
+TEST(LiveProgram, ChecksLiveCameras) {
+  const std::string replay = "recording:" + calendar + "?loop";
+  const auto fine = Program::run(
+      {"check", calendar, "--color", replay, "--rgbd", replay, "--seconds", "3", "--frames", "8"});
+  EXPECT_EQ(fine.exit_code, 0) << fine.out << fine.err;
+  const auto gone = Program::run({"check", calendar, "--color", replay, "--rgbd",
+                                  "recording:/nowhere", "--seconds", "3", "--frames", "8"});
+  EXPECT_EQ(gone.exit_code, 3) << gone.out << gone.err;
+}
+
+TEST(LiveProgram, ASyncCheckNamesTheCameraThatIsNotThere) {
+  const std::string replay = "recording:" + calendar + "?loop";
+  const auto check = Program::run({"sync-check", calendar, "--seconds", "4", "--color", replay,
+                                   "--rgbd", "recording:/nowhere"});
+  EXPECT_EQ(check.exit_code, 3);
+  EXPECT_THAT(check.out, ContainsRegex("rgbd0 +/nowhere"));
+}
+
 TEST(LiveProgram, ListsCameras) {
   const auto devices = Program::run({"devices"});
   EXPECT_EQ(devices.exit_code, 0);

@@ -6,6 +6,8 @@
 #include "commands.h"
 #include "diminish/frame_source.h"
 #include "diminish/setup_check.h"
+#include "live/live_frame_source.h"
+#include "live_setup.h"
 #include "sink/partial_file.h"
 
 namespace diminish {
@@ -14,14 +16,24 @@ namespace {
 constexpr int something_is_wrong = 3;
 
 struct CheckCommand {
-  std::filesystem::path recording;
+  LiveSetup setup;
   std::filesystem::path json;
   std::size_t frames = 300;
+  double seconds = 10;
+
+  SetupReport look() const {
+    const Recording input = load_recording(setup.folder);
+    if (!setup.color.empty() || !setup.rgbd.empty()) {
+      const LiveRun run = setup.start();
+      LiveFrameSource source(*run.session, seconds);
+      return check_setup(input.rig, input.scene, source, frames);
+    }
+    const auto source = open_recording(input, Options{});
+    return check_setup(input.rig, input.scene, *source, frames);
+  }
 
   int execute() const {
-    const Recording input = load_recording(recording);
-    const auto source = open_recording(input, Options{});
-    const SetupReport report = check_setup(input.rig, input.scene, *source, frames);
+    const SetupReport report = look();
     fmt::print("{}", setup_report_text(report));
     if (!json.empty()) write_file(json, setup_report_json(report));
     return report.fine() ? 0 : something_is_wrong;
@@ -34,7 +46,14 @@ void add_check(CLI::App& program, int& exit_code) {
   auto command = std::make_shared<CheckCommand>();
   CLI::App* sub =
       program.add_subcommand("check", "Looks at a set-up and says in plain words what is wrong");
-  sub->add_option("recording", command->recording, "The recording's folder")->required();
+  sub->add_option("recording", command->setup.folder,
+                  "A recording, or with --color and --rgbd a folder with rig.yaml and scene.yaml")
+      ->required();
+  command->setup.add_camera_flags(*sub);
+  sub->add_option("--seconds", command->seconds, "How long to look at live cameras")
+      ->capture_default_str()
+      ->check(CLI::Range(1.0, 3600.0))
+      ->type_name("S");
   sub->add_option("--frames", command->frames, "At most so many frames, from the first on")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000000))

@@ -28,13 +28,7 @@ void LiveSetup::add_flags(CLI::App& command) {
                   "Folder with rig.yaml and scene.yaml; if it is a recording and no cameras are "
                   "given, it is replayed again and again")
       ->required();
-  command.add_option("--color", color, "The camera of the user's view, such as v4l2:/dev/video0")
-      ->type_name("CAMERA");
-  command
-      .add_option("--rgbd", rgbd,
-                  "An RGB-D camera, in the rig's order or as NAME=CAMERA; twice with the same name "
-                  "for separate colour and depth devices. `diminish devices` lists what there is")
-      ->type_name("[NAME=]CAMERA");
+  add_camera_flags(command);
   command
       .add_option("--budget", live_options.budget_ms,
                   "What a frame may take; quality steps down when it takes more")
@@ -78,6 +72,16 @@ std::vector<LiveCamera> LiveSetup::cameras(const Rig& rig) const {
     }
   }
   return result;
+}
+
+void LiveSetup::add_camera_flags(CLI::App& command) {
+  command.add_option("--color", color, "The camera of the user's view, such as v4l2:/dev/video0")
+      ->type_name("CAMERA");
+  command
+      .add_option("--rgbd", rgbd,
+                  "An RGB-D camera, in the rig's order or as NAME=CAMERA; twice with the same name "
+                  "for separate colour and depth devices. `diminish devices` lists what there is")
+      ->type_name("[NAME=]CAMERA");
 }
 
 void LiveSetup::add_output_flags(CLI::App& command) {

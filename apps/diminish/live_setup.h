@@ -33,6 +33,8 @@ struct LiveSetup {
   LiveOptions live_options;
 
   void add_flags(CLI::App& command);
+  /// --color and --rgbd
+  void add_camera_flags(CLI::App& command);
   /// --record and --virtual-camera
   void add_output_flags(CLI::App& command);
 

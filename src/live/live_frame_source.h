@@ -1,0 +1,35 @@
+#pragma once
+
+#include "diminish/frame_source.h"
+#include "diminish/live.h"
+
+namespace diminish {
+
+/// What a live session works on, for those who read frames one after the other. Ends after
+/// `seconds`, or when no frame comes for as long.
+class LiveFrameSource : public FrameSource {
+ public:
+  LiveFrameSource(const LiveSession& session, double seconds)
+      : session_(session), seconds_(seconds), end_s_(monotonic_now_s() + seconds) {}
+
+  bool next(FrameSet& frame) override {
+    if (monotonic_now_s() > end_s_) return false;
+    const auto patience = std::chrono::duration_cast<std::chrono::milliseconds>(
+        std::chrono::duration<double>(seconds_));
+    const auto live = session_.wait_for_frame(number_, patience);
+    if (!live) return false;
+    number_ = live->number;
+    frame = live->input;
+    frame.index = index_++;
+    return true;
+  }
+
+ private:
+  const LiveSession& session_;
+  double seconds_;
+  double end_s_;
+  std::size_t number_ = 0;
+  std::size_t index_ = 0;
+};
+
+}  // namespace diminish
