@@ -96,9 +96,14 @@ TEST_P(GlMembrane, SolvesWhatThePlainVersionsSolve) {
 }
 
 // `--backend gl` takes them of itself.
-TEST_P(GlMembrane, IsUsedWhereTheFrameIsDrawnOnTheGpu) {
+TEST(GlMembraneSolver, IsUsedWhereTheFrameIsDrawnOnTheGpu) {
+  try {
+    const gl::Context context;
+  } catch (const Error& error) {
+    GTEST_SKIP() << error.what();
+  }
   const Recording recording =
-      load_recording(std::filesystem::path(DIMINISH_RECORDINGS_DIR) / GetParam());
+      load_recording(std::filesystem::path(DIMINISH_RECORDINGS_DIR) / "ball");
   Options options;
   options.backend = "gl";
   options.color_correct = "poisson";
