@@ -8,11 +8,20 @@
 
 namespace diminish::gl {
 
-void Buffer::reserve(std::size_t bytes) {
-  if (bytes <= size_) return;
+bool Buffer::reserve(std::size_t bytes) {
+  if (bytes <= size_) return false;
+  GLint64 most = 0;
+  glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
+  if (bytes > static_cast<std::size_t>(most)) {
+    throw Error(
+        fmt::format("gl: expected a driver with storage blocks of {} bytes, this one has {}: "
+                    "the images are too large for it",
+                    bytes, most));
+  }
   name_.create();
   glNamedBufferStorage(name_.get(), static_cast<GLsizeiptr>(bytes), nullptr, 0);
   size_ = bytes;
+  return true;
 }
 
 void BufferTexture::create(const Buffer& buffer, GLenum format, std::size_t texels) {
@@ -24,6 +33,7 @@ void BufferTexture::create(const Buffer& buffer, GLenum format, std::size_t texe
                     "{}: the RGB-D cameras' images are too large for it",
                     texels, most));
   }
+  if (name_ != 0) glDeleteTextures(1, &name_);
   glCreateTextures(GL_TEXTURE_BUFFER, 1, &name_);
   glTextureBuffer(name_, format, buffer.name());
 }

@@ -36,8 +36,9 @@ class BufferName {
 /// Memory of the GPU's own.
 class Buffer {
  public:
-  /// Makes it this large at least; what it held is lost if it grows.
-  void reserve(std::size_t bytes);
+  /// Makes it this large at least; what it held is lost if it grows. Returns whether it grew.
+  /// Throws Error where it is larger than what the driver's storage blocks may be.
+  bool reserve(std::size_t bytes);
   /// For shaders, as storage block `binding`.
   void bind(GLuint binding) const {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, name_.get());
@@ -59,7 +60,7 @@ class BufferTexture {
   BufferTexture(const BufferTexture&) = delete;
   BufferTexture& operator=(const BufferTexture&) = delete;
 
-  /// The buffer as it is now: it must not grow afterwards. Throws Error where it has more texels
+  /// The buffer as it is now: made anew when it grows. Throws Error where it has more texels
   /// than the driver takes.
   void create(const Buffer& buffer, GLenum format, std::size_t texels);
   void bind(GLuint unit) const { glBindTextureUnit(unit, name_); }

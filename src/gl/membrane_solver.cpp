@@ -12,7 +12,7 @@ namespace diminish::gl {
 namespace {
 
 /// From 0: what is left of the error on the bundled recordings is below half a level.
-constexpr int iterations = 24;
+constexpr int iterations = 20;
 
 /// The passes of membrane.comp.
 enum Pass {
@@ -70,6 +70,7 @@ struct GpuMembraneSolver::Resources {
   std::vector<Program> programs;
   std::vector<Grid> grids;
   Buffer weights, right_sides, values, directions, images, solution, sums, scalars;
+  std::array<BufferTexture, 6> textures;  ///< of the first six
   MappedBuffer uploaded{MappedBuffer::Use::upload};
   MappedBuffer downloaded{MappedBuffer::Use::download};
 
@@ -85,8 +86,13 @@ struct GpuMembraneSolver::Resources {
     }
     const std::size_t finest = sizeof(Cell) * static_cast<std::size_t>(width * height);
     const std::size_t all = sizeof(Cell) * static_cast<std::size_t>(grids.back().first + 1);
-    for (Buffer* buffer : {&weights, &right_sides, &values}) buffer->reserve(all);
-    for (Buffer* buffer : {&directions, &images, &solution}) buffer->reserve(finest);
+    Buffer* const buffers[] = {&weights, &right_sides, &values, &directions, &images, &solution};
+    for (std::size_t i = 0; i < textures.size(); ++i) {
+      const std::size_t bytes = i < 3 ? all : finest;
+      if (buffers[i]->reserve(bytes)) {
+        textures[i].create(*buffers[i], GL_RGBA32F, bytes / sizeof(Cell));
+      }
+    }
     sums.reserve(sizeof(Cell) * groups_across(grids.front()) * static_cast<std::size_t>(height));
     scalars.reserve(3 * sizeof(Cell));
     uploaded.reserve(finest);
@@ -97,6 +103,7 @@ struct GpuMembraneSolver::Resources {
     const Buffer* const bound[] = {&weights, &right_sides, &values, &directions,
                                    &images,  &solution,    &sums,   &scalars};
     for (GLuint i = 0; i < std::size(bound); ++i) bound[i]->bind(i);
+    for (GLuint i = 0; i < textures.size(); ++i) textures[i].bind(i);
   }
 
   /// Runs a pass over the cells of `over`.
@@ -111,7 +118,7 @@ struct GpuMembraneSolver::Resources {
     program.set("parity", parity);
     program.set("from_zero", from_zero ? 1 : 0);
     glDispatchCompute(groups_across(over), static_cast<GLuint>(over.height), 1);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
   }
   void run(Pass pass, int parity = 0, bool from_zero = false) const {
     run(pass, grids.front(), grids.front(), grids.front(), parity, from_zero);

@@ -11,7 +11,7 @@
 #include "diminish/frame_source.h"
 #include "diminish/pipeline.h"
 #include "expect_error.h"
-#include "gl/shader_files.h"
+#include "gl/needs_driver.h"
 
 namespace diminish {
 namespace {
@@ -53,16 +53,7 @@ struct Case {
   const char* backend;
 };
 
-class GlOnRecordings : public ::testing::TestWithParam<Case> {
- protected:
-  void SetUp() override {
-    try {
-      const gl::Context context;
-    } catch (const Error& error) {
-      GTEST_SKIP() << error.what();
-    }
-  }
-};
+class GlOnRecordings : public gl::NeedsDriver, public ::testing::WithParamInterface<Case> {};
 INSTANTIATE_TEST_SUITE_P(Recordings, GlOnRecordings,
                          ::testing::Values(Case{"calendar", "gl"}, Case{"ball", "gl"},
                                            Case{"workbench", "gl"}, Case{"calendar", "gl_geometry"},
@@ -133,9 +124,11 @@ TEST_P(GlOnRecordings, DrawsTheSameEveryTime) {
   EXPECT_EQ(first.source, second.source);
 }
 
+using GlReconstructor = gl::NeedsDriver;
+
 // A camera so near that each cell covers hundreds of pixels: triangles that work groups share, and
 // products of coordinates that 32 bits do not hold.
-TEST(GlReconstructor, DrawsLargeCells) {
+TEST_F(GlReconstructor, DrawsLargeCells) {
   const testing::AnalyticScene scene;
   testing::AnalyticFrame frame(scene, {Eigen::Vector3d(-0.45, 0.3, 0.9)});
   const OcclusionMasks masks = testing::empty_masks(frame.rig);
@@ -158,7 +151,9 @@ TEST(GlReconstructor, DrawsLargeCells) {
   }
 }
 
-TEST(GlProgram, ErrorsNameTheShadersFileAndLine) {
+using GlProgram = gl::NeedsDriver;
+
+TEST_F(GlProgram, ErrorsNameTheShadersFileAndLine) {
   const gl::Context context;
   const gl::Current current(context);
   // vertices.comp calls what the files before it define.
@@ -171,7 +166,9 @@ TEST(GlProgram, ErrorsNameTheShadersFileAndLine) {
               ::testing::HasSubstr("'none.comp'"));
 }
 
-TEST(GlContext, FailedCallsAreErrorsThatSayWhereAndOnWhat) {
+using GlContext = gl::NeedsDriver;
+
+TEST_F(GlContext, FailedCallsAreErrorsThatSayWhereAndOnWhat) {
   const gl::Context context;
   const gl::Current current(context);
   EXPECT_NO_THROW(context.check("nothing"));

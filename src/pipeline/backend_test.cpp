@@ -14,6 +14,7 @@
 #include "mask_overlap.h"
 #ifdef DIMINISH_HAS_GL
 #include "gl/context.h"
+#include "gl/needs_driver.h"
 #endif
 
 namespace diminish {
@@ -103,7 +104,7 @@ TEST(Backend, AutoIsTheGpuOnlyWhereHardwareDraws) {
 
 #ifdef DIMINISH_HAS_GL
 
-class WholeFrames : public ::testing::TestWithParam<const char*> {};
+class WholeFrames : public gl::NeedsDriver, public ::testing::WithParamInterface<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Recordings, WholeFrames,
                          ::testing::Values("calendar", "ball", "workbench"));
 
@@ -123,11 +124,6 @@ double psnr_db(const DiminishedFrame& result, const Image<Bgr>& truth) {
 
 // What users see: the pictures of both backends, and what they score.
 TEST_P(WholeFrames, OfTheGpuAreThoseOfTheProcessor) {
-  try {
-    const gl::Context context;
-  } catch (const Error& error) {
-    GTEST_SKIP() << error.what();
-  }
   const std::filesystem::path folder = std::filesystem::path(DIMINISH_RECORDINGS_DIR) / GetParam();
   const Recording recording = load_recording(folder);
   Options options;

@@ -31,17 +31,30 @@ layout(std430, binding = 7) buffer Scalars {
   vec4 alpha;
 };
 
+// The same, to be read: of no cell that the pass writes but the invocation's own.
+layout(binding = 0) uniform samplerBuffer weights_read;
+layout(binding = 1) uniform samplerBuffer right_sides_read;
+layout(binding = 2) uniform samplerBuffer values_read;
+layout(binding = 3) uniform samplerBuffer directions_read;
+layout(binding = 4) uniform samplerBuffer images_read;
+layout(binding = 5) uniform samplerBuffer solution_read;
+
+vec4 weight_at(int index) { return texelFetch(weights_read, index); }
+
 int at(ivec2 cell) { return grid.x + cell.y * grid.y + cell.x; }
 
-float left_weight(ivec2 cell) { return cell.x > 0 ? weights[at(cell) - 1].x : 0.0; }
-float up_weight(ivec2 cell) { return cell.y > 0 ? weights[at(cell) - grid.y].y : 0.0; }
+float left_weight(ivec2 cell) { return cell.x > 0 ? weight_at(at(cell) - 1).x : 0.0; }
+float up_weight(ivec2 cell) { return cell.y > 0 ? weight_at(at(cell) - grid.y).y : 0.0; }
 
-// The sum over a cell's neighbours of `array`, by their weights. Edges end at the grid's rim.
-#define NEIGHBOURS(array, cell, own)                              \
-  (left_weight(cell) * array[max(at(cell) - 1, 0)] +              \
-   up_weight(cell) * array[max(at(cell) - grid.y, 0)] +           \
-   (own.x > 0.0 ? own.x * array[at(cell) + 1] : vec4(0)) +        \
-   (own.y > 0.0 ? own.y * array[at(cell) + grid.y] : vec4(0)))
+// What a neighbour is worth; where there is none, what is read in its place may be anything.
+#define NEIGHBOUR(array, weight, index) \
+  ((weight) > 0.0 ? (weight) * texelFetch(array, max(index, 0)) : vec4(0))
+// The sum over a cell's neighbours of `array`, by their weights.
+#define NEIGHBOURS(array, cell, own)                         \
+  (NEIGHBOUR(array, left_weight(cell), at(cell) - 1) +       \
+   NEIGHBOUR(array, up_weight(cell), at(cell) - grid.y) +    \
+   NEIGHBOUR(array, own.x, at(cell) + 1) +                   \
+   NEIGHBOUR(array, own.y, at(cell) + grid.y))
 
 shared vec4 shares[64];
 
@@ -85,10 +98,10 @@ void main() {
 
 #if PASS == SET_UP
   if (!is_inside) return;
-  vec4 own = solution[own_at];
+  vec4 own = texelFetch(solution_read, own_at);
   bool is_unknown = own.w >= 0.0;
-  bool joins_right = is_unknown && cell.x + 1 < grid.y && solution[own_at + 1].w >= 0.0;
-  bool joins_down = is_unknown && cell.y + 1 < grid.z && solution[own_at + grid.y].w >= 0.0;
+  bool joins_right = is_unknown && cell.x + 1 < grid.y && texelFetch(solution_read, own_at + 1).w >= 0.0;
+  bool joins_down = is_unknown && cell.y + 1 < grid.z && texelFetch(solution_read, own_at + grid.y).w >= 0.0;
   weights[own_at] = vec4(joins_right ? 1 : 0, joins_down ? 1 : 0, is_unknown ? 1 : 0,
                          is_unknown ? own.w : 0.0);
   right_sides[own_at] = is_unknown ? vec4(own.xyz, 0) : vec4(0);
@@ -105,7 +118,7 @@ void main() {
     for (int x = 0; x < 2; ++x) {
       ivec2 child = 2 * cell + ivec2(x, y);
       if (child.x >= grid.y || child.y >= grid.z) continue;
-      vec4 fine = weights[at(child)];
+      vec4 fine = weight_at(at(child));
       sum += vec4(x == 1 ? 0.5 * fine.x : 0.0, y == 1 ? 0.5 * fine.y : 0.0,
                   fine.z > 0.0 ? 1.0 : 0.0, fine.w);
     }
@@ -113,14 +126,14 @@ void main() {
   weights[coarse.x + cell.y * coarse.y + cell.x] = sum;
 #elif PASS == INVERT
   if (!is_inside) return;
-  vec4 own = weights[own_at];
+  vec4 own = weight_at(own_at);
   float diagonal = own.w + own.x + own.y + left_weight(cell) + up_weight(cell);
   weights[own_at].z = own.z > 0.0 && diagonal > 0.0 ? 1.0 / diagonal : 0.0;
 #elif PASS == RELAX
   if (!is_inside || ((cell.x + cell.y) & 1) != parity) return;
-  vec4 own = weights[own_at];
-  vec4 sum = right_sides[own_at];
-  if (from_zero == 0) sum += NEIGHBOURS(values, cell, own);
+  vec4 own = weight_at(own_at);
+  vec4 sum = texelFetch(right_sides_read, own_at);
+  if (from_zero == 0) sum += NEIGHBOURS(values_read, cell, own);
   values[own_at] = own.z * sum;
 #elif PASS == RESTRICT
   if (cell.x >= coarse.y || cell.y >= coarse.z) return;
@@ -129,17 +142,20 @@ void main() {
     for (int x = 0; x < 2; ++x) {
       ivec2 child = 2 * cell + ivec2(x, y);
       if (child.x >= grid.y || child.y >= grid.z) continue;
-      vec4 own = weights[at(child)];
+      vec4 own = weight_at(at(child));
       if (own.z == 0.0) continue;
-      sum += right_sides[at(child)] + NEIGHBOURS(values, child, own) - values[at(child)] / own.z;
+      sum += texelFetch(right_sides_read, at(child)) + NEIGHBOURS(values_read, child, own) -
+             texelFetch(values_read, at(child)) / own.z;
     }
   }
   right_sides[coarse.x + cell.y * coarse.y + cell.x] = sum;
 #elif PASS == PROLONG
-  if (!is_inside || weights[own_at].z == 0.0) return;
-  values[own_at] += values[coarse.x + (cell.y / 2) * coarse.y + cell.x / 2];
+  if (!is_inside || weight_at(own_at).z == 0.0) return;
+  values[own_at] = texelFetch(values_read, own_at) +
+                   texelFetch(values_read, coarse.x + (cell.y >> 1) * coarse.y + (cell.x >> 1));
 #elif PASS == MULTIPLY_RESIDUAL
-  add_up(is_inside ? right_sides[own_at] * values[own_at] : vec4(0));
+  add_up(is_inside ? texelFetch(right_sides_read, own_at) * texelFetch(values_read, own_at)
+                   : vec4(0));
 #elif PASS == FIND_BETA
   vec4 product = all_sums();
   if (gl_LocalInvocationIndex == 0u) {
@@ -147,14 +163,18 @@ void main() {
     residual_product = product;
   }
 #elif PASS == TURN
-  if (is_inside) directions[own_at] = values[own_at] + beta * directions[own_at];
+  if (is_inside) {
+    directions[own_at] =
+        texelFetch(values_read, own_at) + beta * texelFetch(directions_read, own_at);
+  }
 #elif PASS == APPLY
   vec4 share = vec4(0);
   if (is_inside) {
-    vec4 own = weights[own_at];
-    vec4 image = own.z > 0.0 ? directions[own_at] / own.z - NEIGHBOURS(directions, cell, own) : vec4(0);
+    vec4 own = weight_at(own_at);
+    vec4 direction = texelFetch(directions_read, own_at);
+    vec4 image = own.z > 0.0 ? direction / own.z - NEIGHBOURS(directions_read, cell, own) : vec4(0);
     images[own_at] = image;
-    share = image * directions[own_at];
+    share = image * direction;
   }
   add_up(share);
 #elif PASS == FIND_ALPHA
@@ -162,7 +182,8 @@ void main() {
   if (gl_LocalInvocationIndex == 0u) alpha = quotient(residual_product, product);
 #elif PASS == STEP
   if (!is_inside) return;
-  solution[own_at] += alpha * directions[own_at];
-  right_sides[own_at] -= alpha * images[own_at];
+  solution[own_at] = texelFetch(solution_read, own_at) + alpha * texelFetch(directions_read, own_at);
+  right_sides[own_at] =
+      texelFetch(right_sides_read, own_at) - alpha * texelFetch(images_read, own_at);
 #endif
 }
