@@ -63,7 +63,7 @@ struct LatencyStatus {
 /// How a session does. Small enough to be asked for many times a second.
 struct LiveStatus {
   bool running = false;
-  bool ended = false;       ///< the colour camera has no more images
+  bool ended = false;       ///< the colour camera has no more images, and all are shown
   std::size_t frames = 0;   ///< shown
   std::size_t skipped = 0;  ///< colour images that were never shown: newer ones were there
   std::size_t failed = 0;   ///< frames that ended in an error (see `problems`)

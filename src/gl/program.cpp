@@ -7,8 +7,8 @@
 #include <string_view>
 
 #include "diminish/error.h"
-#include "gl/shader_files.h"
 #include "reconstruct/sdct.h"
+#include "shader_files.h"
 
 namespace diminish::gl {
 namespace {
@@ -35,6 +35,12 @@ std::string first_error(std::string_view log, const std::vector<std::string>& fi
   }
   const auto rest = line.substr(static_cast<std::size_t>(end - line.data()));
   return fmt::format("{}:{}{}", files[file - 1], number % file_lines, rest);
+}
+
+std::string_view shader_file(const std::string& name) {
+  const auto found = shader_files().find(name);
+  if (found == shader_files().end()) throw Error("gl: there is no shader file '" + name + "'");
+  return found->second;
 }
 
 template <class Get, class Log>

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <thread>
+
 #include "diminish/frame_source.h"
 #include "diminish/live.h"
 
@@ -13,6 +16,7 @@ class LiveFrameSource : public FrameSource {
       : session_(session), seconds_(seconds), end_s_(monotonic_now_s() + seconds) {}
 
   bool next(FrameSet& frame) override {
+    if (index_ == 0) wait_for_cameras();
     if (monotonic_now_s() > end_s_) return false;
     const auto patience = std::chrono::duration_cast<std::chrono::milliseconds>(
         std::chrono::duration<double>(seconds_));
@@ -25,6 +29,20 @@ class LiveFrameSource : public FrameSource {
   }
 
  private:
+  /// The first frames go without cameras that take longer to open.
+  void wait_for_cameras() {
+    const auto is_opening = [](const CameraStatus& camera) {
+      return camera.state == CameraState::opening;
+    };
+    LiveStatus status = session_.status();
+    while (monotonic_now_s() < end_s_ &&
+           std::any_of(status.cameras.begin(), status.cameras.end(), is_opening)) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      status = session_.status();
+    }
+    number_ = status.frames + 1;  // one may be in work
+  }
+
   const LiveSession& session_;
   double seconds_;
   double end_s_;

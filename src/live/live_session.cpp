@@ -106,6 +106,7 @@ struct LiveSession::Implementation {
       const std::size_t seen = arrived.count();
       try {
         if (!make_frame(*frame)) {
+          if (!assembler.next_deadline_s(sync_settings())) nothing_new_at = seen;
           arrived.wait(seen, waiting_time());
           continue;
         }
@@ -213,6 +214,7 @@ struct LiveSession::Implementation {
   std::mutex listeners_mutex;
   std::vector<std::weak_ptr<Listener>> listeners;
   std::atomic<bool> stopped = false;
+  std::atomic<std::size_t> nothing_new_at = 0;  ///< the count of `arrived` up to which all is shown
   std::vector<std::unique_ptr<CameraFeed>> feeds;
   std::thread worker;
 };
@@ -225,7 +227,7 @@ void LiveSession::Implementation::describe_cameras(LiveStatus& status, double no
     } else if (camera.state == CameraState::silent) {
       status.problems.push_back(camera.name + ": the camera is silent: " + camera.problem);
     } else if (camera.state == CameraState::ended && camera.name == "color") {
-      status.ended = true;
+      status.ended = nothing_new_at == arrived.count();
     }
   }
   if (!status.ended && (!latest || now_s - latest->published_s > no_picture_after_s)) {

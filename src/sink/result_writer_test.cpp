@@ -37,7 +37,7 @@ class ResultWriterTest : public ::testing::Test {
     result.report.poses.color_from_world.emplace();
     result.report.poses.depth_from_world.resize(1);
     result.report.poses.color_from_depth.resize(1);
-    result.report.occluders = {{"lamp", true, {true}, ""}};
+    result.report.occluders = {{.name = "lamp", .in_color = true, .in_rgbd = {true}}};
     result.report.messages = {"a \"quoted\", message", "another"};
   }
 
