@@ -11,6 +11,11 @@ target_compile_options(diminish_build_options INTERFACE
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 sees overlaps in std::string's operator+ that are not there (GCC bug 105651).
   target_compile_options(diminish_build_options INTERFACE -Wno-restrict)
+  if(DIMINISH_PRECOMPILE_HEADERS)
+    # Nor does it tell any more that what it warns of is the standard library's own.
+    target_compile_options(diminish_build_options INTERFACE -Wno-stringop-overflow -Wno-stringop-overread
+      -Wno-array-bounds)
+  endif()
 endif()
 if(DIMINISH_WARNINGS_AS_ERRORS)
   target_compile_options(diminish_build_options INTERFACE -Werror)
