@@ -10,6 +10,7 @@
 
 #include "diminish/camera_source.h"
 #include "diminish/error.h"
+#include "source/find_camera.h"
 
 namespace diminish {
 namespace {
@@ -157,10 +158,8 @@ class OpenNi2Camera : public CameraSource {
  public:
   OpenNi2Camera(const CameraUri& uri, const CameraRequest& request) {
     uri.expect_parameters({"color"});
-    const auto& cameras = request.rig->rgbd;
-    const auto camera = std::find_if(cameras.begin(), cameras.end(),
-                                     [&](const RgbdCamera& c) { return c.name == request.name; });
-    if (camera == cameras.end()) uri.fail("expected to be used for an RGB-D camera");
+    const RgbdCamera* camera = find_rgbd_camera(*request.rig, request.name);
+    if (!camera) uri.fail("expected to be used for an RGB-D camera");
     const char* device_uri = uri.target.empty() ? openni::ANY_DEVICE : uri.target.c_str();
     if (device_.open(device_uri) != openni::STATUS_OK) uri.fail(last_error());
     depth_.emplace(uri, device_, openni::SENSOR_DEPTH, camera->depth);

@@ -3,6 +3,7 @@
 
 #include "diminish/pose_source.h"
 #include "pose/marker_pose.h"
+#include "source/find_camera.h"
 #include "source/read_rigid_transform.h"
 
 namespace diminish {
@@ -17,9 +18,9 @@ class FixedSource : public PoseSource {
     rig.pose.expect_keys({"source", "color_from_rgbd"});
     const Config transforms = rig.pose.at("color_from_rgbd");
     for (const std::string& name : transforms.keys()) {
-      const bool known = std::any_of(rig.rgbd.begin(), rig.rgbd.end(),
-                                     [&](const RgbdCamera& camera) { return camera.name == name; });
-      if (!known) transforms.at(name).fail("the rig has no RGB-D camera of this name");
+      if (!find_rgbd_camera(rig, name)) {
+        transforms.at(name).fail("the rig has no RGB-D camera of this name");
+      }
     }
     for (const RgbdCamera& camera : rig.rgbd) {
       color_from_depth_.push_back(read_rigid_transform(transforms.at(camera.name)));

@@ -2,9 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "core/text.h"
+#include "source/find_camera.h"
 #include "source/read_rigid_transform.h"
 
 namespace diminish {
@@ -92,8 +91,7 @@ Rig read_rig(const Config& config) {
   const Config cameras = config.at("rgbd");
   for (const Config& item : cameras.items()) {
     RgbdCamera camera = read_rgbd_camera(item);
-    const auto same = [&](const RgbdCamera& other) { return other.name == camera.name; };
-    if (std::any_of(rig.rgbd.begin(), rig.rgbd.end(), same)) {
+    if (find_rgbd_camera(rig, camera.name)) {
       item.at("name").fail("there are two RGB-D cameras called '" + camera.name + "'");
     }
     rig.rgbd.push_back(std::move(camera));
