@@ -11,7 +11,6 @@
 #include "diminish/error.h"
 #include "diminish/frame_source.h"
 #include "diminish/pipeline.h"
-#include "gl/needs_driver.h"
 
 namespace diminish {
 namespace {
@@ -39,7 +38,7 @@ Difference compare(const Image<Bgr>& a, const Image<Bgr>& b, const Mask& mask) {
   return difference;
 }
 
-class GlMembrane : public gl::NeedsDriver, public ::testing::WithParamInterface<const char*> {};
+class GlMembrane : public ::testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Recordings, GlMembrane,
                          ::testing::Values("calendar", "ball", "workbench"));
 
@@ -88,10 +87,8 @@ TEST_P(GlMembrane, SolvesWhatThePlainVersionsSolve) {
   }
 }
 
-using GlMembraneSolver = gl::NeedsDriver;
-
 // `--backend gl` takes them of itself.
-TEST_F(GlMembraneSolver, IsUsedWhereTheFrameIsDrawnOnTheGpu) {
+TEST(GlMembraneSolver, IsUsedWhereTheFrameIsDrawnOnTheGpu) {
   const Recording recording =
       load_recording(std::filesystem::path(DIMINISH_RECORDINGS_DIR) / "ball");
   Options options;

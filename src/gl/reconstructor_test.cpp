@@ -11,7 +11,7 @@
 #include "diminish/frame_source.h"
 #include "diminish/pipeline.h"
 #include "expect_error.h"
-#include "gl/needs_driver.h"
+#include "gl/context.h"
 
 namespace diminish {
 namespace {
@@ -53,7 +53,7 @@ struct Case {
   const char* backend;
 };
 
-class GlOnRecordings : public gl::NeedsDriver, public ::testing::WithParamInterface<Case> {};
+class GlOnRecordings : public ::testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(Recordings, GlOnRecordings,
                          ::testing::Values(Case{"calendar", "gl"}, Case{"ball", "gl"},
                                            Case{"workbench", "gl"}, Case{"calendar", "gl_geometry"},
@@ -124,11 +124,9 @@ TEST_P(GlOnRecordings, DrawsTheSameEveryTime) {
   EXPECT_EQ(first.source, second.source);
 }
 
-using GlReconstructor = gl::NeedsDriver;
-
 // A camera so near that each cell covers hundreds of pixels: triangles that work groups share, and
 // products of coordinates that 32 bits do not hold.
-TEST_F(GlReconstructor, DrawsLargeCells) {
+TEST(GlReconstructor, DrawsLargeCells) {
   const testing::AnalyticScene scene;
   testing::AnalyticFrame frame(scene, {Eigen::Vector3d(-0.45, 0.3, 0.9)});
   const OcclusionMasks masks = testing::empty_masks(frame.rig);
@@ -151,9 +149,7 @@ TEST_F(GlReconstructor, DrawsLargeCells) {
   }
 }
 
-using GlProgram = gl::NeedsDriver;
-
-TEST_F(GlProgram, ErrorsNameTheShadersFileAndLine) {
+TEST(GlProgram, ErrorsNameTheShadersFileAndLine) {
   const gl::Context context;
   const gl::Current current(context);
   // vertices.comp calls what the files before it define.
@@ -166,9 +162,7 @@ TEST_F(GlProgram, ErrorsNameTheShadersFileAndLine) {
               ::testing::HasSubstr("'none.comp'"));
 }
 
-using GlContext = gl::NeedsDriver;
-
-TEST_F(GlContext, FailedCallsAreErrorsThatSayWhereAndOnWhat) {
+TEST(GlContext, FailedCallsAreErrorsThatSayWhereAndOnWhat) {
   const gl::Context context;
   const gl::Current current(context);
   EXPECT_NO_THROW(context.check("nothing"));

@@ -14,7 +14,6 @@
 #include "mask_overlap.h"
 #ifdef DIMINISH_HAS_GL
 #include "gl/context.h"
-#include "gl/needs_driver.h"
 #endif
 
 namespace diminish {
@@ -104,7 +103,7 @@ TEST(Backend, AutoIsTheGpuOnlyWhereHardwareDraws) {
 
 #ifdef DIMINISH_HAS_GL
 
-class WholeFrames : public gl::NeedsDriver, public ::testing::WithParamInterface<const char*> {};
+class WholeFrames : public ::testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Recordings, WholeFrames,
                          ::testing::Values("calendar", "ball", "workbench"));
 
