@@ -1,44 +1,26 @@
 #include <benchmark/benchmark.h>
 
-#include <algorithm>
-#include <filesystem>
 #include <memory>
-#include <string>
 #include <vector>
 
-#include "analytic_scene.h"
 #include "beside_peer.h"
+#include "core/robust.h"
 #include "diminish/error.h"
-#include "diminish/frame_source.h"
-#include "diminish/pipeline.h"
-#include "diminish/reconstructor.h"
+#include "first_frame.h"
 
 namespace diminish {
 namespace {
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
-                   values.end());
-  return values[values.size() / 2];
-}
 
 /// Draws a bundled recording's first frame by the compute rasteriser, the paper's geometry shader
 /// and the processor, in turn. The benchmark's time is the first's; the others' are counters, and
 /// their time divided by the first's. The label names the driver.
 void draw(benchmark::State& state, const char* name, bool whole_view) {
-  const Recording recording = load_recording(std::filesystem::path(DIMINISH_RECORDINGS_DIR) / name);
-  const Options options;
-  FrameSet frame;
-  DiminishedFrame result;
-  open_recording(recording, options)->next(frame);
-  Pipeline(recording.rig, recording.scene, options).process(frame, result);
-  const DepthImages depths = testing::depths_of(frame);
-  const OcclusionMasks masks = testing::empty_masks(recording.rig);
-  const Rect region = whole_view ? recording.rig.color.bounds() : result.reconstruction.region;
+  const testing::FirstFrame first(name);
+  const Rect region = whole_view ? first.whole_view() : first.result.reconstruction.region;
   std::vector<std::unique_ptr<Reconstructor>> variants;
   try {
     for (const char* variant : {"gl", "gl_geometry", "cpu"}) {
-      variants.push_back(Registry<Reconstructor>::get(variant)(recording.rig));
+      variants.push_back(Registry<Reconstructor>::get(variant)(first.rig()));
     }
   } catch (const Error& error) {
     state.SkipWithError(error.what());
@@ -46,10 +28,7 @@ void draw(benchmark::State& state, const char* name, bool whole_view) {
   }
   Reconstruction reconstruction;
   const auto milliseconds_of = [&](Reconstructor& reconstructor) {
-    return milliseconds([&] {
-      reconstructor.reconstruct(frame, depths, result.report.poses, masks, region, options,
-                                reconstruction);
-    });
+    return milliseconds([&] { first.reconstruct(reconstructor, region, reconstruction); });
   };
   for (const auto& variant : variants) milliseconds_of(*variant);  // memory grows to its size
   std::vector<double> times[3];

@@ -1,34 +1,21 @@
 #include <benchmark/benchmark.h>
 
-#include "analytic_scene.h"
 #include "beside_peer.h"
-#include "diminish/frame_source.h"
-#include "diminish/pipeline.h"
-#include "diminish/reconstructor.h"
+#include "first_frame.h"
 
 namespace diminish {
 namespace {
 
 /// A bundled recording's first frame, with the poses that the pipeline found in it.
 void reconstruct(benchmark::State& state, const char* name, bool whole_view) {
-  const Recording recording = load_recording(std::filesystem::path(DIMINISH_RECORDINGS_DIR) / name);
-  const Options options;
-  FrameSet frame;
-  DiminishedFrame result;
-  open_recording(recording, options)->next(frame);
-  Pipeline(recording.rig, recording.scene, options).process(frame, result);
-  const DepthImages depths = testing::depths_of(frame);
-  const OcclusionMasks masks = testing::empty_masks(recording.rig);
-  const Rect region = whole_view ? recording.rig.color.bounds() : result.reconstruction.region;
-  const auto fast = Registry<Reconstructor>::get("cpu")(recording.rig);
-  const auto plain = Registry<Reconstructor>::get("reference")(recording.rig);
+  const testing::FirstFrame first(name);
+  const Rect region = whole_view ? first.whole_view() : first.result.reconstruction.region;
+  const auto fast = Registry<Reconstructor>::get("cpu")(first.rig());
+  const auto plain = Registry<Reconstructor>::get("reference")(first.rig());
   Reconstruction reconstruction;
-  const auto run = [&](Reconstructor& reconstructor) {
-    reconstructor.reconstruct(frame, depths, result.report.poses, masks, region, options,
-                              reconstruction);
-  };
   run_beside_peer(
-      state, [&] { run(*fast); }, [&] { run(*plain); });
+      state, [&] { first.reconstruct(*fast, region, reconstruction); },
+      [&] { first.reconstruct(*plain, region, reconstruction); });
 }
 BENCHMARK_CAPTURE(reconstruct, calendar_mask, "calendar", false)
     ->UseManualTime()

@@ -2,11 +2,10 @@
 #include <hwy/highway.h>
 #include <hwy/targets.h>
 
+#include <algorithm>
 #include <cstdlib>
-#include <filesystem>
 
-#include "diminish/frame_source.h"
-#include "diminish/pipeline.h"
+#include "first_frame.h"
 
 namespace diminish {
 namespace {
@@ -23,13 +22,8 @@ class OnTarget {
 // Whole frames on every instruction set that this processor has, down to plain C++: the same pixels
 // are seen, and colours differ by rounding only.
 TEST(VectorTargets, AgreeOnWholeFrames) {
-  const Recording recording =
-      load_recording(std::filesystem::path(DIMINISH_RECORDINGS_DIR) / "calendar");
-  const Options options;
-  FrameSet frame;
-  open_recording(recording, options)->next(frame);
-  DiminishedFrame expected;
-  Pipeline(recording.rig, recording.scene, options).process(frame, expected);
+  const testing::FirstFrame first("calendar");
+  const DiminishedFrame& expected = first.result;
   ASSERT_GT(expected.report.valid_pixels, 50000U);
 
   int targets = 0;
@@ -40,7 +34,7 @@ TEST(VectorTargets, AgreeOnWholeFrames) {
     SCOPED_TRACE(hwy::TargetName(target));
     const OnTarget chosen(target);
     DiminishedFrame result;
-    Pipeline(recording.rig, recording.scene, options).process(frame, result);
+    Pipeline(first.rig(), first.recording.scene, first.options).process(first.frame, result);
     EXPECT_EQ(result.mask, expected.mask);
     EXPECT_EQ(result.provenance, expected.provenance);
     int worst = 0;

@@ -5,12 +5,9 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <filesystem>
 
-#include "analytic_scene.h"
-#include "diminish/frame_source.h"
-#include "diminish/pipeline.h"
 #include "expect_error.h"
+#include "first_frame.h"
 #include "gl/context.h"
 
 namespace diminish {
@@ -65,27 +62,19 @@ INSTANTIATE_TEST_SUITE_P(Recordings, GlOnRecordings,
 
 // Whole views and parts, with masks and without, one camera and several.
 TEST_P(GlOnRecordings, DrawsWhatThePlainVersionDraws) {
-  const Recording recording =
-      load_recording(std::filesystem::path(DIMINISH_RECORDINGS_DIR) / GetParam().recording);
-  const Options options;
-  FrameSet frame;
-  DiminishedFrame result;
-  open_recording(recording, options)->next(frame);
-  Pipeline(recording.rig, recording.scene, options).process(frame, result);
-  const DepthImages depths = testing::depths_of(frame);
-  OcclusionMasks masks = testing::empty_masks(recording.rig);
-  const auto on_gpu = Registry<Reconstructor>::get(GetParam().backend)(recording.rig);
-  const auto plain = Registry<Reconstructor>::get("reference")(recording.rig);
+  testing::FirstFrame first(GetParam().recording);
+  const auto on_gpu = Registry<Reconstructor>::get(GetParam().backend)(first.rig());
+  const auto plain = Registry<Reconstructor>::get("reference")(first.rig());
   Reconstruction a;
   Reconstruction b;
   for (const bool masked : {false, true}) {
     if (masked) {
-      for (Mask& mask : masks.rgbd_depth) mask.fill({100, 50, 97, 61}, 255);
-      for (Mask& mask : masks.rgbd_color) mask.fill({500, 400, 333, 222}, 255);
+      for (Mask& mask : first.masks.rgbd_depth) mask.fill({100, 50, 97, 61}, 255);
+      for (Mask& mask : first.masks.rgbd_color) mask.fill({500, 400, 333, 222}, 255);
     }
-    for (const Rect& region : {recording.rig.color.bounds(), Rect{300, 200, 421, 333}}) {
-      on_gpu->reconstruct(frame, depths, result.report.poses, masks, region, options, a);
-      plain->reconstruct(frame, depths, result.report.poses, masks, region, options, b);
+    for (const Rect& region : {first.whole_view(), Rect{300, 200, 421, 333}}) {
+      first.reconstruct(*on_gpu, region, a);
+      first.reconstruct(*plain, region, b);
       ASSERT_EQ(a.region, region);
       const Difference difference = compare(a, b);
       RecordProperty("other_alpha", static_cast<int>(difference.other_alpha));
@@ -103,25 +92,15 @@ TEST_P(GlOnRecordings, DrawsWhatThePlainVersionDraws) {
 
 // Which triangle is seen does not depend on the order in which they are drawn.
 TEST_P(GlOnRecordings, DrawsTheSameEveryTime) {
-  const Recording recording =
-      load_recording(std::filesystem::path(DIMINISH_RECORDINGS_DIR) / GetParam().recording);
-  const Options options;
-  FrameSet frame;
-  DiminishedFrame result;
-  open_recording(recording, options)->next(frame);
-  Pipeline(recording.rig, recording.scene, options).process(frame, result);
-  const OcclusionMasks masks = testing::empty_masks(recording.rig);
-  const Rect region = recording.rig.color.bounds();
-  Reconstruction first;
-  Reconstruction second;
-  const auto on_gpu = Registry<Reconstructor>::get(GetParam().backend)(recording.rig);
-  for (Reconstruction* reconstruction : {&first, &second}) {
-    on_gpu->reconstruct(frame, testing::depths_of(frame), result.report.poses, masks, region,
-                        options, *reconstruction);
-  }
-  EXPECT_EQ(first.color, second.color);
-  EXPECT_EQ(first.depth_m, second.depth_m);
-  EXPECT_EQ(first.source, second.source);
+  const testing::FirstFrame first(GetParam().recording);
+  const auto on_gpu = Registry<Reconstructor>::get(GetParam().backend)(first.rig());
+  Reconstruction a;
+  Reconstruction b;
+  first.reconstruct(*on_gpu, first.whole_view(), a);
+  first.reconstruct(*on_gpu, first.whole_view(), b);
+  EXPECT_EQ(a.color, b.color);
+  EXPECT_EQ(a.depth_m, b.depth_m);
+  EXPECT_EQ(a.source, b.source);
 }
 
 // A camera so near that each cell covers hundreds of pixels: triangles that work groups share, and

@@ -1,12 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
-#include <filesystem>
 
-#include "analytic_scene.h"
-#include "diminish/frame_source.h"
-#include "diminish/pipeline.h"
-#include "diminish/reconstructor.h"
+#include "first_frame.h"
 
 namespace diminish {
 namespace {
@@ -51,30 +49,21 @@ INSTANTIATE_TEST_SUITE_P(Recordings, VectorizedOnRecordings,
                          ::testing::Values("calendar", "ball", "workbench"));
 
 TEST_P(VectorizedOnRecordings, DrawsWhatThePlainVersionDraws) {
-  const Recording recording =
-      load_recording(std::filesystem::path(DIMINISH_RECORDINGS_DIR) / GetParam());
-  Options options;
-  options.whole_view = true;
-  FrameSet frame;
-  DiminishedFrame result;
-  open_recording(recording, options)->next(frame);
-  Pipeline(recording.rig, recording.scene, options).process(frame, result);
-  const DepthImages depths = testing::depths_of(frame);
-  OcclusionMasks masks = testing::empty_masks(recording.rig);
-  const auto fast = Registry<Reconstructor>::get("cpu")(recording.rig);
-  const auto plain = Registry<Reconstructor>::get("reference")(recording.rig);
+  testing::FirstFrame first(GetParam());
+  const auto fast = Registry<Reconstructor>::get("cpu")(first.rig());
+  const auto plain = Registry<Reconstructor>::get("reference")(first.rig());
   Reconstruction a;
   Reconstruction b;
   for (const bool masked : {false, true}) {
     if (masked) {
-      for (Mask& mask : masks.rgbd_depth) mask.fill({100, 50, 97, 61}, 255);
-      for (Mask& mask : masks.rgbd_color) mask.fill({500, 400, 333, 222}, 255);
+      for (Mask& mask : first.masks.rgbd_depth) mask.fill({100, 50, 97, 61}, 255);
+      for (Mask& mask : first.masks.rgbd_color) mask.fill({500, 400, 333, 222}, 255);
     }
     for (const Rect& region :
-         {recording.rig.color.bounds(), Rect{300, 200, 421, 333}, Rect{0, 900, 1, 124}}) {
+         {first.whole_view(), Rect{300, 200, 421, 333}, Rect{0, 900, 1, 124}}) {
       const bool empty = region.width == 1;
-      fast->reconstruct(frame, depths, result.report.poses, masks, region, options, a);
-      plain->reconstruct(frame, depths, result.report.poses, masks, region, options, b);
+      first.reconstruct(*fast, region, a);
+      first.reconstruct(*plain, region, b);
       if (empty) {
         EXPECT_EQ(a.color, b.color);
       } else {

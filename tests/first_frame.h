@@ -1,0 +1,40 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "analytic_scene.h"
+#include "diminish/frame_source.h"
+#include "diminish/pipeline.h"
+
+namespace diminish::testing {
+
+/// A bundled recording's first frame and what the pipeline makes of it.
+struct FirstFrame {
+  explicit FirstFrame(const std::string& name)
+      : recording(load_recording(std::filesystem::path(DIMINISH_RECORDINGS_DIR) / name)) {
+    open_recording(recording, options)->next(frame);
+    Pipeline(recording.rig, recording.scene, options).process(frame, result);
+    depths = depths_of(frame);
+    masks = empty_masks(recording.rig);
+  }
+
+  const Rig& rig() const { return recording.rig; }
+  Rect whole_view() const { return recording.rig.color.bounds(); }
+
+  /// By the pipeline's poses, with `depths` and `masks`.
+  void reconstruct(Reconstructor& reconstructor, const Rect& region,
+                   Reconstruction& reconstruction) const {
+    reconstructor.reconstruct(frame, depths, result.report.poses, masks, region, options,
+                              reconstruction);
+  }
+
+  Recording recording;
+  Options options;
+  FrameSet frame;
+  DiminishedFrame result;
+  DepthImages depths;    ///< as they are recorded
+  OcclusionMasks masks;  ///< with nothing in them
+};
+
+}  // namespace diminish::testing
