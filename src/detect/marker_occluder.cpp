@@ -6,6 +6,7 @@
 #include "detect/silhouette.h"
 #include "diminish/occluder_detector.h"
 #include "geometry/triangle_mesh.h"
+#include "pose/known_markers.h"
 
 namespace diminish {
 namespace {
@@ -74,9 +75,8 @@ class MarkerOccluder : public OccluderDetector {
 
  private:
   std::optional<std::array<Eigen::Vector2d, 4>> corners_in(const std::vector<Marker>& seen) const {
-    const auto found = std::find_if(
-        seen.begin(), seen.end(), [this](const Marker& marker) { return marker.id == marker_.id; });
-    if (found == seen.end()) return std::nullopt;
+    const Marker* found = find_marker(seen, marker_.id);
+    if (!found) return std::nullopt;
     return found->corners;
   }
 

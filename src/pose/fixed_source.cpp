@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "diminish/pose_source.h"
+#include "pose/known_markers.h"
 #include "pose/marker_pose.h"
 #include "source/find_camera.h"
 #include "source/read_rigid_transform.h"
@@ -38,10 +39,9 @@ class FixedSource : public PoseSource {
   void estimate(const FrameSet&, const Markers& markers, Poses& poses) override {
     poses.color_from_depth.assign(color_from_depth_.begin(), color_from_depth_.end());
     if (!world_needed_) return;
-    for (const Marker& marker : markers.color) {
-      if (marker.id != world_marker_.id) continue;
+    if (const Marker* marker = find_marker(markers.color, world_marker_.id)) {
       if (const auto pose =
-              estimate_marker_pose(marker.corners, world_marker_.size_m, color_lens_)) {
+              estimate_marker_pose(marker->corners, world_marker_.size_m, color_lens_)) {
         poses.color_from_world = pose->camera_from_marker;
       }
     }

@@ -9,6 +9,10 @@
 
 namespace diminish {
 
+/// From this on a pose's alternative is so nearly as good that other evidence settles which of the
+/// two it is, where there is some.
+inline constexpr double doubtful_ambiguity = 0.2;
+
 /// A marker's pose from its four corners. A square seen in (nearly) weak perspective has two poses
 /// that explain its corners almost equally well (Schweighofer & Pinz 2006); both are given.
 struct MarkerPose {
@@ -17,6 +21,8 @@ struct MarkerPose {
   RigidTransform alternative;
   /// error_px divided by the alternative's error: 0 = certain, near 1 = either may be right.
   double ambiguity = 0;
+
+  bool is_doubtful() const { return ambiguity > doubtful_ambiguity; }
 };
 
 /// corners: as in `Marker`, pixels. size_m: side of the black square. Nothing if the corners are

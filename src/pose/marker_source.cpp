@@ -1,25 +1,14 @@
-#include <algorithm>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "diminish/pose_source.h"
 #include "pose/depth_check.h"
+#include "pose/known_markers.h"
 #include "pose/marker_pose.h"
 
 namespace diminish {
 namespace {
-
-const Marker* find_marker(const std::vector<Marker>& markers, int id) {
-  const auto found = std::find_if(markers.begin(), markers.end(),
-                                  [id](const Marker& marker) { return marker.id == id; });
-  return found == markers.end() ? nullptr : &*found;
-}
-
-/// A pose whose alternative fits nearly as well is settled by other evidence, where there is some.
-bool is_doubtful(const MarkerPose& pose) {
-  return pose.ambiguity > 0.2;
-}
 
 /// Poses from the world marker, in every frame anew (the default).
 class MarkerSource : public PoseSource {
@@ -34,12 +23,8 @@ class MarkerSource : public PoseSource {
       rgbd_color_lenses_.emplace_back(camera.color);
       depth_lenses_.emplace_back(camera.depth);
     }
-    for (const OccluderSpec& occluder : scene.occluders) {
-      if (const Config marker = occluder.config.find("marker"); marker.exists()) {
-        const MarkerSpec spec = read_marker(marker);
-        occluder_marker_sizes_[spec.id] = spec.size_m;
-      }
-    }
+    other_marker_sizes_ = known_marker_sizes(scene);
+    other_marker_sizes_.erase(world_marker_.id);  // it agrees with itself whatever the pose
   }
 
   bool needs_markers() const override { return true; }
@@ -77,7 +62,7 @@ class MarkerSource : public PoseSource {
                                  std::size_t k) const {
     const RigidTransform depth_from_color = rig_.rgbd[k].color_from_depth.inverse();
     RigidTransform best = depth_from_color * pose.camera_from_marker;
-    if (!is_doubtful(pose)) return best;
+    if (!pose.is_doubtful()) return best;
     const RigidTransform alternative = depth_from_color * pose.alternative;
     const auto error = [&](const RigidTransform& depth_from_marker) {
       return marker_depth_error_m(depth_from_marker, size_m, depth_lenses_[k], frame.rgbd[k].depth,
@@ -92,16 +77,16 @@ class MarkerSource : public PoseSource {
   /// where the colour camera sees them.
   RigidTransform settle_by_shared_markers(const MarkerPose& pose, const FrameSet& frame,
                                           const Markers& markers, const Poses& poses) const {
-    if (!is_doubtful(pose)) return pose.camera_from_marker;
+    if (!pose.is_doubtful()) return pose.camera_from_marker;
     double best_error = 0;
     double alternative_error = 0;
     for (std::size_t k = 0; k < rig_.rgbd.size(); ++k) {
       if (!poses.depth_from_world[k]) continue;
       const RigidTransform world_from_depth = poses.depth_from_world[k]->inverse();
       for (const Marker& seen : markers.rgbd[k]) {
-        const auto size = occluder_marker_sizes_.find(seen.id);
+        const auto size = other_marker_sizes_.find(seen.id);
         const Marker* in_color = find_marker(markers.color, seen.id);
-        if (size == occluder_marker_sizes_.end() || !in_color) continue;
+        if (size == other_marker_sizes_.end() || !in_color) continue;
         const auto rgbd_pose =
             estimate_marker_pose(seen.corners, size->second, rgbd_color_lenses_[k]);
         if (!rgbd_pose) continue;
@@ -121,7 +106,7 @@ class MarkerSource : public PoseSource {
   Lens color_lens_;
   std::vector<Lens> rgbd_color_lenses_;
   std::vector<Lens> depth_lenses_;
-  std::map<int, double> occluder_marker_sizes_;
+  std::map<int, double> other_marker_sizes_;
 };
 
 const bool registered = Registry<PoseSource>::add("marker", [](const Rig& rig, const Scene& scene) {

@@ -47,7 +47,7 @@ std::optional<DepthRatio> measure_depth_ratio(const Marker& marker, double size_
   const RigidTransform depth_from_color = camera.color_from_depth.inverse();
   const auto best = of_pose(depth_from_color * pose->camera_from_marker, size_m, depth_lens,
                             camera.depth_unit_m, depth);
-  if (pose->ambiguity < 0.2) return best;
+  if (!pose->is_doubtful()) return best;
   const auto other =
       of_pose(depth_from_color * pose->alternative, size_m, depth_lens, camera.depth_unit_m, depth);
   if (!best || (other && other->spread < best->spread)) return other;

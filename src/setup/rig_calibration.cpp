@@ -6,6 +6,7 @@
 
 #include "diminish/error.h"
 #include "pose/depth_check.h"
+#include "pose/known_markers.h"
 #include "setup/depth_alignment.h"
 #include "setup/fixed_pose_fit.h"
 #include "setup/target_view.h"

@@ -13,12 +13,12 @@
 #include "core/mat.h"
 #include "core/robust.h"
 #include "pose/camera_poses.h"
+#include "pose/known_markers.h"
 #include "pose/marker_dictionary.h"
 #include "setup/clock_offset.h"
 #include "setup/depth_ratio.h"
 #include "setup/photometric_agreement.h"
 #include "setup/setup_survey.h"
-#include "setup/target_view.h"
 
 namespace diminish {
 namespace {

@@ -7,20 +7,14 @@
 
 #include "core/robust.h"
 #include "pose/camera_poses.h"
+#include "pose/known_markers.h"
 #include "pose/marker_pose.h"
-#include "setup/target_view.h"
 
 namespace diminish {
 namespace {
 
 constexpr std::size_t most_frames_kept = 6;
 constexpr std::size_t most_faults_kept = 3;
-
-const Marker* find_marker(const std::vector<Marker>& markers, int id) {
-  const auto found = std::find_if(markers.begin(), markers.end(),
-                                  [id](const Marker& marker) { return marker.id == id; });
-  return found == markers.end() ? nullptr : &*found;
-}
 
 double mean_side_px(const Marker& marker) {
   double sum = 0;

@@ -7,8 +7,6 @@
 namespace diminish {
 namespace {
 
-constexpr double doubtful_ambiguity = 0.2;
-
 TargetView from_marker(const Marker& marker, double size_m, const MarkerPose& pose) {
   TargetView view;
   view.id = marker.id;
@@ -17,7 +15,7 @@ TargetView from_marker(const Marker& marker, double size_m, const MarkerPose& po
   view.pixels.assign(marker.corners.begin(), marker.corners.end());
   view.camera_from_target = pose.camera_from_marker;
   view.alternative = pose.alternative;
-  view.doubtful = pose.ambiguity > doubtful_ambiguity;
+  view.doubtful = pose.is_doubtful();
   view.error_px = pose.error_px;
   view.high = Eigen::Vector2d::Constant(size_m / 2);
   view.low = -view.high;
@@ -88,18 +86,6 @@ std::optional<TargetView> from_board(BoardView&& board, const Lens& lens) {
 }
 
 }  // namespace
-
-std::map<int, double> known_marker_sizes(const Scene& scene) {
-  std::map<int, double> sizes;
-  if (scene.world_marker.size_m > 0) sizes[scene.world_marker.id] = scene.world_marker.size_m;
-  for (const OccluderSpec& occluder : scene.occluders) {
-    const Config marker = occluder.config.find("marker");
-    if (!marker.exists()) continue;
-    const MarkerSpec spec = read_marker(marker);
-    sizes[spec.id] = spec.size_m;
-  }
-  return sizes;
-}
 
 TargetFinder::TargetFinder(const std::string& dictionary, std::map<int, double> marker_sizes_m,
                            const std::optional<Board>& board)

@@ -10,7 +10,6 @@
 #include "diminish/intrinsics.h"
 #include "diminish/marker_detector.h"
 #include "diminish/rigid_transform.h"
-#include "diminish/scene.h"
 
 namespace diminish {
 
@@ -29,9 +28,6 @@ struct TargetView {
   /// The surface that is known to be flat.
   Eigen::Vector2d low = Eigen::Vector2d::Zero(), high = Eigen::Vector2d::Zero();
 };
-
-/// The size of every marker that the scene knows, by id.
-std::map<int, double> known_marker_sizes(const Scene& scene);
 
 /// Finds markers of known size, and a board.
 class TargetFinder {
