@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "diminish/image.h"
 #include "diminish/intrinsics.h"
@@ -8,8 +9,18 @@
 
 namespace diminish {
 
-/// How far the measured depth is from a marker's plane: the median over a grid of places on the
-/// marker, metres. Nothing when fewer than half of them were measured.
+/// The depth at a place on a marker: as measured there, and as its pose says.
+struct MarkerDepth {
+  double measured_m, computed_m;
+};
+
+/// Over a grid of places on the marker. Empty when fewer than half of them were measured.
+std::vector<MarkerDepth> marker_depths(const RigidTransform& depth_from_marker, double size_m,
+                                       const Lens& depth_lens, const Image<std::uint16_t>& depth,
+                                       double depth_unit_m);
+
+/// How far the measured depth is from a marker's plane: the median over `marker_depths`,
+/// metres. Nothing when there are none.
 std::optional<double> marker_depth_error_m(const RigidTransform& depth_from_marker, double size_m,
                                            const Lens& depth_lens,
                                            const Image<std::uint16_t>& depth, double depth_unit_m);

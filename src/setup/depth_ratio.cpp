@@ -1,9 +1,9 @@
 #include "setup/depth_ratio.h"
 
 #include <cmath>
-#include <limits>
 
 #include "core/robust.h"
+#include "pose/depth_check.h"
 #include "pose/marker_pose.h"
 
 namespace diminish {
@@ -12,23 +12,12 @@ namespace {
 std::optional<DepthRatio> of_pose(const RigidTransform& depth_from_marker, double size_m,
                                   const Lens& depth_lens, double depth_unit_m,
                                   const Image<std::uint16_t>& depth) {
-  constexpr int places = 9;  // per side
-  constexpr std::size_t least_places = places * places / 2 + 1;
   std::vector<double> ratios;
-  for (int row = 0; row < places; ++row) {
-    for (int column = 0; column < places; ++column) {
-      const Eigen::Vector3d on_marker(((column + 0.5) / places - 0.5) * size_m,
-                                      ((row + 0.5) / places - 0.5) * size_m, 0);
-      const Eigen::Vector3d p = depth_from_marker * on_marker;
-      const auto pixel = depth_lens.project(p);
-      if (!pixel) continue;
-      const auto x = static_cast<int>(std::lround(pixel->x()));
-      const auto y = static_cast<int>(std::lround(pixel->y()));
-      if (!depth.bounds().contains(x, y) || depth(x, y) == 0) continue;
-      ratios.push_back(depth(x, y) * depth_unit_m / p.z());
-    }
+  for (const MarkerDepth& at :
+       marker_depths(depth_from_marker, size_m, depth_lens, depth, depth_unit_m)) {
+    ratios.push_back(at.measured_m / at.computed_m);
   }
-  if (ratios.size() < least_places) return std::nullopt;
+  if (ratios.empty()) return std::nullopt;
   DepthRatio result;
   result.ratio = median(ratios);
   for (double& ratio : ratios) ratio = std::abs(ratio - result.ratio);
