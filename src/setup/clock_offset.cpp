@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/robust.h"
+
 namespace diminish {
 namespace {
 
@@ -73,9 +75,7 @@ std::optional<ClockOffset> estimate_clock_offset(const std::vector<TimedPoint>& 
   for (std::size_t i = 1; i < first.size(); ++i) {
     gaps.push_back(first[i].stamp_s - first[i - 1].stamp_s);
   }
-  std::nth_element(gaps.begin(), gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2),
-                   gaps.end());
-  const double largest_gap_s = 3 * gaps[gaps.size() / 2];
+  const double largest_gap_s = 3 * median(gaps);
   constexpr double step_s = 0.004;
   const auto at = [&](double offset_s) { return fit(first, second, offset_s, largest_gap_s); };
   double best_offset = 0;
