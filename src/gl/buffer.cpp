@@ -8,16 +8,24 @@
 
 namespace diminish::gl {
 
+namespace {
+
+/// Throws Error where the driver's `limit` is lower than `count`.
+void expect_limit(GLenum limit, std::size_t count, const char* things, const char* unit) {
+  GLint64 most = 0;
+  glGetInteger64v(limit, &most);
+  if (count <= static_cast<std::size_t>(most)) return;
+  throw Error(
+      fmt::format("gl: expected a driver with {} of {} {}, this one has {}: the images are too "
+                  "large for it",
+                  things, count, unit, most));
+}
+
+}  // namespace
+
 bool Buffer::reserve(std::size_t bytes) {
   if (bytes <= size_) return false;
-  GLint64 most = 0;
-  glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
-  if (bytes > static_cast<std::size_t>(most)) {
-    throw Error(
-        fmt::format("gl: expected a driver with storage blocks of {} bytes, this one has {}: "
-                    "the images are too large for it",
-                    bytes, most));
-  }
+  expect_limit(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, bytes, "storage blocks", "bytes");
   name_.create();
   glNamedBufferStorage(name_.get(), static_cast<GLsizeiptr>(bytes), nullptr, 0);
   size_ = bytes;
@@ -25,14 +33,7 @@ bool Buffer::reserve(std::size_t bytes) {
 }
 
 void BufferTexture::create(const Buffer& buffer, GLenum format, std::size_t texels) {
-  GLint most = 0;
-  glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
-  if (texels > static_cast<std::size_t>(most)) {
-    throw Error(
-        fmt::format("gl: expected a driver with buffer textures of {} texels, this one has "
-                    "{}: the RGB-D cameras' images are too large for it",
-                    texels, most));
-  }
+  expect_limit(GL_MAX_TEXTURE_BUFFER_SIZE, texels, "buffer textures", "texels");
   if (name_ != 0) glDeleteTextures(1, &name_);
   glCreateTextures(GL_TEXTURE_BUFFER, 1, &name_);
   glTextureBuffer(name_, format, buffer.name());
