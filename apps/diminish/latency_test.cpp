@@ -1,11 +1,9 @@
 #include <fmt/format.h>
 
-#include <atomic>
 #include <chrono>
 #include <memory>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "camera/clock_code.h"
@@ -14,6 +12,7 @@
 #include "diminish/error.h"
 #include "diminish/web_server.h"
 #include "live_setup.h"
+#include "serve/picture_stream.h"
 #include "sink/distribution.h"
 
 // After Eigen, some of whose names it has macros for.
@@ -29,33 +28,6 @@ struct LatencyTestCommand {
   int execute();
 };
 
-/// The JPEGs of a stream, as they come.
-class PictureReader {
- public:
-  /// Calls `take` with each whole picture.
-  template <class Take>
-  void feed(const char* data, std::size_t size, Take&& take) {
-    waiting_.append(data, size);
-    const std::string head_end = "\r\n\r\n";
-    const std::string length_name = "Content-Length: ";
-    while (true) {
-      const std::size_t head = waiting_.find(head_end);
-      if (head == std::string::npos) return;
-      const auto length = static_cast<std::size_t>(
-          std::stoul(waiting_.substr(waiting_.find(length_name) + length_name.size())));
-      const std::size_t begin = head + head_end.size();
-      if (waiting_.size() < begin + length + 2) return;
-      take(std::vector<std::uint8_t>(
-          waiting_.begin() + static_cast<std::ptrdiff_t>(begin),
-          waiting_.begin() + static_cast<std::ptrdiff_t>(begin + length)));
-      waiting_.erase(0, begin + length + 2);
-    }
-  }
-
- private:
-  std::string waiting_;
-};
-
 struct Measured {
   std::vector<double> latencies_ms;
   std::size_t unreadable = 0;
@@ -64,20 +36,21 @@ struct Measured {
 /// Looks at the stream as a viewer does, and reads the time in each picture.
 Measured look(int port, double seconds) {
   Measured measured;
-  PictureReader reader;
+  PictureStream pictures;
   const double end_s = monotonic_now_s() + seconds;
   httplib::Client client("127.0.0.1", port);
   client.Get("/api/stream.mjpg", [&](const char* data, std::size_t size) {
-    reader.feed(data, size, [&](const std::vector<std::uint8_t>& jpeg) {
+    pictures.feed(data, size);
+    while (const auto streamed = pictures.next()) {
       Image<Bgr> picture;
-      copy_from(cv::imdecode(jpeg, cv::IMREAD_COLOR), picture);
+      copy_from(cv::imdecode(streamed->jpeg, cv::IMREAD_COLOR), picture);
       const std::uint32_t now = clock_ticks(monotonic_now_s());
       if (const auto taken = read_clock_code(picture)) {
         measured.latencies_ms.push_back((now - *taken) / 10.0);
       } else {
         ++measured.unreadable;
       }
-    });
+    }
     return monotonic_now_s() < end_s && !stop_requested();
   });
   return measured;

@@ -48,6 +48,10 @@ std::string content_type(const std::string& file) {
   return "text/javascript; charset=utf-8";
 }
 
+View requested_view(const httplib::Request& request) {
+  return parse_view(request.has_param("view") ? request.get_param_value("view") : "after");
+}
+
 /// Compressing pictures must not take the time of making them.
 void lower_priority_of_this_thread() {
   constexpr int nice = 5;
@@ -116,6 +120,9 @@ struct WebServer::Implementation {
   void add_routes();
   httplib::Server::HandlerResponse check_access(const httplib::Request& request,
                                                 httplib::Response& response) const;
+  /// One more of these viewers; nullptr, and a refusal, if there are too many.
+  std::shared_ptr<Viewer> admit(std::atomic<std::size_t>& viewers,
+                                httplib::Response& response) const;
   void stream(const httplib::Request& request, httplib::Response& response);
   void picture(const httplib::Request& request, httplib::Response& response, bool is_png);
   void events(httplib::Response& response);
@@ -208,14 +215,19 @@ httplib::Server::HandlerResponse WebServer::Implementation::check_access(
   return httplib::Server::HandlerResponse::Unhandled;
 }
 
+std::shared_ptr<Viewer> WebServer::Implementation::admit(std::atomic<std::size_t>& viewers,
+                                                         httplib::Response& response) const {
+  auto viewer = std::make_shared<Viewer>(viewers, options.most_viewers);
+  if (viewer->welcome()) return viewer;
+  refuse(response, 503, fmt::format("already {} viewers", options.most_viewers));
+  return nullptr;
+}
+
 void WebServer::Implementation::stream(const httplib::Request& request,
                                        httplib::Response& response) {
-  const View view =
-      parse_view(request.has_param("view") ? request.get_param_value("view") : "after");
-  auto viewer = std::make_shared<Viewer>(picture_viewers, options.most_viewers);
-  if (!viewer->welcome()) {
-    return refuse(response, 503, fmt::format("already {} viewers", options.most_viewers));
-  }
+  const View view = requested_view(request);
+  const auto viewer = admit(picture_viewers, response);
+  if (!viewer) return;
   response.set_header("Cache-Control", "no-store");
   response.set_chunked_content_provider(
       "multipart/x-mixed-replace; boundary=picture",
@@ -237,8 +249,7 @@ void WebServer::Implementation::stream(const httplib::Request& request,
 
 void WebServer::Implementation::picture(const httplib::Request& request,
                                         httplib::Response& response, bool is_png) {
-  const View view =
-      parse_view(request.has_param("view") ? request.get_param_value("view") : "after");
+  const View view = requested_view(request);
   const auto frame = session.wait_for_frame(0, picture_wait);
   if (!frame) return refuse(response, 503, "there is no picture yet");
   response.set_header("Cache-Control", "no-store");
@@ -253,10 +264,8 @@ void WebServer::Implementation::picture(const httplib::Request& request,
 }
 
 void WebServer::Implementation::events(httplib::Response& response) {
-  auto viewer = std::make_shared<Viewer>(event_viewers, options.most_viewers);
-  if (!viewer->welcome()) {
-    return refuse(response, 503, fmt::format("already {} viewers", options.most_viewers));
-  }
+  const auto viewer = admit(event_viewers, response);
+  if (!viewer) return;
   response.set_header("Cache-Control", "no-store");
   response.set_chunked_content_provider(
       "text/event-stream", [this, viewer](std::size_t offset, httplib::DataSink& sink) {

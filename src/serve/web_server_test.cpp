@@ -10,6 +10,7 @@
 #include "core/mat.h"
 #include "diminish/frame_source.h"
 #include "expect_error.h"
+#include "serve/picture_stream.h"
 #include "temporary_folder.h"
 
 namespace diminish {
@@ -51,27 +52,19 @@ class Web : public testing::Test {
   }
 
   /// The first `count` JPEGs of the stream, with their frames' numbers.
-  static std::vector<std::pair<int, cv::Mat>> stream(const WebServer& server, std::size_t count,
-                                                     const std::string& view) {
-    std::vector<std::pair<int, cv::Mat>> pictures;
-    std::string waiting;
+  static std::vector<std::pair<std::size_t, cv::Mat>> stream(const WebServer& server,
+                                                             std::size_t count,
+                                                             const std::string& view) {
+    std::vector<std::pair<std::size_t, cv::Mat>> pictures;
+    PictureStream streamed;
     client(server).Get("/api/stream.mjpg?view=" + view, [&](const char* data, std::size_t size) {
-      waiting.append(data, size);
+      streamed.feed(data, size);
       while (pictures.size() < count) {
-        const std::size_t head = waiting.find("\r\n\r\n");
-        if (head == std::string::npos) return true;
-        const auto number_of = [&](const std::string& name) {
-          return std::stoi(waiting.substr(waiting.find(name) + name.size()));
-        };
-        const auto length = static_cast<std::size_t>(number_of("Content-Length: "));
-        if (waiting.size() < head + 4 + length + 2) return true;
-        const std::string bytes = waiting.substr(head + 4, length);
-        pictures.emplace_back(
-            number_of("X-Frame: "),
-            cv::imdecode(std::vector<char>(bytes.begin(), bytes.end()), cv::IMREAD_COLOR));
-        waiting.erase(0, head + 4 + length + 2);
+        const auto next = streamed.next();
+        if (!next) return true;
+        pictures.emplace_back(next->frame, cv::imdecode(next->jpeg, cv::IMREAD_COLOR));
       }
-      return pictures.size() < count;
+      return false;
     });
     return pictures;
   }

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace diminish {
+
+/// Takes /api/stream.mjpg (multipart/x-mixed-replace) apart again, as its bytes come.
+class PictureStream {
+ public:
+  struct Picture {
+    std::size_t frame = 0;  ///< its number
+    std::vector<std::uint8_t> jpeg;
+  };
+
+  void feed(const char* data, std::size_t size) { waiting_.append(data, size); }
+  /// The next picture, once it is there as a whole. Throws Error on what is no such stream.
+  std::optional<Picture> next();
+
+ private:
+  std::string waiting_;
+};
+
+}  // namespace diminish
