@@ -1,7 +1,8 @@
 #include <vector>
 
-#include "composite/channels.h"
 #include "composite/laplace_solver.h"
+#include "composite/neighbours.h"
+#include "core/channels.h"
 #include "diminish/inpainter.h"
 
 namespace diminish {

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <vector>
 
-#include "composite/channels.h"
 #include "composite/color_map.h"
 #include "composite/map_colors.h"
 #include "composite/soft_membrane.h"
+#include "core/channels.h"
 #include "core/even_color.h"
 #include "core/rows.h"
 #include "diminish/color_corrector.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "composite/channels.h"
+#include "composite/neighbours.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "composite/membrane_kernels.cpp"

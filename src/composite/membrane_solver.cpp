@@ -4,7 +4,6 @@
 #include <bit>
 #include <cmath>
 
-#include "composite/channels.h"
 #include "composite/membrane_kernels.h"
 #include "core/rows.h"
 

@@ -2,10 +2,11 @@
 #include <bit>
 #include <cstddef>
 
-#include "composite/channels.h"
 #include "composite/membrane_methods.h"
 #include "composite/membrane_picture.h"
 #include "composite/membrane_solver.h"
+#include "composite/neighbours.h"
+#include "core/channels.h"
 #include "core/rows.h"
 #include "diminish/color_corrector.h"
 

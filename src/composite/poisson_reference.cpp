@@ -1,8 +1,9 @@
 #include <array>
 #include <vector>
 
-#include "composite/channels.h"
 #include "composite/laplace_solver.h"
+#include "composite/neighbours.h"
+#include "core/channels.h"
 #include "diminish/color_corrector.h"
 
 namespace diminish {

@@ -17,20 +17,6 @@ void SmoothFilling::Grid::begin(int width, int height) {
   open = 0;
 }
 
-void SmoothFilling::Grid::find_neighbours() {
-  neighbours.resize(open + 1);
-  for (std::size_t i = 1; i <= open; ++i) {
-    const auto [x, y] = places[i];
-    Neighbours& own = neighbours[i];
-    int count = 0;
-    for (std::size_t k = 0; k < std::size(beside); ++k) {
-      own.at[k] = cells(x + beside[k].x, y + beside[k].y);
-      count += own.at[k] != 0 ? 1 : 0;
-    }
-    own.inverse_count = count > 0 ? 1 / static_cast<float>(count) : 0;
-  }
-}
-
 void SmoothFilling::Grid::relax(std::size_t cell) {
   const Neighbours& own = neighbours[cell];
   if (own.inverse_count == 0) return;
@@ -65,7 +51,7 @@ void SmoothFilling::coarsen(const Grid& fine, Grid& coarse) {
   for (std::size_t i = coarse.open + 1; i < coarse.places.size(); ++i) {
     coarse.colors[i] /= coarse.colors[i][3];
   }
-  coarse.find_neighbours();
+  coarse.find_neighbours([](Place) { return 0; });
 }
 
 /// Bilinear, of the cells that are there.
@@ -83,7 +69,6 @@ void SmoothFilling::interpolate(const Grid& coarse, Grid& fine) {
 }
 
 void SmoothFilling::solve() {
-  finest().find_neighbours();
   std::size_t count = 1;
   while (grids_[count - 1].open > 0) {
     if (grids_.size() == count) grids_.emplace_back();

@@ -2,9 +2,10 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <iterator>
 #include <vector>
 
-#include "composite/channels.h"
+#include "composite/neighbours.h"
 #include "diminish/image.h"
 
 namespace diminish {
@@ -34,16 +35,13 @@ class SmoothFilling {
   template <class IsKnown, class GetColor>
   bool connect(const IsKnown& is_known, const GetColor& color) {
     Grid& grid = finest();
-    for (std::size_t i = 1; i <= grid.open; ++i) {
-      const Place place = grid.places[i];
-      for (const auto& [dx, dy] : beside) {
-        const Place other{place.x + dx, place.y + dy};
-        if (grid.cells(other.x, other.y) != 0 || !is_known(other.x - 1, other.y - 1)) continue;
-        grid.add(other);
-        const Eigen::Array3f channels = color(other.x - 1, other.y - 1);
-        grid.colors.back() = {channels[0], channels[1], channels[2], 1};
-      }
-    }
+    grid.find_neighbours([&](Place place) {
+      if (!is_known(place.x - 1, place.y - 1)) return 0;
+      const int number = grid.add(place);
+      const Eigen::Array3f channels = color(place.x - 1, place.y - 1);
+      grid.colors.back() = {channels[0], channels[1], channels[2], 1};
+      return number;
+    });
     return grid.places.size() > grid.open + 1;
   }
   /// All open pixels get a colour, those that hang together with no known one, too.
@@ -81,14 +79,33 @@ class SmoothFilling {
     std::vector<Neighbours> neighbours;  ///< of the open cells
 
     void begin(int width, int height);
-    /// With color 0.
-    void add(Place place) {
-      cells(place.x, place.y) = static_cast<int>(places.size());
+    /// With color 0. Returns its number.
+    int add(Place place) {
+      const auto number = static_cast<int>(places.size());
+      cells(place.x, place.y) = number;
       places.push_back(place);
       colors.emplace_back(0.F, 0.F, 0.F, 0.F);
+      return number;
     }
     const Color& color(int x, int y) const { return colors[static_cast<std::size_t>(cells(x, y))]; }
-    void find_neighbours();
+    /// take_in(place): the number of a cell beside an open one that is not in the grid; it may add
+    /// the cell, or return 0.
+    template <class TakeIn>
+    void find_neighbours(const TakeIn& take_in) {
+      neighbours.resize(open + 1);
+      for (std::size_t i = 1; i <= open; ++i) {
+        const Place place = places[i];
+        Neighbours& own = neighbours[i];
+        int count = 0;
+        for (std::size_t k = 0; k < std::size(beside); ++k) {
+          const Place other{place.x + beside[k].x, place.y + beside[k].y};
+          own.at[k] = cells(other.x, other.y);
+          if (own.at[k] == 0) own.at[k] = take_in(other);
+          count += own.at[k] != 0 ? 1 : 0;
+        }
+        own.inverse_count = count > 0 ? 1 / static_cast<float>(count) : 0;
+      }
+    }
     void relax(std::size_t cell);
   };
 

@@ -5,10 +5,10 @@
 #include <array>
 #include <vector>
 
-#include "composite/channels.h"
 #include "composite/connected_runs.h"
 #include "composite/plane_colors.h"
 #include "composite/smooth_filling.h"
+#include "core/channels.h"
 #include "diminish/inpainter.h"
 
 namespace diminish {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "composite/channels.h"
+#include "core/channels.h"
 #include "diminish/inpainter.h"
 
 namespace diminish {

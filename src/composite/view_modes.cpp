@@ -1,7 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "composite/channels.h"
+#include "composite/neighbours.h"
+#include "core/channels.h"
 #include "core/rows.h"
 #include "diminish/view_mode.h"
 

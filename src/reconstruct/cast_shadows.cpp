@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/channels.h"
 #include "core/rows.h"
 #include "reconstruct/depth_noise.h"
 
@@ -125,9 +126,7 @@ void CastShadows::choose_lit(const Ground& ground, const std::vector<SceneSample
   std::size_t count = 0;
   for (const SceneSample& sample : samples) {
     if (sample.source != source || !is_on(sample) || count++ % step != 0) continue;
-    lit_.push_back({ground.coordinates(sample.point_m),
-                    {static_cast<float>(sample.color.b), static_cast<float>(sample.color.g),
-                     static_cast<float>(sample.color.r)}});
+    lit_.push_back({ground.coordinates(sample.point_m), to_channels(sample.color)});
   }
 }
 

@@ -9,12 +9,6 @@
 
 namespace diminish {
 
-/// A pixel's neighbours.
-struct PixelOffset {
-  int x, y;
-};
-inline constexpr PixelOffset neighbour_offsets[] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
-
 inline Eigen::Array3f to_channels(const Bgr& color) {
   return {static_cast<float>(color.b), static_cast<float>(color.g), static_cast<float>(color.r)};
 }
