@@ -161,6 +161,17 @@ TEST_F(ProgramTest, ReportsOnOnePage) {
   EXPECT_EQ(
       Program::run({"report", recording.folder(), recording.path("nowhere").string()}).exit_code,
       1);
+
+  const auto complaint = [&] {
+    const auto failed = Program::run({"report", recording.folder(), recording.out()});
+    EXPECT_EQ(failed.exit_code, 1);
+    return failed.err;
+  };
+  recording.write("out/frames.csv", "name,skipped,poses_ms\n0,0,1.5\n1,1,\n2,0,fast\n");
+  EXPECT_THAT(complaint(), HasSubstr("frames.csv: row 3: poses_ms: expected a number, got 'fast'"));
+  recording.write("out/summary.json", R"({"options": {"mask_margin_px": 0}})");
+  EXPECT_THAT(complaint(),
+              HasSubstr("summary.json: expected the summary that `diminish run` writes"));
 }
 
 TEST_F(ProgramTest, ExplainsItself) {

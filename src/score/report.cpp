@@ -84,16 +84,29 @@ std::string plots(const std::vector<FrameScore>& frames) {
   return text + "</div>\n";
 }
 
-std::string time_plots(const std::vector<CsvRow>& rows) {
+/// A column's numbers; nothing where the cell is empty or the column is not there.
+std::vector<std::optional<double>> numbers_in(const std::vector<CsvRow>& rows,
+                                              const std::string& column,
+                                              const std::filesystem::path& file) {
+  std::vector<std::optional<double>> numbers;
+  for (const CsvRow& row : rows) {
+    std::optional<double>& number = numbers.emplace_back();
+    const auto cell = row.find(column);
+    if (cell == row.end() || cell->second.empty()) continue;
+    number = parse_number(cell->second);
+    if (!number) {
+      throw Error(fmt::format("{}: row {}: {}: expected a number, got '{}'", file.string(),
+                              numbers.size(), column, printable(cell->second)));
+    }
+  }
+  return numbers;
+}
+
+std::string time_plots(const std::filesystem::path& file) {
+  const std::vector<CsvRow> rows = load_csv(file);
   std::string text = "<div class=plots>\n";
   for (const char* stage : stage_names) {
-    std::vector<std::optional<double>> values;
-    for (const CsvRow& row : rows) {
-      const auto found = row.find(std::string(stage) + "_ms");
-      values.push_back(found != row.end() && !found->second.empty()
-                           ? std::optional(std::stod(found->second))
-                           : std::nullopt);
-    }
+    const auto values = numbers_in(rows, std::string(stage) + "_ms", file);
     text += html::plot(std::string(stage) + ", ms", values);
   }
   return text + "</div>\n";
@@ -182,11 +195,12 @@ void write_report(const std::filesystem::path& recording, const std::filesystem:
     }
     page += "<h2>Figures by frame</h2>\n" + plots(score.frames);
     page += "<h2>Table 2</h2>\n" + table_2(summary);
-    page += "<h2>Milliseconds by frame</h2>\n" + time_plots(load_csv(run / "frames.csv"));
+    page += "<h2>Milliseconds by frame</h2>\n" + time_plots(run / "frames.csv");
     page += fmt::format("<h2>Options</h2><pre>{}</pre>\n",
                         html::escaped(summary.at("options").dump(2)));
   } catch (const nlohmann::json::exception& error) {
-    throw Error(fmt::format("{}: {}", (run / "summary.json").string(), error.what()));
+    throw Error(fmt::format("{}: expected the summary that `diminish run` writes: {}",
+                            (run / "summary.json").string(), printable(error.what())));
   }
   write_file(file, page + script);
 }
