@@ -18,10 +18,10 @@ struct ScoreCommand {
   bool pictures = false;
 
   void execute() const {
-    const Score score = score_run(recording, run);
+    const Score score =
+        pictures ? score_run_with_pictures(recording, run) : score_run(recording, run);
     fmt::print("{}", score_table(score));
     write_file(json.empty() ? run / "score.json" : json, score_json(score));
-    if (pictures) write_score_pictures(recording, run);
   }
 };
 

@@ -8,9 +8,9 @@
 
 #include "diminish/diminished_frame.h"
 #include "diminish/error.h"
-#include "score/error_budget.h"
 #include "score/image_quality.h"
 #include "score/run_folder.h"
+#include "score/score_frames.h"
 
 namespace diminish {
 namespace {
@@ -122,6 +122,11 @@ std::optional<double> change(const Residual& before, const Residual& after) {
 }  // namespace
 
 Score score_run(const std::filesystem::path& recording, const std::filesystem::path& run) {
+  return score_frames(recording, run, [](const ScoredFrame&) {});
+}
+
+Score score_frames(const std::filesystem::path& recording, const std::filesystem::path& run,
+                   const std::function<void(const ScoredFrame&)>& visit) {
   const RunFolder folder(recording, run);
   Score score;
   score.not_written = folder.not_written();
@@ -146,7 +151,8 @@ Score score_run(const std::filesystem::path& recording, const std::filesystem::p
     expect_same_size(provenance, result, (run / "provenance" / (name + ".png")).string());
     const cv::Mat seen = seen_pixels(provenance, mask);
     if (cv::countNonZero(mask) > 0) frame.coverage = ratio(seen & mask, mask);
-    if (const cv::Mat input = folder.input(name); !input.empty()) {
+    const cv::Mat input = folder.input(name);
+    if (!input.empty()) {
       expect_same_size(input, result, what);
       frame.changed_outside = count_changed_outside(input, result, mask);
     }
@@ -164,7 +170,9 @@ Score score_run(const std::filesystem::path& recording, const std::filesystem::p
       frame.inside = quality(result, truth, ssim, region);
       frame.valid = quality(result, truth, ssim, region & seen);
       frame.missing = quality(result, truth, ssim, region & mask & ~seen);
-      frame.budget = find_error_causes({result, truth, region, mask, seen}).budget;
+      const ErrorCauses causes = find_error_causes({result, truth, region, mask, seen});
+      frame.budget = causes.budget;
+      visit({name, input, result, truth, mask, provenance, causes});
       const SquaredError error = squared_error(result, truth, region);
       pooled.sum += error.sum;
       pooled.count += error.count;

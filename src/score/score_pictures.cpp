@@ -3,13 +3,10 @@
 #include <algorithm>
 #include <numeric>
 #include <opencv2/imgproc.hpp>
-#include <utility>
 #include <vector>
 
-#include "diminish/score.h"
-#include "score/error_budget.h"
-#include "score/image_quality.h"
 #include "score/run_folder.h"
+#include "score/score_frames.h"
 #include "sink/palette.h"
 #include "sink/partial_file.h"
 
@@ -59,40 +56,37 @@ std::string describe(const ErrorCauses& causes) {
   return text;
 }
 
+cv::Mat draw_sheet(const ScoredFrame& frame) {
+  const cv::Rect part = RunFolder::surroundings(frame.mask);
+  cv::Mat error;
+  cv::absdiff(frame.result(part), frame.truth(part), error);
+  cv::Mat upper;
+  cv::hconcat(std::vector<cv::Mat>{make_panel(frame.input(part), "input"),
+                                   make_panel(frame.result(part), "result"),
+                                   make_panel(frame.truth(part), "truth")},
+              upper);
+  cv::Mat lower;
+  cv::hconcat(
+      std::vector<cv::Mat>{
+          make_panel(4 * error, "error x 4"),
+          make_panel(in_colors(frame.provenance, frame.mask.size())(part), "provenance"),
+          make_panel(draw_error_causes(frame.causes)(part), describe(frame.causes).c_str())},
+      lower);
+  cv::Mat sheet;
+  cv::vconcat(upper, lower, sheet);
+  return sheet;
+}
+
 }  // namespace
 
-void write_score_pictures(const std::filesystem::path& recording,
-                          const std::filesystem::path& run) {
-  const RunFolder folder(recording, run);
-  std::filesystem::create_directories(run / "score");
-  for (const std::string& name : folder.frames()) {
-    const cv::Mat input = folder.input(name);
-    const cv::Mat result = folder.result(name);
-    const cv::Mat truth = folder.truth(name);
-    const cv::Mat mask = folder.mask(name);
-    if (input.empty() || result.empty() || truth.empty() || mask.empty()) continue;
-    const cv::Rect part = RunFolder::surroundings(mask);
-    const cv::Mat provenance = folder.provenance(name);
-    const ErrorCauses causes =
-        find_error_causes({result, truth, scored_region(folder.true_mask(name), mask), mask,
-                           seen_pixels(provenance, mask)});
-    cv::Mat error;
-    cv::absdiff(result(part), truth(part), error);
-    cv::Mat upper;
-    cv::hconcat(
-        std::vector<cv::Mat>{make_panel(input(part), "input"), make_panel(result(part), "result"),
-                             make_panel(truth(part), "truth")},
-        upper);
-    cv::Mat lower;
-    cv::hconcat(
-        std::vector<cv::Mat>{make_panel(4 * error, "error x 4"),
-                             make_panel(in_colors(provenance, mask.size())(part), "provenance"),
-                             make_panel(draw_error_causes(causes)(part), describe(causes).c_str())},
-        lower);
-    cv::Mat sheet;
-    cv::vconcat(upper, lower, sheet);
-    write_png(run / "score" / (name + ".png"), sheet);
-  }
+Score score_run_with_pictures(const std::filesystem::path& recording,
+                              const std::filesystem::path& run) {
+  const std::filesystem::path folder = run / "score";
+  return score_frames(recording, run, [&](const ScoredFrame& frame) {
+    if (frame.input.empty()) return;
+    std::filesystem::create_directories(folder);
+    write_png(folder / (frame.name + ".png"), draw_sheet(frame));
+  });
 }
 
 }  // namespace diminish

@@ -178,7 +178,8 @@ TEST_F(ScoreTest, JsonAndTableSayTheSame) {
 }
 
 TEST_F(ScoreTest, PicturesShowInputResultTruthAndError) {
-  write_score_pictures(folder.path(), folder.path() / "run");
+  const Score result = score_run_with_pictures(folder.path(), folder.path() / "run");
+  EXPECT_EQ(score_json(result), score_json(score()));
   const cv::Mat sheet = cv::imread((folder.path() / "run/score/000000.png").string());
   ASSERT_FALSE(sheet.empty());
   // Two rows of three panels of the picture's shape; the last is black but for the errors.
