@@ -1,0 +1,146 @@
+#include "composite/membrane_kernels.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "composite/membrane_relaxation.cpp"
+#include <hwy/foreach_target.h>
+// Anew for each instruction set.
+#include "composite/membrane_vectors-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace diminish::membrane::HWY_NAMESPACE {
+namespace {
+
+/// What is known of a sweep: it begins with values, as for x, whose plain blocks have no right
+/// side; or it goes on with an error; or the error is zero yet.
+enum class Start { x, error, zero };
+
+/// Relaxes the cells of one parity of a row. first: nothing has been relaxed yet, so that with
+/// Start::zero all neighbours are 0.
+template <Start start, bool first>
+HWY_INLINE void RelaxParity(const MembraneLevel& level, const float* HWY_RESTRICT right_side,
+                            float* HWY_RESTRICT values, int y, int parity) {
+  ForEachBlock(level.active, level.active_rows, y, [&](int column) {
+    const Block kind = level.block(y, column);
+    if (kind == Block::empty) return;
+    for (std::ptrdiff_t i = 0; i < lanes; i += VectorSize()) {
+      const std::ptrdiff_t planes = level.at(y, 0, parity, column) + i;
+      if (kind == Block::plain) {
+        for (int c = 0; c < channels; ++c) {
+          const std::ptrdiff_t at = planes + c * level.channel_step();
+          Vector sum = start == Start::x ? Zero() : Load(right_side + at);
+          if (!(start == Start::zero && first)) {
+            sum = hn::Add(sum, Neighbours(level, values, at, parity).Total());
+          }
+          Store(hn::Mul(sum, Set(0.25F)), values + at);
+        }
+        continue;
+      }
+      const Vector inverse = Load(level.inverse.data() + level.at(y, parity, column) + i);
+      const Mask cell = hn::Gt(inverse, Zero());
+      if (hn::AllFalse(Floats(), cell)) {
+        if (start != Start::zero) continue;
+        for (int c = 0; c < channels; ++c)
+          Store(Zero(), values + planes + c * level.channel_step());
+        continue;
+      }
+      if (start == Start::x && !level.edges.empty()) {
+        const EdgeMasks edges(level.edges_at(y, parity, column), i);
+        for (int c = 0; c < channels; ++c) {
+          const std::ptrdiff_t at = planes + c * level.channel_step();
+          Vector sum = edges.Sum(Neighbours(level, values, at, parity));
+          if (level.has_sources) sum = hn::Add(sum, Load(right_side + at));
+          Store(hn::IfThenElse(cell, hn::Mul(sum, inverse), Load(values + at)), values + at);
+        }
+        continue;
+      }
+      const Weights weights(level, y, parity, column, i);
+      for (int c = 0; c < channels; ++c) {
+        const std::ptrdiff_t at = planes + c * level.channel_step();
+        Vector sum = Load(right_side + at);
+        if (!(start == Start::zero && first)) {
+          sum = Neighbours(level, values, at, parity).Weighted(weights, sum);
+        }
+        const Vector relaxed = hn::Mul(sum, inverse);
+        if (start == Start::zero) {
+          Store(hn::IfThenElseZero(cell, relaxed), values + at);
+        } else {
+          Store(hn::IfThenElse(cell, relaxed, Load(values + at)), values + at);
+        }
+      }
+    }
+  });
+}
+
+/// Black cells of a row: those that are relaxed second.
+template <Start start>
+HWY_INLINE void RelaxBlack(const MembraneLevel& level, const float* right_side, float* values,
+                           int y) {
+  RelaxParity<start, false>(level, right_side, values, y, (y + 1) & 1);
+}
+
+template <Start start>
+HWY_INLINE void RelaxRows(const MembraneLevel& level, const float* right_side, float* values,
+                          Rows rows) {
+  // The red cells of a row, then the black ones of the row above, whose neighbours are then all
+  // new: one pass over memory.
+  for (int y = rows.first; y < rows.last; ++y) {
+    RelaxParity<start, true>(level, right_side, values, y, y & 1);
+    const bool above_is_seam = y - 1 == rows.first && rows.first > 0;
+    if (y > rows.first && !above_is_seam) RelaxBlack<start>(level, right_side, values, y - 1);
+  }
+  if (rows.last == level.height) RelaxBlack<start>(level, right_side, values, rows.last - 1);
+}
+
+void Relax(const MembraneLevel& level, const float* right_side, float* values, bool from_zero,
+           Rows rows) {
+  if (!from_zero) {
+    return values == level.x.data() ? RelaxRows<Start::x>(level, right_side, values, rows)
+                                    : RelaxRows<Start::error>(level, right_side, values, rows);
+  }
+  if (level.has_smooth || level.height < 2) {
+    const int end = rows.last == level.height ? level.rows() : rows.last;
+    for (int y = rows.first; y < end; ++y) {
+      ForEachBlock(level.stored, level.stored_rows, y, [&](int column) {
+        for (int c = 0; c < channels; ++c) {
+          Fill(0.F, values + level.at(y, c, 0, column), level.pitch);
+        }
+      });
+    }
+  }
+  RelaxRows<Start::zero>(level, right_side, values, rows);
+}
+
+void RelaxSeam(const MembraneLevel& level, const float* right_side, float* values, bool from_zero,
+               int row) {
+  for (int y = row - 1; y <= row; ++y) {
+    if (from_zero) {
+      RelaxBlack<Start::zero>(level, right_side, values, y);
+    } else if (values == level.x.data()) {
+      RelaxBlack<Start::x>(level, right_side, values, y);
+    } else {
+      RelaxBlack<Start::error>(level, right_side, values, y);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace diminish::membrane::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace diminish::membrane {
+
+HWY_EXPORT(Relax);
+HWY_EXPORT(RelaxSeam);
+
+void relax(const MembraneLevel& level, const float* right_side, float* values, bool from_zero,
+           Rows rows) {
+  HWY_DYNAMIC_DISPATCH(Relax)(level, right_side, values, from_zero, rows);
+}
+void relax_seam(const MembraneLevel& level, const float* right_side, float* values, bool from_zero,
+                int row) {
+  HWY_DYNAMIC_DISPATCH(RelaxSeam)(level, right_side, values, from_zero, row);
+}
+
+}  // namespace diminish::membrane
+#endif
