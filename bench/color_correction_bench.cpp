@@ -8,6 +8,7 @@
 #include "beside_peer.h"
 #include "core/mat.h"
 #include "diminish/color_corrector.h"
+#include "picture_difference.h"
 
 namespace diminish {
 namespace {
@@ -70,21 +71,6 @@ struct Cloning {
   cv::Mat colors_only;
 };
 
-/// The root mean square difference, in levels, inside the mask.
-double rms_difference(const Image<Bgr>& a, const Image<Bgr>& b, const Mask& mask) {
-  double squares = 0;
-  double count = 0;
-  for (int y = 0; y < mask.height(); ++y) {
-    for (int x = 0; x < mask.width(); ++x) {
-      if (mask(x, y) == 0) continue;
-      squares += std::pow(a(x, y).b - b(x, y).b, 2) + std::pow(a(x, y).g - b(x, y).g, 2) +
-                 std::pow(a(x, y).r - b(x, y).r, 2);
-      count += 3;
-    }
-  }
-  return std::sqrt(squares / count);
-}
-
 /// Beside cv::seamlessClone; beside the plain version where that would take half a minute.
 /// rms: against the plain version's result, which is exact to a fiftieth of a level; both rounded.
 void poisson_beside_seamless_clone(benchmark::State& state, Shape shape) {
@@ -106,7 +92,8 @@ void poisson_beside_seamless_clone(benchmark::State& state, Shape shape) {
                           center, cloned, cv::NORMAL_CLONE);
       });
   correct(*reference, exact);
-  state.counters["rms"] = rms_difference(cloning.picture, exact, cloning.occlusion);
+  state.counters["rms"] = std::sqrt(
+      testing::mean_squared_difference(cloning.picture, exact, cloning.occlusion));
 }
 #define DIMINISH_CLONING_BENCHMARK(name, shape)                 \
   BENCHMARK_CAPTURE(poisson_beside_seamless_clone, name, shape) \

@@ -1,4 +1,3 @@
-#include <cmath>
 #include <cstdlib>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -8,6 +7,7 @@
 #include "beside_peer.h"
 #include "core/mat.h"
 #include "diminish/inpainter.h"
+#include "picture_difference.h"
 
 namespace diminish {
 namespace {
@@ -23,21 +23,6 @@ Mask make_pipes(int percent) {
              random.uniform(5, 15));
   }
   return mask;
-}
-
-double psnr(const Image<Bgr>& picture, const Image<Bgr>& truth, const Mask& mask) {
-  double squares = 0;
-  double count = 0;
-  for (int y = 0; y < mask.height(); ++y) {
-    for (int x = 0; x < mask.width(); ++x) {
-      if (mask(x, y) == 0) continue;
-      squares += std::pow(picture(x, y).b - truth(x, y).b, 2) +
-                 std::pow(picture(x, y).g - truth(x, y).g, 2) +
-                 std::pow(picture(x, y).r - truth(x, y).r, 2);
-      count += 3;
-    }
-  }
-  return 10 * std::log10(255 * 255 * count / squares);
 }
 
 void harmonic_beside_telea(benchmark::State& state, const Image<Bgr>& truth, const Mask& missing) {
@@ -63,9 +48,9 @@ void harmonic_beside_telea(benchmark::State& state, const Image<Bgr>& truth, con
   copy_from(filled, teleas);
   Registry<Inpainter>::get("harmonic_reference")()->inpaint({missing, missing, {}}, options, exact);
   state.counters["missing"] = static_cast<double>(count_nonzero(missing, missing.bounds()));
-  state.counters["psnr"] = psnr(ours, truth, missing);
-  state.counters["exact_psnr"] = psnr(exact, truth, missing);
-  state.counters["peer_psnr"] = psnr(teleas, truth, missing);
+  state.counters["psnr"] = testing::psnr_db(ours, truth, missing);
+  state.counters["exact_psnr"] = testing::psnr_db(exact, truth, missing);
+  state.counters["peer_psnr"] = testing::psnr_db(teleas, truth, missing);
 }
 
 void harmonic_in_pipes(benchmark::State& state) {

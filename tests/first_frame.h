@@ -29,12 +29,18 @@ struct FirstFrame {
                               reconstruction);
   }
 
+  /// A rectangle in each of the RGB-D cameras' masks.
+  void mask_parts() {
+    for (Mask& mask : masks.rgbd_depth) mask.fill({100, 50, 97, 61}, 255);
+    for (Mask& mask : masks.rgbd_color) mask.fill({500, 400, 333, 222}, 255);
+  }
+
   Recording recording;
   Options options;
   FrameSet frame;
   DiminishedFrame result;
   DepthImages depths;    ///< as they are recorded
-  OcclusionMasks masks;  ///< with nothing in them
+  OcclusionMasks masks;  ///< at first with nothing in them
 };
 
 }  // namespace diminish::testing

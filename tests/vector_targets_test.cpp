@@ -3,9 +3,9 @@
 #include <hwy/targets.h>
 
 #include <algorithm>
-#include <cstdlib>
 
 #include "first_frame.h"
+#include "picture_difference.h"
 
 namespace diminish {
 namespace {
@@ -40,9 +40,7 @@ TEST(VectorTargets, AgreeOnWholeFrames) {
     int worst = 0;
     for (int y = 0; y < result.picture.height(); ++y) {
       for (int x = 0; x < result.picture.width(); ++x) {
-        const Bgr& a = result.picture(x, y);
-        const Bgr& b = expected.picture(x, y);
-        worst = std::max({worst, std::abs(a.b - b.b), std::abs(a.g - b.g), std::abs(a.r - b.r)});
+        worst = std::max(worst, testing::difference(result.picture(x, y), expected.picture(x, y)));
       }
     }
     // A seen pixel may be rounded otherwise, and then what is filled from it, once more; where a

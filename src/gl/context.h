@@ -3,6 +3,8 @@
 #include <memory>
 #include <string>
 
+#include "diminish/error.h"
+
 namespace diminish::gl {
 
 /// What draws.
@@ -52,6 +54,17 @@ class Current {
   void* previous_draw_;
   void* previous_read_;
 };
+
+/// Deletes what was made in the context. Where that is gone, all that it held is gone with it.
+template <class Resources>
+void delete_in(const Context& context, std::unique_ptr<Resources>& resources) {
+  try {
+    const Current current(context);
+    resources.reset();
+  } catch (const Error&) {
+    static_cast<void>(resources.release());
+  }
+}
 
 /// Whether a context can be made, and hardware draws.
 bool has_hardware_driver();

@@ -5,7 +5,6 @@
 #include <cstring>
 #include <vector>
 
-#include "diminish/error.h"
 #include "gl/program.h"
 
 namespace diminish::gl {
@@ -155,13 +154,7 @@ GpuMembraneSolver::GpuMembraneSolver() {
 }
 
 GpuMembraneSolver::~GpuMembraneSolver() {
-  try {
-    const Current current(context_);
-    resources_.reset();
-  } catch (const Error&) {
-    // The context is gone, and what it held with it.
-    static_cast<void>(resources_.release());
-  }
+  delete_in(context_, resources_);
 }
 
 void GpuMembraneSolver::solve(float /*tolerance*/) {

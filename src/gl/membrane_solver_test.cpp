@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 
@@ -11,6 +10,7 @@
 #include "diminish/error.h"
 #include "diminish/frame_source.h"
 #include "diminish/pipeline.h"
+#include "picture_difference.h"
 
 namespace diminish {
 namespace {
@@ -28,9 +28,7 @@ Difference compare(const Image<Bgr>& a, const Image<Bgr>& b, const Mask& mask) {
       EXPECT_EQ(a.data()[i], b.data()[i]);
       continue;
     }
-    const Bgr& p = a.data()[i];
-    const Bgr& q = b.data()[i];
-    const int levels = std::max({std::abs(p.b - q.b), std::abs(p.g - q.g), std::abs(p.r - q.r)});
+    const int levels = testing::difference(a.data()[i], b.data()[i]);
     ++difference.pixels;
     difference.other += levels > 1 ? 1 : 0;
     difference.most = std::max(difference.most, levels);

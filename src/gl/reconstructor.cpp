@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 
-#include "diminish/error.h"
 #include "reconstruct/clear_outside.h"
 
 namespace diminish::gl {
@@ -60,13 +59,7 @@ GlReconstructor::GlReconstructor(const Rig& rig, const MakeRasterizer& make_rast
 }
 
 GlReconstructor::~GlReconstructor() {
-  try {
-    const Current current(context_);
-    resources_.reset();
-  } catch (const Error&) {
-    // The context is gone, and what it held with it.
-    static_cast<void>(resources_.release());
-  }
+  delete_in(context_, resources_);
 }
 
 void GlReconstructor::reconstruct(const FrameSet& frame, const DepthImages& depths,

@@ -9,6 +9,7 @@
 #include "expect_error.h"
 #include "first_frame.h"
 #include "gl/context.h"
+#include "picture_difference.h"
 
 namespace diminish {
 namespace {
@@ -30,9 +31,7 @@ Difference compare(const Reconstruction& a, const Reconstruction& b) {
       if (p.a != q.a) ++difference.other_alpha;
       if (p.a != 255 || q.a != 255) continue;
       ++difference.drawn;
-      if (std::max({std::abs(p.b - q.b), std::abs(p.g - q.g), std::abs(p.r - q.r)}) > 2) {
-        ++difference.other_color;
-      }
+      if (testing::difference(p, q) > 2) ++difference.other_color;
       if (a.source(x, y) != b.source(x, y)) {
         ++difference.other_source;
       } else {
@@ -68,10 +67,7 @@ TEST_P(GlOnRecordings, DrawsWhatThePlainVersionDraws) {
   Reconstruction a;
   Reconstruction b;
   for (const bool masked : {false, true}) {
-    if (masked) {
-      for (Mask& mask : first.masks.rgbd_depth) mask.fill({100, 50, 97, 61}, 255);
-      for (Mask& mask : first.masks.rgbd_color) mask.fill({500, 400, 333, 222}, 255);
-    }
+    if (masked) first.mask_parts();
     for (const Rect& region : {first.whole_view(), Rect{300, 200, 421, 333}}) {
       first.reconstruct(*on_gpu, region, a);
       first.reconstruct(*plain, region, b);

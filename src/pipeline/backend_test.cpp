@@ -3,8 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstdlib>
 #include <filesystem>
 
 #include "analytic_scene.h"
@@ -12,6 +10,7 @@
 #include "diminish/pipeline.h"
 #include "expect_error.h"
 #include "mask_overlap.h"
+#include "picture_difference.h"
 #ifdef DIMINISH_HAS_GL
 #include "gl/context.h"
 #endif
@@ -107,20 +106,6 @@ class WholeFrames : public ::testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Recordings, WholeFrames,
                          ::testing::Values("calendar", "ball", "workbench"));
 
-/// In the mask, dB.
-double psnr_db(const DiminishedFrame& result, const Image<Bgr>& truth) {
-  double squares = 0;
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < truth.size(); ++i) {
-    if (result.mask.data()[i] == 0) continue;
-    const Bgr& a = result.picture.data()[i];
-    const Bgr& b = truth.data()[i];
-    squares += std::pow(a.b - b.b, 2) + std::pow(a.g - b.g, 2) + std::pow(a.r - b.r, 2);
-    count += 3;
-  }
-  return 10 * std::log10(255 * 255 * static_cast<double>(count) / squares);
-}
-
 // What users see: the pictures of both backends, and what they score.
 TEST_P(WholeFrames, OfTheGpuAreThoseOfTheProcessor) {
   const std::filesystem::path folder = std::filesystem::path(DIMINISH_RECORDINGS_DIR) / GetParam();
@@ -141,18 +126,16 @@ TEST_P(WholeFrames, OfTheGpuAreThoseOfTheProcessor) {
     std::size_t other_provenance = 0;
     std::size_t other_color = 0;
     for (std::size_t i = 0; i < a.picture.size(); ++i) {
-      const Bgr& p = a.picture.data()[i];
-      const Bgr& q = b.picture.data()[i];
-      if (std::max({std::abs(p.b - q.b), std::abs(p.g - q.g), std::abs(p.r - q.r)}) > 2) {
-        ++other_color;
-      }
+      if (testing::difference(a.picture.data()[i], b.picture.data()[i]) > 2) ++other_color;
       if (a.provenance.data()[i] != b.provenance.data()[i]) ++other_provenance;
     }
     EXPECT_GT(a.report.valid_pixels, 1000U);
     EXPECT_LE(other_provenance * 1000, a.report.mask_pixels) << frame.name;
     EXPECT_LE(other_color * 1000, a.report.mask_pixels) << frame.name;
     const Image<Bgr> truth = read_color_image(folder / "truth/background" / (frame.name + ".jpg"));
-    EXPECT_NEAR(psnr_db(a, truth), psnr_db(b, truth), 0.1) << frame.name;
+    EXPECT_NEAR(testing::psnr_db(a.picture, truth, a.mask),
+                testing::psnr_db(b.picture, truth, b.mask), 0.1)
+        << frame.name;
   }
 }
 

@@ -9,6 +9,7 @@
 #include "diminish/error.h"
 #include "diminish/frame_source.h"
 #include "mask_overlap.h"
+#include "picture_difference.h"
 #include "truth_poses.h"
 
 namespace diminish {
@@ -37,17 +38,11 @@ class BundledRecording {
   /// Peak signal-to-noise ratio inside the true mask, or outside the run's, dB.
   double psnr_db(bool inside = true) const {
     const Image<Bgr> truth = read_color_image(folder_ / "truth/background" / (frame.name + ".jpg"));
-    const Mask mask = inside ? true_mask() : result.mask;
-    double squares = 0;
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < mask.size(); ++i) {
-      if ((mask.data()[i] != 0) != inside) continue;
-      const Bgr& a = result.picture.data()[i];
-      const Bgr& b = truth.data()[i];
-      squares += std::pow(a.b - b.b, 2) + std::pow(a.g - b.g, 2) + std::pow(a.r - b.r, 2);
-      count += 3;
+    Mask mask = inside ? true_mask() : result.mask;
+    if (!inside) {
+      for (std::uint8_t& pixel : mask) pixel = pixel == 0 ? 255 : 0;
     }
-    return 10 * std::log10(255 * 255 * static_cast<double>(count) / squares);
+    return testing::psnr_db(result.picture, truth, mask);
   }
 
   FrameSet frame;

@@ -29,6 +29,14 @@ Reconstruction reconstruct(const AnalyticFrame& scene, const OcclusionMasks& mas
   return result;
 }
 
+void draw_box(const AnalyticScene& scene, const Intrinsics& sensor,
+              const RigidTransform& sensor_from_world, Mask& mask) {
+  scene.render(Lens(sensor), sensor_from_world,
+               [&](int x, int y, const AnalyticScene::Hit& hit) {
+                 mask(x, y) = hit.on_box ? 255 : 0;
+               });
+}
+
 /// Whether a sensor at `sensor_from_world` has the point in its picture and nothing in front of it.
 bool is_seen(const AnalyticScene& scene, const Lens& lens, const RigidTransform& sensor_from_world,
              const Eigen::Vector3d& point) {
@@ -121,10 +129,7 @@ TEST_P(AnyReconstructor, LeavesOutDepthPixelsOnTheObject) {
   const AnalyticScene scene;
   const AnalyticFrame frame(scene, {rgbd_eye});
   OcclusionMasks masks = empty_masks(frame.rig);
-  scene.render(Lens(frame.rig.rgbd[0].depth), *frame.poses.depth_from_world[0],
-               [&](int x, int y, const AnalyticScene::Hit& hit) {
-                 masks.rgbd_depth[0](x, y) = hit.on_box ? 255 : 0;
-               });
+  draw_box(scene, frame.rig.rgbd[0].depth, *frame.poses.depth_from_world[0], masks.rgbd_depth[0]);
   const Reconstruction result = reconstruct(frame, masks);
   std::size_t drawn = 0;
   const Lens lens(frame.rig.color);
@@ -148,21 +153,16 @@ TEST_P(AnyReconstructor, LeavesOutDepthPixelsWhoseColorIsTheObjects) {
   const AnalyticScene scene;
   const AnalyticFrame frame(scene, {rgbd_eye});
   OcclusionMasks masks = empty_masks(frame.rig);
-  scene.render(Lens(frame.rig.rgbd[0].depth), *frame.poses.depth_from_world[0],
-               [&](int x, int y, const AnalyticScene::Hit& hit) {
-                 masks.rgbd_depth[0](x, y) = hit.on_box ? 255 : 0;
-               });
+  draw_box(scene, frame.rig.rgbd[0].depth, *frame.poses.depth_from_world[0], masks.rgbd_depth[0]);
   const auto count_red = [&] {
     const Reconstruction result = reconstruct(frame, masks);
     return std::count_if(result.color.begin(), result.color.end(),
                          [](const Bgra& pixel) { return pixel.r > 150; });
   };
   EXPECT_GT(count_red(), 100);
-  scene.render(Lens(frame.rig.rgbd[0].color),
-               frame.rig.rgbd[0].color_from_depth * *frame.poses.depth_from_world[0],
-               [&](int x, int y, const AnalyticScene::Hit& hit) {
-                 masks.rgbd_color[0](x, y) = hit.on_box ? 255 : 0;
-               });
+  draw_box(scene, frame.rig.rgbd[0].color,
+           frame.rig.rgbd[0].color_from_depth * *frame.poses.depth_from_world[0],
+           masks.rgbd_color[0]);
   // Bilinear lookups reach half a pixel over the mask's edge.
   Mask grown = masks.rgbd_color[0];
   for (int y = 1; y + 1 < grown.height(); ++y) {

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "first_frame.h"
+#include "picture_difference.h"
 
 namespace diminish {
 namespace {
@@ -32,7 +32,7 @@ void expect_same(const Reconstruction& fast, const Reconstruction& plain) {
         ++other_source;
         continue;
       }
-      worst = std::max({worst, std::abs(a.b - b.b), std::abs(a.g - b.g), std::abs(a.r - b.r)});
+      worst = std::max(worst, testing::difference(a, b));
       worst_depth =
           std::max(worst_depth, std::abs(double{fast.depth_m(x, y)} / plain.depth_m(x, y) - 1));
     }
@@ -55,10 +55,7 @@ TEST_P(VectorizedOnRecordings, DrawsWhatThePlainVersionDraws) {
   Reconstruction a;
   Reconstruction b;
   for (const bool masked : {false, true}) {
-    if (masked) {
-      for (Mask& mask : first.masks.rgbd_depth) mask.fill({100, 50, 97, 61}, 255);
-      for (Mask& mask : first.masks.rgbd_color) mask.fill({500, 400, 333, 222}, 255);
-    }
+    if (masked) first.mask_parts();
     for (const Rect& region :
          {first.whole_view(), Rect{300, 200, 421, 333}, Rect{0, 900, 1, 124}}) {
       const bool empty = region.width == 1;
