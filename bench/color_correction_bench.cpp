@@ -92,8 +92,8 @@ void poisson_beside_seamless_clone(benchmark::State& state, Shape shape) {
                           center, cloned, cv::NORMAL_CLONE);
       });
   correct(*reference, exact);
-  state.counters["rms"] = std::sqrt(
-      testing::mean_squared_difference(cloning.picture, exact, cloning.occlusion));
+  state.counters["rms"] =
+      std::sqrt(testing::mean_squared_difference(cloning.picture, exact, cloning.occlusion));
 }
 #define DIMINISH_CLONING_BENCHMARK(name, shape)                 \
   BENCHMARK_CAPTURE(poisson_beside_seamless_clone, name, shape) \

@@ -31,10 +31,9 @@ Reconstruction reconstruct(const AnalyticFrame& scene, const OcclusionMasks& mas
 
 void draw_box(const AnalyticScene& scene, const Intrinsics& sensor,
               const RigidTransform& sensor_from_world, Mask& mask) {
-  scene.render(Lens(sensor), sensor_from_world,
-               [&](int x, int y, const AnalyticScene::Hit& hit) {
-                 mask(x, y) = hit.on_box ? 255 : 0;
-               });
+  scene.render(Lens(sensor), sensor_from_world, [&](int x, int y, const AnalyticScene::Hit& hit) {
+    mask(x, y) = hit.on_box ? 255 : 0;
+  });
 }
 
 /// Whether a sensor at `sensor_from_world` has the point in its picture and nothing in front of it.
