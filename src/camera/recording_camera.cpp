@@ -39,8 +39,8 @@ template <class Pixel>
 class Replay {
  public:
   Replay(const std::filesystem::path& list, const Intrinsics& sensor, const Timeline& timeline,
-         bool loop)
-      : stream_(list, sensor), timeline_(timeline), loop_(loop) {
+         bool loop, EmptyList empty = EmptyList::is_error)
+      : stream_(list, sensor, empty), timeline_(timeline), loop_(loop) {
     const auto count = static_cast<double>(stream_.entries().size());
     period_s_ = median_period_s(stream_.entries()) / timeline.rate;
     if (!loop || count * sensor.width * sensor.height * sizeof(Pixel) > max_kept_bytes) return;
@@ -48,7 +48,9 @@ class Replay {
     for (std::size_t i = 0; i < kept_.size(); ++i) read(i, kept_[i]);
   }
 
-  bool is_over() const { return !loop_ && next_ >= stream_.entries().size(); }
+  bool is_over() const {
+    return stream_.entries().empty() || (!loop_ && next_ >= stream_.entries().size());
+  }
   double due_s() const {
     const std::size_t count = stream_.entries().size();
     return timeline_.due_s(stream_.entries()[next_ % count].stamp_s, next_ / count);
@@ -113,8 +115,10 @@ class RecordingCamera : public CameraSource {
     const auto camera = std::find_if(rig.rgbd.begin(), rig.rgbd.end(),
                                      [&](const RgbdCamera& c) { return c.name == name; });
     if (camera == rig.rgbd.end()) uri.fail("the recording has no camera '" + name + "'");
-    color_.emplace(folder / (name + "_color.txt"), camera->color, timeline, loop);
-    depth_.emplace(folder / (name + "_depth.txt"), camera->depth, timeline, loop);
+    color_.emplace(folder / (name + "_color.txt"), camera->color, timeline, loop,
+                   EmptyList::is_no_images);
+    depth_.emplace(folder / (name + "_depth.txt"), camera->depth, timeline, loop,
+                   EmptyList::is_no_images);
   }
 
   Status read(CameraImage& image, std::chrono::milliseconds timeout) override {

@@ -71,6 +71,20 @@ TEST_P(Writer, WhatIsWrittenIsReadAgain) {
   }
 }
 
+TEST_P(Writer, WhatNoRgbdCameraSawIsARecordingToo) {
+  auto live = std::make_shared<LiveFrame>();
+  live->input = frames_of(source_).front();
+  for (RgbdFrame& rgbd : live->input.rgbd) rgbd.missing = "not connected";
+  const auto copy = folder_.path() / "copy";
+  const auto writer = write_to(copy);
+  writer->offer(live);
+  writer->finish();
+  const std::vector<FrameSet> read = frames_of(copy);
+  ASSERT_EQ(read.size(), 1U);
+  EXPECT_LT(mean_difference(read[0].color, live->input.color), 2);
+  for (const RgbdFrame& rgbd : read[0].rgbd) EXPECT_FALSE(rgbd.available());
+}
+
 INSTANTIATE_TEST_SUITE_P(Recordings, Writer, testing::Values("calendar", "ball", "workbench"));
 
 class CalendarWriter : public Writer {};

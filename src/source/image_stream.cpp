@@ -21,9 +21,10 @@ constexpr VideoReader::Content video_content<std::uint16_t> = VideoReader::Conte
 }  // namespace
 
 template <class Pixel>
-ImageStream<Pixel>::ImageStream(const std::filesystem::path& list, const Intrinsics& camera)
-    : folder_(list.parent_path()), camera_(camera), entries_(load_stream_list(list)) {
-  check_first(list);
+ImageStream<Pixel>::ImageStream(const std::filesystem::path& list, const Intrinsics& camera,
+                                EmptyList empty)
+    : folder_(list.parent_path()), camera_(camera), entries_(load_stream_list(list, empty)) {
+  if (!entries_.empty()) check_first(list);
 }
 
 template <class Pixel>

@@ -20,7 +20,8 @@ class ImageStream {
   /// list: the "timestamp filename" file; names in it are relative to its folder.
   /// Throws Error if the list cannot be used, none of its files exist, or the first that does is
   /// an image of another camera: that would be wrong in every frame.
-  ImageStream(const std::filesystem::path& list, const Intrinsics& camera);
+  ImageStream(const std::filesystem::path& list, const Intrinsics& camera,
+              EmptyList empty = EmptyList::is_error);
 
   const std::vector<StreamEntry>& entries() const { return entries_; }
 

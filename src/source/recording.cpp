@@ -39,8 +39,9 @@ class RecordingSource final : public FrameSource {
         color_(recording.folder / "color.txt", recording.rig.color) {
     expect_unique_names(color_.entries(), recording.folder / "color.txt");
     for (const RgbdCamera& camera : rig_.rgbd) {
-      rgbd_.push_back({{recording.folder / (camera.name + "_color.txt"), camera.color},
-                       {recording.folder / (camera.name + "_depth.txt"), camera.depth}});
+      const std::filesystem::path lists = recording.folder / camera.name;
+      rgbd_.push_back({{lists.string() + "_color.txt", camera.color, EmptyList::is_no_images},
+                       {lists.string() + "_depth.txt", camera.depth, EmptyList::is_no_images}});
     }
     tolerance_s_ = options.sync_tolerance_s > 0 ? options.sync_tolerance_s
                                                 : median_period_s(color_.entries()) / 2;

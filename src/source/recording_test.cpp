@@ -68,6 +68,21 @@ TEST(Recording, ImagesWithoutAPartnerInTimeAreMissingNotFaults) {
   EXPECT_EQ(recording.read(options)[0].rgbd[0].missing, "rgbd0: no color image within 0.0005 s");
 }
 
+TEST(Recording, AnRgbdCameraMayHaveDeliveredNothing) {
+  const TinyRecording recording;
+  recording.write_list("rgbd0_color", {});
+  recording.write_list("rgbd0_depth", {});
+  const auto frames = recording.read();
+  ASSERT_EQ(frames.size(), 3U);
+  EXPECT_EQ(frames[2].rgbd[0].missing, "rgbd0: no color image within 0.05 s");
+  EXPECT_FALSE(frames[2].color.empty());
+
+  recording.write_list("color", {});
+  EXPECT_EQ(error_of([&] { recording.open(); }),
+            recording.path("color.txt").string() +
+                ": expected at least one line of \"timestamp filename\"");
+}
+
 TEST(Recording, ASingleFrameHasATolerance) {
   const TinyRecording recording;
   recording.write_list("color", {1});

@@ -78,7 +78,8 @@ bool is_video(const std::filesystem::path& file) {
   return false;
 }
 
-std::vector<StreamEntry> read_stream_list(std::istream& stream, const std::filesystem::path& file) {
+std::vector<StreamEntry> read_stream_list(std::istream& stream, const std::filesystem::path& file,
+                                          EmptyList empty) {
   std::vector<StreamEntry> entries;
   int line = 0;
   for (std::string text; std::getline(stream, text);) {
@@ -87,7 +88,7 @@ std::vector<StreamEntry> read_stream_list(std::istream& stream, const std::files
     if (content.empty() || content.front() == '#') continue;
     entries.push_back(read_entry(content, line, file));
   }
-  if (entries.empty()) {
+  if (entries.empty() && empty == EmptyList::is_error) {
     throw Error(file.string() + ": expected at least one line of \"timestamp filename\"");
   }
   expect_increasing(entries, file);
@@ -113,9 +114,9 @@ std::vector<StreamEntry> expand_videos(const std::vector<StreamEntry>& entries,
   return expanded;
 }
 
-std::vector<StreamEntry> load_stream_list(const std::filesystem::path& list) {
+std::vector<StreamEntry> load_stream_list(const std::filesystem::path& list, EmptyList empty) {
   std::istringstream stream(read_text_file(list, max_list_bytes));
-  return expand_videos(read_stream_list(stream, list), list);
+  return expand_videos(read_stream_list(stream, list, empty), list);
 }
 
 std::string entry_name(const StreamEntry& entry, std::size_t index) {

@@ -17,14 +17,19 @@ struct StreamEntry {
   int line = 0;                ///< of the list
 };
 
+/// What a list without entries means: the user's camera must have images, while an RGB-D camera may
+/// have delivered none.
+enum class EmptyList { is_error, is_no_images };
+
 /// Whether a file is taken for a video, by its extension.
 bool is_video(const std::filesystem::path& file);
 
 /// Reads a "timestamp filename" list. Several lines that name the same video stand for its
 /// consecutive frames. Throws Error with file and line on malformed lines, on timestamps that do
-/// not increase, and if there are no entries.
+/// not increase, and, if that is an error, without any entries.
 /// A video that is named once has one entry here, without `frame`: see `expand_videos`.
-std::vector<StreamEntry> read_stream_list(std::istream& stream, const std::filesystem::path& file);
+std::vector<StreamEntry> read_stream_list(std::istream& stream, const std::filesystem::path& file,
+                                          EmptyList empty = EmptyList::is_error);
 
 /// Gives each video that stands for all of its frames an entry per frame, at its own frame rate.
 /// `list` is the list's file. Throws Error on videos that cannot be opened, or that run into the
@@ -33,7 +38,8 @@ std::vector<StreamEntry> expand_videos(const std::vector<StreamEntry>& entries,
                                        const std::filesystem::path& list);
 
 /// Reads a list and expands its videos.
-std::vector<StreamEntry> load_stream_list(const std::filesystem::path& list);
+std::vector<StreamEntry> load_stream_list(const std::filesystem::path& list,
+                                          EmptyList empty = EmptyList::is_error);
 
 /// The image's name: its file's stem; of a video's frame: `index`, six digits.
 std::string entry_name(const StreamEntry& entry, std::size_t index);
@@ -46,7 +52,7 @@ std::string describe(const StreamEntry& entry);
 std::optional<std::size_t> nearest_entry(const std::vector<StreamEntry>& entries, double stamp_s,
                                          double tolerance_s);
 
-/// The median time from one entry to the next; 1/30 s for a single entry.
+/// The median time from one entry to the next; 1/30 s for fewer than two.
 double median_period_s(const std::vector<StreamEntry>& entries);
 
 }  // namespace diminish
