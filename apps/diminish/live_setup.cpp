@@ -41,7 +41,7 @@ void LiveSetup::add_flags(CLI::App& command) {
       ->type_name("N");
   command
       .add_option("--sync-wait", live_options.sync_wait_s,
-                  "How long a picture waits for its RGB-D images")
+                  "How long a picture waits for its RGB-D images; 0: as long as the last ones did")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 10.0))
       ->type_name("SECONDS");

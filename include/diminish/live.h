@@ -89,8 +89,9 @@ struct LiveOptions {
   /// What a frame may take; quality steps down (docs/live.md says in which order) when it takes
   /// more. 0: as long as it takes.
   double budget_ms = 0;
-  /// How long a colour image waits for its RGB-D images.
-  double sync_wait_s = 0.06;
+  /// How long a colour image waits for its RGB-D images; 0: 0.02 s longer than the last few of them
+  /// made it wait, at least 0.06 s.
+  double sync_wait_s = 0;
 };
 
 /// Cameras in, pictures out, until stopped. The cameras have a thread each, the pipeline has one;

@@ -8,7 +8,12 @@
 namespace diminish {
 namespace {
 
+constexpr double always_s = -std::numeric_limits<double>::infinity();
 constexpr double usual_period_s = 1.0 / 30;
+/// What a colour image waits at least, and beyond what its forerunners did, as long as nothing else
+/// is asked for.
+constexpr double least_wait_s = 0.06;
+constexpr double more_wait_s = 0.02;
 
 /// The median time from one image to the next.
 double period_s(const ImageHistory<Bgr>& history) {
@@ -26,13 +31,41 @@ double period_s(const ImageHistory<Bgr>& history) {
 }  // namespace
 
 FrameAssembler::FrameAssembler(CameraInbox& color, std::vector<CameraInbox*> rgbd)
-    : color_(color),
-      rgbd_(std::move(rgbd)),
-      last_stamp_s_(-std::numeric_limits<double>::infinity()) {}
+    : color_(color), rgbd_(std::move(rgbd)), last_stamp_s_(always_s) {}
 
 double FrameAssembler::sync_tolerance_s(const Settings& settings) {
   if (settings.sync_tolerance_s > 0) return settings.sync_tolerance_s;
   return color_.with_images([](const auto& color, const auto&) { return period_s(color) / 2; });
+}
+
+double FrameAssembler::sync_wait_s(const Settings& settings) {
+  if (settings.sync_wait_s > 0) return settings.sync_wait_s;
+  const double tolerance_s = sync_tolerance_s(settings);
+  Arrivals arrivals;
+  const std::size_t count = find_arrivals(always_s, arrivals);
+  double latest_s = 0;
+  for (CameraInbox* camera : rgbd_) {
+    camera->with_images([&](const auto& color, const auto& depth) {
+      for (std::size_t i = 0; i < count; ++i) {
+        const auto* color_image = color.nearest(arrivals[i].stamp_s, tolerance_s);
+        const auto* depth_image = depth.nearest(arrivals[i].stamp_s, tolerance_s);
+        if (!color_image || !depth_image) continue;
+        const double complete_s = std::max(color_image->arrival_s, depth_image->arrival_s);
+        latest_s = std::max(latest_s, complete_s - arrivals[i].arrival_s);
+      }
+    });
+  }
+  return std::max(least_wait_s, latest_s + more_wait_s);
+}
+
+std::size_t FrameAssembler::find_arrivals(double after_s, Arrivals& arrivals) {
+  return color_.with_images([&](const auto& color, const auto&) {
+    std::size_t found = 0;
+    for (; found < color.size() && color.newest(found).stamp_s > after_s; ++found) {
+      arrivals[found] = {color.newest(found).stamp_s, color.newest(found).arrival_s};
+    }
+    return found;
+  });
 }
 
 bool FrameAssembler::is_complete(double stamp_s, double tolerance_s,
@@ -48,38 +81,25 @@ bool FrameAssembler::is_complete(double stamp_s, double tolerance_s,
 }
 
 std::optional<double> FrameAssembler::next_deadline_s(const Settings& settings) {
-  return color_.with_images([&](const auto& color, const auto&) {
-    std::optional<double> deadline_s;
-    for (std::size_t age = 0; age < color.size(); ++age) {
-      if (color.newest(age).stamp_s <= last_stamp_s_) break;
-      deadline_s = color.newest(age).arrival_s + settings.sync_wait_s;
-    }
-    return deadline_s;
-  });
+  Arrivals arrivals;
+  const std::size_t count = find_arrivals(last_stamp_s_, arrivals);
+  if (count == 0) return std::nullopt;
+  return arrivals[count - 1].arrival_s + sync_wait_s(settings);
 }
 
 std::optional<std::size_t> FrameAssembler::assemble(
     const Settings& settings, double now_s, const std::function<bool(std::size_t)>& is_expected,
     FrameSet& frame) {
-  struct Candidate {
-    double stamp_s, arrival_s;
-  };
   const double tolerance_s = sync_tolerance_s(settings);
-  std::array<Candidate, ImageHistory<Bgr>::capacity> candidates;  // the newest first
-  const std::size_t count = color_.with_images([&](const auto& color, const auto&) {
-    std::size_t found = 0;
-    // After a reset of the camera's clock all images are new.
-    if (color.size() > 0 && color.newest().stamp_s < last_stamp_s_) {
-      last_stamp_s_ = -std::numeric_limits<double>::infinity();
-    }
-    while (found < color.size() && color.newest(found).stamp_s > last_stamp_s_) {
-      candidates[found] = {color.newest(found).stamp_s, color.newest(found).arrival_s};
-      ++found;
-    }
-    return found;
+  const double wait_s = sync_wait_s(settings);
+  const bool was_reset = color_.with_images([&](const auto& color, const auto&) {
+    return color.size() > 0 && color.newest().stamp_s < last_stamp_s_;
   });
+  if (was_reset) last_stamp_s_ = always_s;
+  Arrivals candidates;
+  const std::size_t count = find_arrivals(last_stamp_s_, candidates);
   for (std::size_t i = 0; i < count; ++i) {
-    const bool waited_long = now_s >= candidates[i].arrival_s + settings.sync_wait_s;
+    const bool waited_long = now_s >= candidates[i].arrival_s + wait_s;
     if (!waited_long && !is_complete(candidates[i].stamp_s, tolerance_s, is_expected)) continue;
     const bool taken = color_.with_images([&](auto& color, const auto&) {
       for (std::size_t age = 0; age < color.size(); ++age) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -18,7 +19,7 @@ class FrameAssembler {
  public:
   struct Settings {
     double sync_tolerance_s = 0;  ///< 0: half the colour camera's frame period
-    double sync_wait_s = 0.06;
+    double sync_wait_s = 0;       ///< 0: as long as the RGB-D cameras' last images made it wait
   };
 
   /// color: the user's camera's inbox; rgbd: one for each RGB-D camera. They must outlive this.
@@ -36,8 +37,16 @@ class FrameAssembler {
   std::optional<double> next_deadline_s(const Settings& settings);
 
   double sync_tolerance_s(const Settings& settings);
+  double sync_wait_s(const Settings& settings);
 
  private:
+  struct Arrival {
+    double stamp_s, arrival_s;
+  };
+  using Arrivals = std::array<Arrival, ImageHistory<Bgr>::capacity>;
+
+  /// The colour images later than `after_s`, the newest first; returns their number.
+  std::size_t find_arrivals(double after_s, Arrivals& arrivals);
   bool is_complete(double stamp_s, double tolerance_s,
                    const std::function<bool(std::size_t)>& is_expected);
   void fill_rgbd(std::size_t camera, double tolerance_s, FrameSet& frame);

@@ -93,6 +93,24 @@ TEST_F(Assembler, GoesOnWithoutACameraThatIsLate) {
   EXPECT_TRUE(frame_.rgbd[1].available());
 }
 
+TEST_F(Assembler, WaitsAsLongAsTheLastImagesMadeItWait) {
+  settings_.sync_wait_s = 0;
+  expected_ = {true, false};
+  EXPECT_DOUBLE_EQ(assembler_->sync_wait_s(settings_), 0.06);
+  constexpr double delay_s = 0.1;  // of the RGB-D camera, beyond the colour camera's
+  for (int i = 1; i <= 6; ++i) {
+    put_color(i);
+    if (i <= 3) continue;
+    for (const Sensor sensor : {Sensor::color, Sensor::depth}) {
+      put(*inboxes_[0], sensor, (i - 3) * period_s, (i - 3) * period_s + 0.005 + delay_s);
+    }
+  }
+  EXPECT_NEAR(assembler_->sync_wait_s(settings_), delay_s + 0.02, 1e-9);
+  EXPECT_THAT(assemble(6 * period_s + 0.006), Optional(2U));
+  EXPECT_TRUE(frame_.rgbd[0].available());
+  EXPECT_EQ(assemble(4 * period_s + 0.005 + delay_s), std::nullopt);
+}
+
 TEST_F(Assembler, DoesNotWaitForACameraThatIsGone) {
   expected_ = {false, true};
   put_color(1);

@@ -106,11 +106,13 @@ struct LiveSession::Implementation {
       const std::size_t seen = arrived.count();
       try {
         if (!make_frame(*frame)) {
-          if (!assembler.next_deadline_s(sync_settings())) nothing_new_at = seen;
-          arrived.wait(seen, waiting_time());
+          const auto deadline_s = assembler.next_deadline_s(sync_settings());
+          if (!deadline_s) nothing_new_at = seen;
+          arrived.wait(seen, waiting_time(deadline_s));
           continue;
         }
-        arena.execute([&] { process(*frame); });
+        apply_options();
+        arena.execute([&] { pipeline.process(frame->input, frame->result); });
         publish(frame);
         frame = pool.take();
       } catch (const std::exception& error) {
@@ -126,10 +128,9 @@ struct LiveSession::Implementation {
     return {options.sync_tolerance_s, live_options.sync_wait_s};
   }
 
-  std::chrono::duration<double> waiting_time() {
+  static std::chrono::duration<double> waiting_time(std::optional<double> deadline_s) {
     constexpr double longest_s = 0.1;
     constexpr double shortest_s = 0.001;
-    const auto deadline_s = assembler.next_deadline_s(sync_settings());
     const double left_s = deadline_s ? *deadline_s - monotonic_now_s() : longest_s;
     return std::chrono::duration<double>(std::clamp(left_s, shortest_s, longest_s));
   }
@@ -147,19 +148,18 @@ struct LiveSession::Implementation {
     return true;
   }
 
-  void process(LiveFrame& frame) {
-    {
-      const std::lock_guard lock(mutex);
-      try {
-        pipeline.set_options(QualityLadder::simplified(options, ladder.level()));
-      } catch (const Error& error) {  // a backend that does not work here
-        settings_problem = error.what();
-        options = last_good_options;
-        pipeline.set_options(QualityLadder::simplified(options, ladder.level()));
-      }
-      last_good_options = options;
+  void apply_options() {
+    const std::lock_guard lock(mutex);
+    if (!options_changed) return;
+    options_changed = false;
+    try {
+      pipeline.set_options(QualityLadder::simplified(options, ladder.level()));
+    } catch (const Error& error) {  // a backend that does not work here
+      settings_problem = error.what();
+      options = last_good_options;
+      pipeline.set_options(QualityLadder::simplified(options, ladder.level()));
     }
-    pipeline.process(frame.input, frame.result);
+    last_good_options = options;
   }
 
   void publish(const std::shared_ptr<LiveFrame>& frame) {
@@ -171,7 +171,9 @@ struct LiveSession::Implementation {
       latest = frame;
       latencies_ms.add(frame->latency_ms);
       publish_times_s.add(frame->published_s);
-      ladder.next_level(sum(frame->result.report.milliseconds), live_options.budget_ms);
+      const int level = ladder.level();
+      const double frame_ms = sum(frame->result.report.milliseconds);
+      if (ladder.next_level(frame_ms, live_options.budget_ms) != level) options_changed = true;
       failure.clear();
     }
     const std::lock_guard lock(listeners_mutex);
@@ -205,6 +207,7 @@ struct LiveSession::Implementation {
   std::size_t skipped = 0, failed = 0;
   std::string failure, settings_problem;
   Options last_good_options;
+  bool options_changed = true;
 
   Pipeline pipeline;
   FramePool pool;
@@ -295,6 +298,7 @@ void LiveSession::set_options(const Options& options) {
   check(options, implementation_->scene);
   const std::lock_guard lock(implementation_->mutex);
   implementation_->options = options;
+  implementation_->options_changed = true;
   implementation_->settings_problem.clear();
 }
 LiveOptions LiveSession::live_options() const {
