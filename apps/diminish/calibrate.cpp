@@ -9,6 +9,7 @@ void add_calibrate(CLI::App& program, int& exit_code) {
       program.add_subcommand("calibrate", "Finds out about the cameras, and fills rig.yaml");
   calibrate->require_subcommand(1);
   add_calibrate_intrinsics(*calibrate, exit_code);
+  add_calibrate_factory(*calibrate, exit_code);
   add_calibrate_rig(*calibrate, exit_code);
 }
 

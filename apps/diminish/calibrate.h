@@ -5,6 +5,7 @@
 namespace diminish {
 
 void add_calibrate_intrinsics(CLI::App& calibrate, int& exit_code);
+void add_calibrate_factory(CLI::App& calibrate, int& exit_code);
 void add_calibrate_rig(CLI::App& calibrate, int& exit_code);
 
 }  // namespace diminish

@@ -10,8 +10,10 @@
 #include "core/mat.h"
 #include "diminish/calibration.h"
 #include "diminish/error.h"
+#include "live_setup.h"
 #include "setup/board_images.h"
 #include "setup/coverage_picture.h"
+#include "setup/live_board_images.h"
 #include "setup/rig_file.h"
 #include "sink/partial_file.h"
 
@@ -23,6 +25,8 @@ constexpr int done_with_warnings = 3;
 struct CalibrateIntrinsicsCommand {
   std::vector<std::filesystem::path> images;
   std::filesystem::path recording;
+  std::string live;
+  double seconds = 120;
   std::filesystem::path out;
   std::filesystem::path plot;
   std::string camera = "color";
@@ -30,44 +34,66 @@ struct CalibrateIntrinsicsCommand {
   std::size_t frames = 300;
 
   int execute() const;
-  BoardImages open() const;
+  std::unique_ptr<BoardImages> open() const;
+  ViewCollection collect(BoardImages& images, const BoardDetector& detector) const;
 };
 
-BoardImages CalibrateIntrinsicsCommand::open() const {
-  if (images.empty() == recording.empty()) {
-    throw Error("expected images of the board, or --recording with a recording of it");
+std::unique_ptr<BoardImages> CalibrateIntrinsicsCommand::open() const {
+  const int sources =
+      (images.empty() ? 0 : 1) + (recording.empty() ? 0 : 1) + (live.empty() ? 0 : 1);
+  if (sources != 1) {
+    throw Error(
+        "expected images of the board, or --recording with a recording of it, or --live "
+        "with a camera");
   }
-  return images.empty() ? BoardImages(recording, camera, frames) : BoardImages(images);
+  if (!live.empty()) return std::make_unique<LiveBoardImages>(live, seconds);
+  if (!images.empty()) return std::make_unique<StoredBoardImages>(images);
+  return std::make_unique<StoredBoardImages>(recording, camera, frames);
 }
 
-/// Collects views, saying of each image what it was good for.
-ViewCollection collect(BoardImages& images, const BoardDetector& detector) {
-  std::optional<ViewCollection> collection;
-  Image<Bgr> image;
-  for (std::size_t i = 0; i < images.size(); ++i) {
-    const std::string name = images.name(i);
-    try {
-      images.read(i, image);
-    } catch (const Error& error) {
-      fmt::print("{}: not used: {}\n", name, error.what());
-      continue;
-    }
-    if (!collection) collection.emplace(images.width(), images.height());
-    auto view = detector.detect(image, name);
-    if (!view) {
-      fmt::print("{}: not used: the board was not found\n", name);
-      continue;
-    }
-    const std::size_t corners = view->ids.size();
-    const std::string reason = collection->add(std::move(*view));
-    if (!reason.empty()) {
-      fmt::print("{}: not used: {}\n", name, reason);
-      continue;
-    }
-    fmt::print("{}: {} corners; so far {} views, coverage {:.0f} %, {} of 5 tilts\n", name, corners,
-               collection->views().size(), 100 * collection->coverage(), collection->tilts());
+/// Finds the board in an image and keeps the view if it helps; says what the image was good for.
+std::string use(BoardImages& images, const BoardDetector& detector, Image<Bgr>& image,
+                std::optional<ViewCollection>& collection) {
+  try {
+    images.read(image);
+  } catch (const Error& error) {
+    return fmt::format("not used: {}", error.what());
   }
-  if (!collection) throw Error(images.name(0) + ": none of the images can be read");
+  if (!collection) collection.emplace(image.width(), image.height());
+  if (image.width() != collection->width() || image.height() != collection->height()) {
+    return fmt::format("not used: expected {}x{} pixels as the first image has, got {}x{}",
+                       collection->width(), collection->height(), image.width(), image.height());
+  }
+  auto view = detector.detect(image, images.name());
+  if (!view) return "not used: the board was not found";
+  const std::size_t corners = view->ids.size();
+  const std::string reason = collection->add(std::move(*view));
+  if (!reason.empty()) return "not used: " + reason;
+  return fmt::format("{} corners; so far {} views, coverage {:.0f} %, {} of 5 tilts", corners,
+                     collection->views().size(), 100 * collection->coverage(), collection->tilts());
+}
+
+/// Collects views until there are no more images; live ones until there are enough.
+ViewCollection CalibrateIntrinsicsCommand::collect(BoardImages& source,
+                                                   const BoardDetector& detector) const {
+  std::optional<ViewCollection> collection;
+  std::string first;
+  std::string last_use;
+  for (Image<Bgr> image; !stop_requested() && source.next();) {
+    const std::string name = source.name();
+    if (first.empty()) first = name;
+    const std::string its_use = use(source, detector, image, collection);
+    // Thirty times a second the same is too much to read.
+    if (live.empty() || its_use != last_use) fmt::print("{}: {}\n", name, its_use);
+    std::fflush(stdout);
+    last_use = its_use;
+    if (!live.empty() && collection && collection->is_ample()) {
+      fmt::print("These are enough\n");
+      break;
+    }
+  }
+  if (first.empty()) throw Error(live + ": no image came");
+  if (!collection) throw Error(first + ": none of the images can be read");
   return std::move(*collection);
 }
 
@@ -102,8 +128,9 @@ int CalibrateIntrinsicsCommand::execute() const {
   expect_camera_name(camera);
   const BoardDetector detector(parse_board(board));
   RigFile rig(out);
-  BoardImages source = open();
-  const ViewCollection views = collect(source, detector);
+  stop_on_signals();
+  const std::unique_ptr<BoardImages> source = open();
+  const ViewCollection views = collect(*source, detector);
   const IntrinsicsCalibration result = calibrate_intrinsics(views);
   print_result(result);
   if (!plot.empty()) write_png(plot, as_mat(coverage_picture(views, result)));
@@ -127,6 +154,12 @@ void add_calibrate_intrinsics(CLI::App& calibrate, int& exit_code) {
       ->required();
   sub->add_option("--recording", command->recording,
                   "Instead of images: a recording of the board, calibrated or not");
+  sub->add_option("--live", command->live,
+                  "Instead of images: a live camera (docs/live.md); ends when there are enough")
+      ->type_name("URI");
+  sub->add_option("--seconds", command->seconds, "The live camera is watched at most so long")
+      ->capture_default_str()
+      ->check(CLI::Range(1.0, 86400.0));
   sub->add_option("--camera", command->camera,
                   "Which camera: color, or an RGB-D camera's sensor: rgbd0_color, rgbd0_depth "
                   "(infrared images)")

@@ -58,6 +58,8 @@ class ViewCollection {
   /// How many of the five are there: the board faces the camera, or leans left, right, forward,
   /// back by 15 degrees and more. Leaning boards tell the focal length from the distance.
   int tilts() const;
+  /// Whether more views would hardly add anything: twenty, of all tilts, nearly everywhere.
+  bool is_ample() const;
 
  private:
   int width_, height_;

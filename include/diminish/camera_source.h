@@ -59,7 +59,7 @@ CameraUri parse_camera_uri(const std::string& text);
 /// For whom a camera is opened.
 struct CameraRequest {
   std::string name;  ///< "color" for the user's view, else an RGB-D camera's name in the rig
-  const Rig* rig = nullptr;
+  const Rig* rig = nullptr;  ///< null: not known yet, the driver chooses the images' sizes
   /// When the live session began: what is replayed begins here, on all cameras.
   double epoch_s = 0;
 };

@@ -56,8 +56,9 @@ class Library {
 /// own: the image that was on its way shortest says how far the two are apart.
 class SensorStream {
  public:
+  /// sensor: whose size the images must have; null: any.
   SensorStream(const CameraUri& uri, openni::Device& device, openni::SensorType type,
-               const Intrinsics& sensor) {
+               const Intrinsics* sensor) {
     const char* name = type == openni::SENSOR_DEPTH ? "depth" : "colour";
     if (stream_.create(device, type) != openni::STATUS_OK) {
       uri.fail(fmt::format("no {} sensor: {}", name, last_error()));
@@ -116,24 +117,26 @@ class SensorStream {
   }
 
  private:
-  void choose_mode(const CameraUri& uri, openni::SensorType type, const Intrinsics& sensor,
+  void choose_mode(const CameraUri& uri, openni::SensorType type, const Intrinsics* sensor,
                    const char* name) {
+    const auto is_usable = [&](const openni::VideoMode& mode) {
+      return type == openni::SENSOR_DEPTH || mode.getPixelFormat() == openni::PIXEL_FORMAT_RGB888;
+    };
+    if (!sensor && is_usable(stream_.getVideoMode())) return;
     const auto& modes = stream_.getSensorInfo().getSupportedVideoModes();
     std::string sizes;
     for (int i = 0; i < modes.getSize(); ++i) {
       const openni::VideoMode& mode = modes[i];
-      const bool is_usable =
-          type == openni::SENSOR_DEPTH || mode.getPixelFormat() == openni::PIXEL_FORMAT_RGB888;
       sizes += fmt::format(" {}x{}", mode.getResolutionX(), mode.getResolutionY());
-      if (!is_usable || mode.getResolutionX() != sensor.width ||
-          mode.getResolutionY() != sensor.height) {
-        continue;
-      }
+      const bool has_size = !sensor || (mode.getResolutionX() == sensor->width &&
+                                        mode.getResolutionY() == sensor->height);
+      if (!is_usable(mode) || !has_size) continue;
       // A file's only mode cannot be set.
       if (stream_.setVideoMode(mode) == openni::STATUS_OK || modes.getSize() == 1) return;
     }
-    uri.fail(fmt::format("the {} sensor has no mode of the rig's {}x{}, only{}", name, sensor.width,
-                         sensor.height, sizes));
+    const std::string wanted =
+        sensor ? fmt::format("of the rig's {}x{}", sensor->width, sensor->height) : "in RGB";
+    uri.fail(fmt::format("the {} sensor has no mode {}, only{}", name, wanted, sizes));
   }
 
   template <class DriverPixel, class Pixel, class Convert>
@@ -158,14 +161,14 @@ class OpenNi2Camera : public CameraSource {
  public:
   OpenNi2Camera(const CameraUri& uri, const CameraRequest& request) {
     uri.expect_parameters({"color"});
-    const RgbdCamera* camera = find_rgbd_camera(*request.rig, request.name);
-    if (!camera) uri.fail("expected to be used for an RGB-D camera");
+    const RgbdCamera* camera = request.rig ? find_rgbd_camera(*request.rig, request.name) : nullptr;
+    if (request.rig && !camera) uri.fail("expected to be used for an RGB-D camera");
     const char* device_uri = uri.target.empty() ? openni::ANY_DEVICE : uri.target.c_str();
     if (device_.open(device_uri) != openni::STATUS_OK) uri.fail(last_error());
-    depth_.emplace(uri, device_, openni::SENSOR_DEPTH, camera->depth);
+    depth_.emplace(uri, device_, openni::SENSOR_DEPTH, camera ? &camera->depth : nullptr);
     // "color=no": another device has the colour sensor.
     if (uri.text_of("color", "yes") != "no") {
-      color_.emplace(uri, device_, openni::SENSOR_COLOR, camera->color);
+      color_.emplace(uri, device_, openni::SENSOR_COLOR, camera ? &camera->color : nullptr);
     }
   }
   ~OpenNi2Camera() override {

@@ -5,9 +5,12 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "core/text.h"
 #include "diminish/camera_source.h"
+#include "diminish/config.h"
 #include "diminish/frame_source.h"
 #include "expect_error.h"
+#include "run_program.h"
 
 namespace diminish {
 namespace {
@@ -69,6 +72,29 @@ TEST_F(OpenNi2Camera, KnowsTheFactoryIntrinsics) {
   // The test driver says 1 and 0.8 radians.
   EXPECT_NEAR(2 * std::atan(depth.width / (2 * intrinsics->fx)), 1.0, 1e-5);
   EXPECT_NEAR(2 * std::atan(depth.height / (2 * intrinsics->fy)), 0.8, 1e-5);
+}
+
+TEST_F(OpenNi2Camera, FactoryIntrinsicsAreWrittenToTheRig) {
+  const TemporaryFolder made;
+  made.write("rig.yaml", "# my rig\n");
+  const std::string file = (made.path() / "rig.yaml").string();
+  const auto outcome = Program::run({"calibrate", "factory", "openni2:", "--out", file});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Config camera = Config::load(file).at("rgbd").items().at(0);
+  EXPECT_EQ(camera.at("name").text(), "rgbd0");
+  const RgbdCamera& truth = recording_.rig.rgbd[0];
+  for (const auto& [sensor, size] :
+       {std::pair{"color", truth.color}, std::pair{"depth", truth.depth}}) {
+    EXPECT_EQ(camera.at(sensor).at("width").integer(1, 10000), size.width);
+    EXPECT_EQ(camera.at(sensor).at("height").integer(1, 10000), size.height);
+    const auto matrix = camera.at(sensor).at("camera_matrix").numbers(4);
+    EXPECT_NEAR(2 * std::atan(size.width / (2 * matrix[0])), 1.0, 1e-4);
+  }
+  EXPECT_THAT(read_text_file(file, 10000), HasSubstr("# my rig\n"));
+
+  const auto none = Program::run({"calibrate", "factory", "clock:openni2:", "--out", file});
+  EXPECT_EQ(none.exit_code, 1);
+  EXPECT_THAT(none.err, HasSubstr("clock:openni2:: its driver does not know"));
 }
 
 TEST_F(OpenNi2Camera, ComplaintsSayWhatIsMissing) {

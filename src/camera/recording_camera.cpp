@@ -7,6 +7,7 @@
 
 #include "diminish/camera_source.h"
 #include "diminish/error.h"
+#include "source/find_camera.h"
 #include "source/image_stream.h"
 
 namespace diminish {
@@ -112,9 +113,8 @@ class RecordingCamera : public CameraSource {
       color_.emplace(folder / "color.txt", rig.color, timeline, loop);
       return;
     }
-    const auto camera = std::find_if(rig.rgbd.begin(), rig.rgbd.end(),
-                                     [&](const RgbdCamera& c) { return c.name == name; });
-    if (camera == rig.rgbd.end()) uri.fail("the recording has no camera '" + name + "'");
+    const RgbdCamera* camera = find_rgbd_camera(rig, name);
+    if (!camera) uri.fail("the recording has no camera '" + name + "'");
     color_.emplace(folder / (name + "_color.txt"), camera->color, timeline, loop,
                    EmptyList::is_no_images);
     depth_.emplace(folder / (name + "_depth.txt"), camera->depth, timeline, loop,

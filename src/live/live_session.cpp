@@ -15,6 +15,7 @@
 #include "live/frame_pool.h"
 #include "live/quality_ladder.h"
 #include "sink/distribution.h"
+#include "source/find_camera.h"
 
 namespace diminish {
 namespace {
@@ -30,10 +31,7 @@ void check_cameras(const Rig& rig, const std::vector<LiveCamera>& cameras) {
   };
   if (!is_used("color")) throw Error("color: expected a camera for the user's view");
   for (const LiveCamera& camera : cameras) {
-    const bool is_known = camera.name == "color" || std::any_of(rig.rgbd.begin(), rig.rgbd.end(),
-                                                                [&](const RgbdCamera& rgbd) {
-                                                                  return rgbd.name == camera.name;
-                                                                });
+    const bool is_known = camera.name == "color" || find_rgbd_camera(rig, camera.name);
     if (!is_known) throw Error(camera.name + ": the rig has no camera of this name");
     const CameraUri uri = parse_camera_uri(camera.uri);
     if (!Registry<CameraSource>::contains(uri.scheme)) {

@@ -1,7 +1,5 @@
 #include "setup/board_images.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <system_error>
 
@@ -23,7 +21,7 @@ bool is_image(const std::filesystem::path& file) {
 
 }  // namespace
 
-BoardImages::BoardImages(const std::vector<std::filesystem::path>& files_and_folders) {
+StoredBoardImages::StoredBoardImages(const std::vector<std::filesystem::path>& files_and_folders) {
   for (const std::filesystem::path& path : files_and_folders) {
     std::error_code ignored;
     if (!std::filesystem::is_directory(path, ignored)) {
@@ -41,34 +39,22 @@ BoardImages::BoardImages(const std::vector<std::filesystem::path>& files_and_fol
   if (entries_.empty()) throw Error("expected images of the board, or --recording");
 }
 
-BoardImages::BoardImages(const std::filesystem::path& recording, const std::string& camera,
-                         std::size_t most)
+StoredBoardImages::StoredBoardImages(const std::filesystem::path& recording,
+                                     const std::string& camera, std::size_t most)
     : folder_(recording) {
   const std::vector<StreamEntry> all = load_stream_list(recording / (camera + ".txt"));
   const std::size_t count = std::min(most, all.size());
   for (std::size_t i = 0; i < count; ++i) entries_.push_back(all[i * all.size() / count]);
 }
 
-std::string BoardImages::name(std::size_t index) const {
-  return describe(entries_[index]);
-}
-
-void BoardImages::read(std::size_t index, Image<Bgr>& image) {
-  const StreamEntry& entry = entries_[index];
+void StoredBoardImages::read(Image<Bgr>& image) {
+  const StreamEntry& entry = current();
   const std::filesystem::path file = folder_ / entry.file;
   if (entry.frame) {
     if (!video_ || video_->file() != file) video_.emplace(file, VideoReader::Content::pictures);
     copy_from(video_->read(*entry.frame), image);
   } else {
     copy_from(decode<Bgr>(read_bytes(file)), image);
-  }
-  if (width_ == 0) {
-    width_ = image.width();
-    height_ = image.height();
-  }
-  if (image.width() != width_ || image.height() != height_) {
-    throw Error(fmt::format("expected {}x{} pixels as the first image has, got {}x{}", width_,
-                            height_, image.width(), image.height()));
   }
 }
 

@@ -12,28 +12,38 @@
 
 namespace diminish {
 
-/// Images of one camera, from files, folders, or a stream of a recording, which need not be
-/// calibrated yet. All must have the first one's size.
+/// Images in which a board is looked for, all of one camera, which need not be calibrated yet.
 class BoardImages {
  public:
-  /// Folders stand for the images in them, by name. Throws Error if there are none.
-  explicit BoardImages(const std::vector<std::filesystem::path>& files_and_folders);
-  /// camera: the stream's name: "color", "rgbd0_color". At most `most` images, evenly spread.
-  BoardImages(const std::filesystem::path& recording, const std::string& camera, std::size_t most);
+  virtual ~BoardImages() = default;
 
-  std::size_t size() const { return entries_.size(); }
-  std::string name(std::size_t index) const;
+  /// Goes to the next image; false: there is none any more.
+  virtual bool next() = 0;
+  virtual std::string name() const = 0;
   /// Throws Error that says what is wrong with the image, without its name.
-  void read(std::size_t index, Image<Bgr>& image);
+  virtual void read(Image<Bgr>& image) = 0;
+};
 
-  int width() const { return width_; }  ///< 0 before the first image was read
-  int height() const { return height_; }
+/// Images from files, folders, or a stream of a recording.
+class StoredBoardImages : public BoardImages {
+ public:
+  /// Folders stand for the images in them, by name. Throws Error if there are none.
+  explicit StoredBoardImages(const std::vector<std::filesystem::path>& files_and_folders);
+  /// camera: the stream's name: "color", "rgbd0_color". At most `most` images, evenly spread.
+  StoredBoardImages(const std::filesystem::path& recording, const std::string& camera,
+                    std::size_t most);
+
+  bool next() override { return ++index_ < static_cast<std::ptrdiff_t>(entries_.size()); }
+  std::string name() const override { return describe(current()); }
+  void read(Image<Bgr>& image) override;
 
  private:
+  const StreamEntry& current() const { return entries_[static_cast<std::size_t>(index_)]; }
+
   std::filesystem::path folder_;
   std::vector<StreamEntry> entries_;
   std::optional<VideoReader> video_;
-  int width_ = 0, height_ = 0;
+  std::ptrdiff_t index_ = -1;
 };
 
 }  // namespace diminish

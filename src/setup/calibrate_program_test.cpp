@@ -88,6 +88,30 @@ TEST_F(CalibrateProgram, TakesARecordingAndTheSameImagesGiveTheSameBytes) {
   EXPECT_EQ(read_text_file(path("a.yaml"), 1 << 20), read_text_file(path("b.yaml"), 1 << 20));
 }
 
+TEST_F(CalibrateProgram, WatchesALiveCamera) {
+  // A camera that shows the nine pictures again and again, in real time.
+  folder.write("rig.yaml", R"(
+color: {width: 480, height: 360, camera_matrix: [400, 400, 240, 180], distortion: [0, 0, 0, 0, 0]}
+rgbd:
+  - name: rgbd0
+    color: {width: 8, height: 8, camera_matrix: [8, 8, 4, 4], distortion: [0, 0, 0, 0, 0]}
+    depth: {width: 8, height: 8, camera_matrix: [8, 8, 4, 4], distortion: [0, 0, 0, 0, 0]}
+    depth_unit_m: 0.001
+    color_from_depth: {rotation: [1, 0, 0, 0, 1, 0, 0, 0, 1], translation: [0, 0, 0]}
+)");
+  const auto outcome =
+      Program::run({"calibrate", "intrinsics", "--live",
+                    "recording:" + folder.path().string() + "?loop&rate=3&camera=color", "--board",
+                    board_text, "--seconds", "9", "--out", path("live.yaml")});
+  EXPECT_TRUE(outcome.exit_code == 0 || outcome.exit_code == 3) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("so far 9 views"));
+  EXPECT_THAT(outcome.out, HasSubstr(" s: not used: shows the board as "));
+  const auto matrix =
+      Config::load(folder.path() / "live.yaml").at("color").at("camera_matrix").numbers(4);
+  EXPECT_NEAR(matrix[0], truth.fx, 0.015 * truth.fx);
+  EXPECT_NEAR(matrix[1], truth.fy, 0.015 * truth.fy);
+}
+
 TEST_F(CalibrateProgram, ErrorsAreOneLineAndChangeNothing) {
   folder.write("rig.yaml", "# mine\n");
   const auto error = [&](std::vector<std::string> more) {
@@ -105,6 +129,10 @@ TEST_F(CalibrateProgram, ErrorsAreOneLineAndChangeNothing) {
   EXPECT_THAT(error({"--board", board_text, path("color/grey.png")}), HasSubstr("got 0"));
   EXPECT_THAT(error({"--board", board_text, path("color/broken.png")}), HasSubstr("broken.png"));
   EXPECT_THAT(error({"--board", board_text, "--recording", path("color")}), HasSubstr("color.txt"));
+  EXPECT_THAT(error({"--board", board_text, "--live", "v4l2:/dev/none"}),
+              HasSubstr("v4l2:/dev/none: there is no such device"));
+  EXPECT_THAT(error({"--board", board_text, path("color"), "--live", "v4l2:/dev/none"}),
+              HasSubstr("--live"));
   EXPECT_EQ(read_text_file(path("rig.yaml"), 1 << 20), "# mine\n");
 }
 

@@ -13,8 +13,11 @@ namespace {
 TEST(CommandLineDocs, DescribeTheFlagsOfSettingUp) {
   const std::string docs =
       read_text_file(std::filesystem::path(DIMINISH_DOCS_DIR) / "command-line.md", 1 << 20);
-  const std::vector<std::vector<std::string>> commands = {
-      {"markers"}, {"calibrate", "intrinsics"}, {"calibrate", "rig"}, {"check"}};
+  const std::vector<std::vector<std::string>> commands = {{"markers"},
+                                                          {"calibrate", "intrinsics"},
+                                                          {"calibrate", "factory"},
+                                                          {"calibrate", "rig"},
+                                                          {"check"}};
   for (std::vector<std::string> command : commands) {
     std::string title = "\n## " + command[0];
     if (command.size() > 1) title += " " + command[1];

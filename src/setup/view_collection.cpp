@@ -95,4 +95,8 @@ int ViewCollection::tilts() const {
       std::count_if(tilt_counts_.begin(), tilt_counts_.end(), [](int n) { return n > 0; }));
 }
 
+bool ViewCollection::is_ample() const {
+  return views_.size() >= 20 && coverage() >= 0.85 && tilts() == 5;
+}
+
 }  // namespace diminish

@@ -1,0 +1,58 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "calibrate.h"
+#include "diminish/camera_source.h"
+#include "diminish/error.h"
+#include "setup/rig_file.h"
+
+namespace diminish {
+namespace {
+
+struct CalibrateFactoryCommand {
+  std::string uri;
+  std::string camera = "rgbd0";
+  std::filesystem::path out;
+
+  int execute() const;
+};
+
+int CalibrateFactoryCommand::execute() const {
+  RigFile rig(out);
+  const auto source = open_camera(uri, {.name = camera, .rig = nullptr});
+  int known = 0;
+  for (const auto& [sensor, kind] : {std::pair{Sensor::color, "color"}, {Sensor::depth, "depth"}}) {
+    const auto intrinsics = source->intrinsics(sensor);
+    const bool is_users_view = camera == "color";
+    if (!intrinsics || (is_users_view && sensor == Sensor::depth)) continue;
+    const std::string name = is_users_view ? camera : camera + "_" + kind;
+    rig.set_intrinsics(name, *intrinsics);
+    fmt::print("{}: {}x{} pixels, fx {:.2f}, fy {:.2f}, cx {:.2f}, cy {:.2f}\n", name,
+               intrinsics->width, intrinsics->height, intrinsics->fx, intrinsics->fy,
+               intrinsics->cx, intrinsics->cy);
+    ++known;
+  }
+  if (known == 0) throw Error(uri + ": its driver does not know the camera's intrinsics");
+  rig.write();
+  fmt::print("Written to {}\n", out.string());
+  return 0;
+}
+
+}  // namespace
+
+void add_calibrate_factory(CLI::App& calibrate, int& exit_code) {
+  auto command = std::make_shared<CalibrateFactoryCommand>();
+  CLI::App* sub = calibrate.add_subcommand(
+      "factory", "Intrinsics that a camera's driver knows; calibrated ones are better");
+  sub->add_option("uri", command->uri, "The camera, such as openni2: (docs/live.md)")->required();
+  sub->add_option("--camera", command->camera, "Its name in the rig")->capture_default_str();
+  sub->add_option("--out", command->out,
+                  "The rig.yaml whose blocks of this camera are written; the rest of it stays")
+      ->required();
+  sub->callback([command, &exit_code] { exit_code = command->execute(); });
+}
+
+}  // namespace diminish
