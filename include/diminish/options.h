@@ -11,12 +11,15 @@ namespace diminish {
 struct Options {
   double sync_tolerance_s = 0;
   int mask_margin_px = 5;
+  double margin_deviations = 2;
+  int soft_rim_px = 2;
   int rgbd_mask_margin_px = 6;
   double blob_spread = 1.0;
   bool refine_poses = true;
   bool remove_flying = true;
   bool remove_hidden = true;
   bool smooth_depth = true;
+  bool snap_edges = true;
   bool lift_shadows = true;
   bool remove_shadows = false;
   double discontinuity_threshold_m = 0.05;
@@ -53,6 +56,15 @@ void for_each_option(AnyOptions& options, Visit&& visit) {
   visit(OptionInfo{"mask_margin_px", "pixels", "Growth of the objects' masks in the colour image",
                    0, 200},
         options.mask_margin_px);
+  visit(OptionInfo{"margin_deviations", "standard deviations",
+                   "Further growth: of what is known of the mask's place, by its marker's pose", 0,
+                   100},
+        options.margin_deviations);
+  visit(OptionInfo{"soft_rim_px", "pixels",
+                   "Width, within the margin, of the passage from the camera's picture to the "
+                   "background; at most half the margin",
+                   0, 100},
+        options.soft_rim_px);
   visit(OptionInfo{"rgbd_mask_margin_px", "pixels",
                    "Growth of the objects' masks in the RGB-D cameras' colour images; in their "
                    "depth images it is scaled to the same angle",
@@ -73,6 +85,9 @@ void for_each_option(AnyOptions& options, Visit&& visit) {
   visit(
       OptionInfo{"smooth_depth", "", "Average depth over neighbouring pixels of the same surface"},
       options.smooth_depth);
+  visit(OptionInfo{"snap_edges", "",
+                   "Move depth edges onto the edges of the RGB-D camera's colour image"},
+        options.snap_edges);
   visit(OptionInfo{"lift_shadows", "",
                    "Show what the objects hide without the shadows that they cast on it"},
         options.lift_shadows);

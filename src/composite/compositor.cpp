@@ -131,6 +131,11 @@ void Compositor::composite(const Image<Bgr>& camera, const OcclusionMasks& masks
   }
   if (result.report.mask_pixels > 0) {
     const ScopedTimer timer(milliseconds, Stage::compositing);
+    // Where the shadow outside is gone, too, the camera's picture is another.
+    if (!has_shadows || !options.remove_shadows) {
+      const int most_px = options.mask_margin_px / 2;
+      soft_rim_.blend(camera, masks.color, std::min(options.soft_rim_px, most_px), result.picture);
+    }
     view_mode(options.mode).show(camera, options, result);
   }
 }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "composite/shadow_lifting.h"
+#include "composite/soft_rim.h"
 #include "diminish/color_corrector.h"
 #include "diminish/diminished_frame.h"
 #include "diminish/inpainter.h"
@@ -35,6 +36,7 @@ class Compositor {
   std::map<std::string, std::unique_ptr<Inpainter>> inpainters_;
   std::map<std::string, std::unique_ptr<ViewMode>> view_modes_;
   ShadowLifting shadow_lifting_;
+  SoftRim soft_rim_;
   Mask missing_;
   Rect missing_box_;
 };

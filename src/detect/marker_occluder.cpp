@@ -1,15 +1,22 @@
+#include <Eigen/Geometry>
 #include <Eigen/QR>
 #include <algorithm>
+#include <numbers>
 #include <vector>
 
 #include "detect/marker_views.h"
+#include "detect/place_deviation.h"
 #include "detect/silhouette.h"
 #include "diminish/occluder_detector.h"
 #include "geometry/triangle_mesh.h"
 #include "pose/known_markers.h"
+#include "pose/marker_pose.h"
 
 namespace diminish {
 namespace {
+
+/// Standard deviation of a corner's coordinates in a sharp picture (docs/benchmarks.md).
+constexpr double corner_noise_px = 0.1;
 
 std::vector<Eigen::Vector3d> read_vertices(const Config& config) {
   std::vector<Eigen::Vector3d> vertices;
@@ -21,6 +28,16 @@ std::vector<Eigen::Vector3d> read_vertices(const Config& config) {
     config.fail("expected points that are not all on one line");
   }
   return vertices;
+}
+
+std::vector<Eigen::Vector3d> corners_of_box(const std::vector<Eigen::Vector3d>& points) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& point : points) box.extend(point);
+  std::vector<Eigen::Vector3d> corners;
+  for (int i = 0; i < 8; ++i) {
+    corners.push_back(box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)));
+  }
+  return corners;
 }
 
 /// An object with a marker on it, whose shape in the marker's frame is known.
@@ -39,6 +56,7 @@ class MarkerOccluder : public OccluderDetector {
     } else {
       shape_ = load_obj(mesh.path());
     }
+    shape_corners_ = corners_of_box(shape_.vertices);
     for (const RgbdCamera& camera : rig.rgbd) {
       rgbd_color_lenses_.emplace_back(camera.color);
       rgbd_depth_lenses_.emplace_back(camera.depth);
@@ -69,6 +87,7 @@ class MarkerOccluder : public OccluderDetector {
       const bool draws = pose && observation.frame.rgbd[k].available();
       report.in_rgbd.push_back(draws && draw_in_rgbd(k, *pose, masks));
     }
+    report.deviation_px = deviation_px(views, camera_from_marker);
     report.message = message(views, camera_from_marker);
     return report;
   }
@@ -78,6 +97,24 @@ class MarkerOccluder : public OccluderDetector {
     const Marker* found = find_marker(seen, marker_.id);
     if (!found) return std::nullopt;
     return found->corners;
+  }
+
+  /// Of the shape's corners, in the picture where it is most uncertain. Where the marker is not
+  /// seen, the shape is known by the other pictures, and by the way there.
+  double deviation_px(const std::vector<MarkerView>& views,
+                      const std::vector<std::optional<RigidTransform>>& camera_from_marker) const {
+    double most = 0;
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      if (!views[i].corners || !camera_from_marker[i]) continue;
+      // Of four corners' eight coordinates the pose leaves two free to differ.
+      const double error_px =
+          std::numbers::sqrt2 * marker_error_px(*camera_from_marker[i], marker_.size_m,
+                                                *views[i].lens, *views[i].corners);
+      most =
+          std::max(most, place_deviation_px(*camera_from_marker[i], marker_.size_m, *views[i].lens,
+                                            std::max(error_px, corner_noise_px), shape_corners_));
+    }
+    return most;
   }
 
   bool draw_in_rgbd(std::size_t k, const RigidTransform& color_from_marker, OcclusionMasks& masks) {
@@ -120,6 +157,7 @@ class MarkerOccluder : public OccluderDetector {
   Rig rig_;
   MarkerSpec marker_;
   TriangleMesh shape_;  ///< in the marker's frame; without triangles: its convex hull
+  std::vector<Eigen::Vector3d> shape_corners_;  ///< of the box around it
   Lens color_lens_;
   std::vector<Lens> rgbd_color_lenses_;
   std::vector<Lens> rgbd_depth_lenses_;

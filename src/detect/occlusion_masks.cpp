@@ -53,7 +53,11 @@ void OccluderStage::detect(const Observation& observation, OcclusionMasks& masks
           {.name = names_[i], .in_rgbd = std::vector<bool>(rig_.rgbd.size(), false), .kept = true});
     }
   }
-  grow_by_margins(observation.options, masks);
+  double deviation_px = 0;
+  for (const OccluderReport& report : reports) {
+    deviation_px = std::max(deviation_px, report.deviation_px);
+  }
+  grow_by_margins(observation.options, deviation_px, masks);
 }
 
 void OccluderStage::clear(OcclusionMasks& masks) const {
@@ -66,14 +70,22 @@ void OccluderStage::clear(OcclusionMasks& masks) const {
   });
 }
 
-void OccluderStage::grow_by_margins(const Options& options, OcclusionMasks& masks) {
+void OccluderStage::grow_by_margins(const Options& options, double deviation_px,
+                                    OcclusionMasks& masks) {
+  // A marker that faces the camera leaves its own lean open; so much it does not matter.
+  constexpr double most_px = 10;
+  // Half the margin is for blur, half for what is usual.
+  const double usual_px = options.mask_margin_px / 2.0;
+  const double wanted_px =
+      options.margin_deviations > 0 ? options.margin_deviations * deviation_px : 0;
+  const auto more_px = static_cast<int>(std::lrint(std::clamp(wanted_px - usual_px, 0.0, most_px)));
   const auto grow_by = [](int margin_px, Mask& mask, Mask& scratch) {
     if (margin_px > 0) dilate_by_disc(mask, margin_px, scratch);
   };
   oneapi::tbb::parallel_for(std::size_t{0}, rig_.rgbd.size() + 1, [&](std::size_t i) {
-    if (i == 0) return grow_by(options.mask_margin_px, masks.color, scratch_.color);
+    if (i == 0) return grow_by(options.mask_margin_px + more_px, masks.color, scratch_.color);
     const std::size_t k = i - 1;
-    const int margin_px = options.rgbd_mask_margin_px;
+    const int margin_px = options.rgbd_mask_margin_px + more_px;
     grow_by(margin_px, masks.rgbd_color[k], scratch_.rgbd_color[k]);
     grow_by(depth_margin_px(rig_.rgbd[k], margin_px), masks.rgbd_depth[k], scratch_.rgbd_depth[k]);
   });

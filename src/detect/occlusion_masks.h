@@ -25,7 +25,7 @@ class OccluderStage {
 
  private:
   void clear(OcclusionMasks& masks) const;
-  void grow_by_margins(const Options& options, OcclusionMasks& masks);
+  void grow_by_margins(const Options& options, double deviation_px, OcclusionMasks& masks);
 
   Rig rig_;
   std::vector<std::unique_ptr<OccluderDetector>> detectors_;

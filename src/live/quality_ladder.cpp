@@ -36,6 +36,7 @@ constexpr std::array<Step, 6> steps = {{
     {"poses not refined", [](Options& o) { o.refine_poses = false; }},
     {"depth not cleaned",
      [](Options& o) {
+       o.snap_edges = false;
        o.smooth_depth = false;
        o.remove_flying = false;
        o.remove_hidden = false;

@@ -87,8 +87,10 @@ struct Pipeline::Implementation {
 
   void clean_depths(const FrameSet& frame) {
     oneapi::tbb::parallel_for(std::size_t{0}, rig.rgbd.size(), [&](std::size_t k) {
-      if (!frame.rgbd[k].available()) return;
-      depth_cleaners[k].clean(frame.rgbd[k].depth, sampler.part(k), options, depths[k]);
+      const RgbdFrame& rgbd = frame.rgbd[k];
+      if (!rgbd.available()) return;
+      depth_cleaners[k].clean(rgbd.depth, {rgbd.color, masks.rgbd_color[k], masks.rgbd_depth[k]},
+                              sampler.part(k), options, depths[k]);
     });
   }
 

@@ -22,7 +22,7 @@ Rect inside(const Rect& part, const Image<std::uint16_t>& depth) {
 
 }  // namespace
 
-DepthCleaner::DepthCleaner(const RgbdCamera& camera) : camera_(camera) {
+DepthCleaner::DepthCleaner(const RgbdCamera& camera) : camera_(camera), edge_snapping_(camera) {
   const Image<Eigen::Vector2f> rays = Lens(camera.depth).rays();
   ray_side_.resize(rays.width(), rays.height());
   ray_ahead_.resize(rays.width(), rays.height());
@@ -35,14 +35,15 @@ DepthCleaner::DepthCleaner(const RgbdCamera& camera) : camera_(camera) {
   }
 }
 
-void DepthCleaner::clean(const Image<std::uint16_t>& depth, const Rect& part,
-                         const Options& options, Image<std::uint16_t>& cleaned) {
+void DepthCleaner::clean(const Image<std::uint16_t>& depth, const EdgeSnapping::Images& images,
+                         const Rect& part, const Options& options, Image<std::uint16_t>& cleaned) {
   cleaned = depth;
   if (options.remove_flying) remove_flying(depth, part, cleaned);
+  if (options.smooth_depth) smooth(part, cleaned);
+  if (options.snap_edges) edge_snapping_.snap(images, part, cleaned);
   if (options.remove_hidden) {
     remove_hidden(part, static_cast<float>(options.discontinuity_threshold_m), cleaned);
   }
-  if (options.smooth_depth) smooth(part, cleaned);
 }
 
 void DepthCleaner::remove_flying(const Image<std::uint16_t>& depth, const Rect& part,

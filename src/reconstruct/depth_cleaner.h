@@ -7,6 +7,7 @@
 #include "diminish/options.h"
 #include "diminish/rig.h"
 #include "reconstruct/depth_rows.h"
+#include "reconstruct/edge_snapping.h"
 
 namespace diminish {
 
@@ -15,15 +16,16 @@ namespace diminish {
 /// - pixels that the camera's own colour sensor, some centimetres beside the depth sensor, does not
 ///   see because something nearer is in front of them: they would get its colour. (Only where it
 ///   is beside, not above: sensors are built that way.)
-/// and averages what is left over neighbouring pixels of the same surface: seen from the side,
-/// noise in depth is noise in place.
+/// averages what is left over neighbouring pixels of the same surface (seen from the side, noise in
+/// depth is noise in place), and moves its edges onto the colour image's (EdgeSnapping).
 class DepthCleaner {
  public:
   explicit DepthCleaner(const RgbdCamera& camera);
 
-  /// Only in `part`; the rest is copied. Cost: 1 ns a pixel.
-  void clean(const Image<std::uint16_t>& depth, const Rect& part, const Options& options,
-             Image<std::uint16_t>& cleaned);
+  /// images: what is masked in them is not used to move edges. Only in `part`; the rest is copied.
+  /// Cost: 1 ns a pixel, besides EdgeSnapping's.
+  void clean(const Image<std::uint16_t>& depth, const EdgeSnapping::Images& images,
+             const Rect& part, const Options& options, Image<std::uint16_t>& cleaned);
 
  private:
   struct Scratch {
@@ -40,6 +42,7 @@ class DepthCleaner {
   Image<float> ray_side_, ray_ahead_;
   Scratch scratch_[2];  ///< of each thread
   Image<std::uint16_t> half_smooth_;
+  EdgeSnapping edge_snapping_;
 };
 
 }  // namespace diminish

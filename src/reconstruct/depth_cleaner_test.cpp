@@ -14,11 +14,25 @@ using testing::AnalyticScene;
 
 const Eigen::Vector3d eye(-0.45, 0.3, 0.9);
 
+/// Without what EdgeSnapping's own tests look at.
+Options without_snapping() {
+  Options options;
+  options.snap_edges = false;
+  return options;
+}
+
+Image<std::uint16_t> cleaned(const AnalyticFrame& frame, const Rect& part, const Options& options) {
+  const OcclusionMasks masks = testing::empty_masks(frame.rig);
+  const RgbdFrame& rgbd = frame.frame.rgbd[0];
+  Image<std::uint16_t> result;
+  DepthCleaner(frame.rig.rgbd[0])
+      .clean(rgbd.depth, {rgbd.color, masks.rgbd_color[0], masks.rgbd_depth[0]}, part, options,
+             result);
+  return result;
+}
 Image<std::uint16_t> cleaned(const AnalyticFrame& frame, const Options& options = {}) {
   const RgbdCamera& camera = frame.rig.rgbd[0];
-  Image<std::uint16_t> result;
-  DepthCleaner(camera).clean(frame.frame.rgbd[0].depth, camera.depth.bounds(), options, result);
-  return result;
+  return cleaned(frame, camera.depth.bounds(), options);
 }
 
 // Against a ray caster: the colour sensor must see what is left of the wall, and what it sees must
@@ -31,7 +45,7 @@ TEST(DepthCleaner, LeavesWhatTheColorSensorSees) {
   const RigidTransform depth_from_world = *frame.poses.depth_from_world[0];
   const RigidTransform color_from_world = camera.color_from_depth * depth_from_world;
   const Eigen::Vector3d color_eye = color_from_world.inverse().translation;
-  const Image<std::uint16_t> result = cleaned(frame);
+  const Image<std::uint16_t> result = cleaned(frame, without_snapping());
   int hidden = 0;
   int hidden_and_left = 0;
   int seen = 0;
@@ -68,7 +82,7 @@ TEST(DepthCleaner, TakesOutWhatLiesBetweenTwoSurfaces) {
     }
   }
   ASSERT_GT(flying.size(), 40U);
-  const Image<std::uint16_t> result = cleaned(frame);
+  const Image<std::uint16_t> result = cleaned(frame, without_snapping());
   for (const auto& [x, y] : flying) EXPECT_EQ(result(x, y), 0) << x << ' ' << y;
 }
 
@@ -104,7 +118,7 @@ TEST(DepthCleaner, SmoothsNoiseOnSurfaces) {
   std::mt19937 random(3);
   std::normal_distribution<double> noise(0, 20);  // 2 mm
   for (std::uint16_t& value : depth) value = static_cast<std::uint16_t>(value + noise(random));
-  const Image<std::uint16_t> result = cleaned(frame);
+  const Image<std::uint16_t> result = cleaned(frame, without_snapping());
   double before = 0;
   double after = 0;
   int count = 0;
@@ -123,13 +137,12 @@ TEST(DepthCleaner, ChangesOnlyItsPartAndCanBeSwitchedOff) {
   AnalyticScene scene;
   const AnalyticFrame frame(scene, {eye});
   Options off;
-  off.remove_flying = off.remove_hidden = off.smooth_depth = false;
+  off.remove_flying = off.remove_hidden = off.smooth_depth = off.snap_edges = false;
   const Image<std::uint16_t>& depth = frame.frame.rgbd[0].depth;
   EXPECT_EQ(cleaned(frame, off), depth);
   ASSERT_NE(cleaned(frame), depth);
-  Image<std::uint16_t> result;
   const Rect corner{0, 0, 20, 20};
-  DepthCleaner(frame.rig.rgbd[0]).clean(depth, corner, {}, result);
+  const Image<std::uint16_t> result = cleaned(frame, corner, {});
   for (int y = 0; y < depth.height(); ++y) {
     for (int x = 0; x < depth.width(); ++x) {
       if (corner.contains(x, y)) continue;
