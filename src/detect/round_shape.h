@@ -1,31 +1,47 @@
 #pragma once
 
-#include <opencv2/core.hpp>
 #include <optional>
 #include <vector>
+
+#include "detect/conic_fit.h"
+#include "detect/connected_regions.h"
+#include "diminish/image.h"
 
 namespace diminish {
 
 /// How a ball looks in a picture: an ellipse, possibly cut off at the picture's border.
 struct RoundShape {
-  cv::Point2d center;
-  cv::Size2d half_axes;
-  double angle_rad = 0;  ///< of the first axis
+  Ellipse ellipse;
   /// Intersection over union of the region that it was fitted to and the ellipse's visible part.
   double agreement = 0;
 
-  double diameter() const { return half_axes.width + half_axes.height; }
-  /// Sets the pixels whose centres are inside to 255.
-  void draw(cv::Mat& mask) const;
+  double diameter() const { return ellipse.half_axes.sum(); }
 };
-
-/// Fits an ellipse to `outline`, the outer contour of `region` (255 inside; the whole picture); a
-/// circle where the region is cut off, because a short arc says little about an ellipse. A small
-/// part of the outline may be wrong. Nothing if there are too few points for a fit.
-std::optional<RoundShape> fit_round_shape(const std::vector<cv::Point>& outline,
-                                          const cv::Mat& region);
 
 /// Whether a region is what a ball may look like.
 bool is_round(const RoundShape& shape);
+
+/// Sets the mask's pixels whose centres are inside to 255.
+void draw(const Ellipse& ellipse, Mask& mask);
+
+/// Fits round shapes to regions. Keeps its memory from one to the next.
+class RoundShapeFitter {
+ public:
+  /// Fits an ellipse to `outline`, the outer outline of `region` (255 inside); a circle where the
+  /// region is cut off, because a short arc says little about an ellipse. A small part of the
+  /// outline may be wrong. Nothing if there are too few points for a fit.
+  /// picture: what could be seen, in the region's coordinates; it holds the region's mask.
+  std::optional<RoundShape> fit(const Outline& outline, const Mask& region, const Rect& picture);
+
+ private:
+  /// Takes the points much further from the ellipse than half of them are out of `good_`; returns
+  /// whether that changes it.
+  bool leave_out_outliers(const Ellipse& ellipse);
+  std::optional<Ellipse> fit_good_points(bool is_cut_off) const;
+
+  Outline points_;
+  std::vector<char> good_;  ///< of each point
+  std::vector<float> distances_px_, sorted_;
+};
 
 }  // namespace diminish

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "diminish/image.h"
+
+namespace diminish {
+
+/// Averages 3x3 pixels with the weights 1 2 1 in both directions (a Gaussian of 0.85 pixels),
+/// rounded; as `cv::GaussianBlur` does with a kernel of 3x3. Keeps its memory.
+class PictureSmoother {
+ public:
+  /// Smooths columns [first, last) of row y of the picture's part `part`, which may reach beyond
+  /// the picture: there it goes on as it is at the border. Coordinates are the part's.
+  void smooth_row(const Image<Bgr>& picture, const Rect& part, int y, int first, int last,
+                  Bgr* result);
+
+ private:
+  /// Columns [first, last) of a row of the picture, which both may lie outside.
+  const std::uint8_t* row(const Image<Bgr>& picture, int y, int first, int last,
+                          std::vector<Bgr>& scratch);
+
+  std::vector<Bgr> outside_[3];
+  std::vector<std::uint16_t> sums_;
+};
+
+}  // namespace diminish
