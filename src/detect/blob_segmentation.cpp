@@ -7,20 +7,19 @@
 
 namespace diminish {
 
-void BlobSegmentation::shrink(const Image<Bgr>& image) {
+int BlobSegmentation::scale(const Image<Bgr>& image) {
   // The size of the picture that is divided: enough for blobs of a few pixels, small enough to be
   // quick and to average the noise.
   constexpr int width = 480;
-  constexpr int largest_scale = 16;
-  scale_ = std::min((image.width() + width - 1) / width, largest_scale);
-  shrink_picture(image, scale_, sums_, small_);
+  constexpr int largest = 16;
+  return std::min((image.width() + width - 1) / width, largest);
 }
 
-void BlobSegmentation::segment(const Rect& window) {
-  window_ = window;
+void BlobSegmentation::segment(const Image<Bgr>& image, const Rect& window) {
+  shrink_picture(image, scale(image), window, sums_, small_);
   smooth_.resize(window.width, window.height);
   for (int y = 0; y < window.height; ++y) {
-    smoother_.smooth_row(small_, window, y, 0, window.width, smooth_.row(y));
+    smoother_.smooth_row(small_, small_.bounds(), y, 0, window.width, smooth_.row(y));
   }
   find_seeds();
   watershed_.flood(smooth_, labels_);
@@ -32,7 +31,7 @@ void BlobSegmentation::segment(const Rect& window) {
 void BlobSegmentation::find_seeds() {
   dilate(smooth_, {1, 1}, picture_scratch_, lightest_);
   erode(smooth_, {1, 1}, picture_scratch_, darkest_);
-  gradient_.resize(window_.width, window_.height);
+  gradient_.resize(small_.width(), small_.height());
   for (std::size_t i = 0; i < gradient_.size(); ++i) {
     const Bgr& light = lightest_.data()[i];
     const Bgr& dark = darkest_.data()[i];
@@ -42,12 +41,12 @@ void BlobSegmentation::find_seeds() {
   // What changes less than this, in 8-bit levels, is even; noise has minima everywhere.
   constexpr std::uint8_t even = 6;
   erode(gradient_, {2, 2}, scratch_, lowest_);
-  seeds_.resize(window_.width, window_.height);
+  seeds_.resize(small_.width(), small_.height());
   for (std::size_t i = 0; i < seeds_.size(); ++i) {
     seeds_.data()[i] = gradient_.data()[i] <= std::max(lowest_.data()[i], even) ? 255 : 0;
   }
   seed_regions_.find(seeds_, 255, Connectivity::four);
-  labels_.resize(window_.width, window_.height, 0);
+  labels_.resize(small_.width(), small_.height(), 0);
   for (const ConnectedRegions::Run& run : seed_regions_.runs()) {
     std::fill_n(labels_.row(run.y) + run.first, run.last - run.first,
                 static_cast<std::uint32_t>(run.region + 1));
@@ -58,10 +57,18 @@ void BlobSegmentation::average_colors() {
   color_sums_.assign(seed_regions_.regions().size() + 1, Eigen::Vector4i::Zero());
   for (int y = 0; y < labels_.height(); ++y) {
     std::uint32_t* const label = labels_.row(y);
-    const Bgr* const color = small_.row(window_.y + y) + window_.x;
-    for (int x = 0; x < labels_.width(); ++x) {
-      if (!WatershedLabel<std::uint32_t>::is_basin(label[x])) label[x] = 0;
-      color_sums_[label[x]] += Eigen::Vector4i(color[x].b, color[x].g, color[x].r, 1);
+    const Bgr* const color = small_.row(y);
+    for (int x = 0; x < labels_.width();) {
+      if (!WatershedLabel<std::uint32_t>::is_basin(label[x])) {
+        label[x++] = 0;
+        continue;
+      }
+      const std::uint32_t blob = label[x];
+      Eigen::Vector4i sum = Eigen::Vector4i::Zero();
+      for (; x < labels_.width() && label[x] == blob; ++x) {
+        sum += Eigen::Vector4i(color[x].b, color[x].g, color[x].r, 1);
+      }
+      color_sums_[blob] += sum;
     }
   }
   mean_bgr_.resize(color_sums_.size());

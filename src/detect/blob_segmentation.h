@@ -15,16 +15,13 @@ namespace diminish {
 /// resolution. Keeps its memory from one picture to the next.
 class BlobSegmentation {
  public:
-  /// Makes the picture small.
-  void shrink(const Image<Bgr>& image);
-  /// Divides a part of the small picture.
-  void segment(const Rect& window);
-
   /// A segment pixel covers `scale` x `scale` image pixels; the last ones of a row or column may
   /// stand for up to `scale - 1` more.
-  int scale() const { return scale_; }
-  const Image<Bgr>& small_picture() const { return small_; }
-  const Rect& window() const { return window_; }
+  static int scale(const Image<Bgr>& image);
+
+  /// Divides a part of the picture; window: in segment pixels.
+  void segment(const Image<Bgr>& image, const Rect& window);
+
   /// Of the window: 1 .. blob_count() - 1, or 0 on the lines between blobs.
   const Image<std::uint32_t>& labels() const { return labels_; }
   int blob_count() const { return static_cast<int>(mean_bgr_.size()); }
@@ -34,9 +31,7 @@ class BlobSegmentation {
   void find_seeds();
   void average_colors();
 
-  int scale_ = 1;
   Image<Bgr> small_;
-  Rect window_;
   std::vector<std::uint16_t> sums_;
   PictureSmoother smoother_;
   Image<Bgr> smooth_, lightest_, darkest_, picture_scratch_;

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "detect/extremum_filters.h"
+#include "detect/shrink_picture.h"
 
 namespace diminish {
 namespace {
@@ -36,54 +37,50 @@ void add(const Mask& object, int x, int y, Mask& mask) {
 }  // namespace
 
 bool ColorBlobFinder::find(const Image<Bgr>& image, double spread, Mask& mask) {
-  segmentation_.shrink(image);
-  const Rect window = find_window(spread);
-  if (window.empty()) return false;
-  segmentation_.segment(window);
-  find_levels(spread);
-  if (!(round_ ? find_round_region() : find_any_region())) return false;
-  const Rect part = refinement_.refine(image, region_, window, segmentation_.scale(), object_);
-  add(object_, part.x, part.y, mask);
-  if (round_) complete_round_shape(part, mask);
+  find_windows(image, spread);
+  bool found = false;
+  double best_score = 0;
+  Rect best_window;
+  for (const Rect& window : windows_) {
+    segmentation_.segment(image, window);
+    find_levels(spread);
+    if (round_) {
+      const double score = find_round_region(best_score);
+      if (score <= best_score) continue;
+      best_score = score;
+      best_window = window;
+    } else if (find_any_region()) {
+      refine(image, window, mask);
+      found = true;
+    }
+  }
+  if (best_score == 0) return found;
+  refine(image, best_window, mask);
   return true;
 }
 
-double ColorBlobFinder::fewest_pixels() const {
+/// The parts of the picture that may show the object: around the connected regions of pixels of its
+/// colour, generously. Dividing the rest into blobs would be in vain.
+void ColorBlobFinder::find_windows(const Image<Bgr>& image, double spread) {
   constexpr double smallest_area = 1.0 / 16;  // of the smallest object in the training images
-  const auto total = static_cast<double>(segmentation_.small_picture().size());
-  return std::max(16.0, smallest_area * model_.smallest_area * total);
-}
-
-/// The part of the small picture that may show the object: around the connected regions of
-/// pixels of its colour, generously. Dividing the rest into blobs would be in vain.
-Rect ColorBlobFinder::find_window(double spread) {
   constexpr double generously = 1.5;
+  constexpr int sample = 2;  // segment pixels wide and high
+  constexpr int margin = 4;  // samples
+  const int scale = BlobSegmentation::scale(image);
+  const Rect picture = shrunk_bounds(image, scale);
+  fewest_pixels_ =
+      std::max(16.0, smallest_area * model_.smallest_area * picture.width * picture.height);
   const auto entries = [&](double factor) {
     return static_cast<int>(generously * factor * spread * ColorTable::per_deviation);
   };
-  const int core_limit = entries(1);
-  const int neighbor_limit = entries(factors(round_).back());
-  const Image<Bgr>& picture = segmentation_.small_picture();
-  candidates_.resize(picture.width(), picture.height());
-  for (std::size_t i = 0; i < picture.size(); ++i) {
-    candidates_.data()[i] = table_(picture.data()[i]).neighbor <= neighbor_limit ? 255 : 0;
+  const CandidateWindows::Limits limits{entries(1), entries(factors(round_).back()),
+                                        smallest_core / 4 * fewest_pixels_ / (sample * sample)};
+  windows_.clear();
+  for (const Rect& window : candidates_.find(image, table_, sample * scale, limits, margin)) {
+    const Rect pixels{sample * window.x, sample * window.y, sample * window.width,
+                      sample * window.height};
+    windows_.push_back(intersect(pixels, picture));
   }
-  candidate_regions_.find(candidates_, 255, Connectivity::eight);
-  core_pixels_.assign(candidate_regions_.regions().size(), 0);
-  for (const ConnectedRegions::Run& run : candidate_regions_.runs()) {
-    const Bgr* const row = picture.row(run.y);
-    core_pixels_[run.region] +=
-        static_cast<int>(std::count_if(row + run.first, row + run.last, [&](const Bgr& color) {
-          return table_(color).core <= core_limit;
-        }));
-  }
-  Rect box;
-  for (std::size_t i = 0; i < core_pixels_.size(); ++i) {
-    if (core_pixels_[i] < smallest_core / 4 * fewest_pixels()) continue;
-    box = join(box, candidate_regions_.regions()[i].box);
-  }
-  const int margin = 8 + std::max(box.width, box.height) / 4;
-  return intersect(grow(box, margin), picture.bounds());
 }
 
 /// `levels_`: by which of the factors the spread must be multiplied for a pixel's blob to be within
@@ -114,11 +111,11 @@ void ColorBlobFinder::find_levels(double spread) {
   erode(closed_, {1, 1}, scratch_, core_);
 }
 
-/// The roundest region, larger ones preferred. How far the colours may deviate next to the core
+/// Makes `region_` the roundest region, larger ones preferred, if its score is better than the best
+/// so far. How far the colours may deviate next to the core
 /// is right where the region becomes round: less leaves out highlights, more takes in neighbours.
-bool ColorBlobFinder::find_round_region() {
+double ColorBlobFinder::find_round_region(double best_score) {
   constexpr double all_holes = 1;
-  double best_score = 0;
   known_count_ = 0;
   for (int level = 0; level < static_cast<int>(factors(round_).size()); ++level) {
     if (!select_blobs(level)) continue;
@@ -133,7 +130,7 @@ bool ColorBlobFinder::find_round_region() {
       draw(shape->ellipse, region_);
     }
   }
-  return best_score > 0;
+  return best_score;
 }
 
 bool ColorBlobFinder::find_any_region() {
@@ -186,10 +183,9 @@ void ColorBlobFinder::open_by_disc() {
 /// large enough and holds enough of the core: highlights and shadows on the object deviate more
 /// than its mean colour does, but are next to it.
 bool ColorBlobFinder::find_component(const ConnectedRegions::Region& region, double largest_hole) {
-  const double fewest = fewest_pixels();
-  if (region.box.width * region.box.height < fewest) return false;
+  if (region.box.width * region.box.height < fewest_pixels_) return false;
   trace_outline(selected_, region.first, outline_);
-  if (polygon_area(outline_) < fewest / 2) return false;
+  if (polygon_area(outline_) < fewest_pixels_ / 2) return false;
   component_.resize(selected_.width(), selected_.height(), 0);
   for (const ConnectedRegions::Run& run : selected_regions_.runs()) {
     if (&selected_regions_.regions()[run.region] != &region) continue;
@@ -199,7 +195,7 @@ bool ColorBlobFinder::find_component(const ConnectedRegions::Region& region, dou
   component_pixels_ = region.pixels;
   fill_holes(largest_hole);
   const auto core = static_cast<double>(count_both(component_, core_));
-  return component_pixels_ >= fewest && core >= smallest_core * component_pixels_;
+  return component_pixels_ >= fewest_pixels_ && core >= smallest_core * component_pixels_;
 }
 
 /// Fills the holes of `component_`, but for those larger than a part of it, where only blobs stay.
@@ -231,6 +227,13 @@ bool ColorBlobFinder::is_known_outline() {
   if (known_count_ == known_outlines_.size()) known_outlines_.emplace_back();
   known_outlines_[known_count_++] = outline_;
   return false;
+}
+
+void ColorBlobFinder::refine(const Image<Bgr>& image, const Rect& window, Mask& mask) {
+  const Rect part =
+      refinement_.refine(image, region_, window, BlobSegmentation::scale(image), object_);
+  add(object_, part.x, part.y, mask);
+  if (round_) complete_round_shape(part, mask);
 }
 
 /// Fills what is missing of the outline: a part in the shadow, or against a similar colour.

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "detect/blob_segmentation.h"
+#include "detect/candidate_windows.h"
 #include "detect/color_model.h"
 #include "detect/color_table.h"
 #include "detect/connected_regions.h"
@@ -26,16 +27,16 @@ class ColorBlobFinder {
   bool find(const Image<Bgr>& image, double spread, Mask& mask);
 
  private:
-  double fewest_pixels() const;
-  Rect find_window(double spread);
+  void find_windows(const Image<Bgr>& image, double spread);
   void find_levels(double spread);
-  bool find_round_region();
+  double find_round_region(double best_score);
   bool find_any_region();
   bool select_blobs(int level);
   bool find_component(const ConnectedRegions::Region& region, double largest_hole);
   void fill_holes(double largest_hole);
   void open_by_disc();
   bool is_known_outline();
+  void refine(const Image<Bgr>& image, const Rect& window, Mask& mask);
   void complete_round_shape(const Rect& part, Mask& mask);
 
   ColorModel model_;
@@ -43,9 +44,9 @@ class ColorBlobFinder {
   bool round_;
   BlobSegmentation segmentation_;
 
-  Mask candidates_;
-  ConnectedRegions candidate_regions_;
-  std::vector<int> core_pixels_;  ///< of each candidate region
+  CandidateWindows candidates_;
+  std::vector<Rect> windows_;  ///< in segment pixels
+  double fewest_pixels_ = 0;   ///< that an object has, of these
 
   std::vector<std::uint8_t> level_of_blob_, core_of_blob_;
   Mask levels_, core_, selected_, closed_, opened_, scratch_;

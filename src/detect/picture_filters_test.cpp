@@ -34,7 +34,7 @@ TEST(ShrinkPicture, IsTheRoundedMean) {
   Image<Bgr> small;
   for (int scale = 1; scale <= 16; ++scale) {
     SCOPED_TRACE(scale);
-    shrink_picture(image, scale, scratch, small);
+    shrink_picture(image, scale, shrunk_bounds(image, scale), scratch, small);
     ASSERT_EQ(small.bounds(), (Rect{0, 0, 101 / scale, 83 / scale}));
     for (int y = 0; y < small.height(); ++y) {
       for (int x = 0; x < small.width(); ++x) {
@@ -56,8 +56,18 @@ TEST(ShrinkPicture, APictureThinnerThanTheScaleBecomesOnePixelWide) {
   image.fill({0, 1, 40, 1}, {30, 20, 10});
   std::vector<std::uint16_t> scratch;
   Image<Bgr> small;
-  shrink_picture(image, 4, scratch, small);
+  shrink_picture(image, 4, shrunk_bounds(image, 4), scratch, small);
   EXPECT_EQ(small, Image<Bgr>(10, 1, {20, 20, 20}));
+}
+
+TEST(ShrinkPicture, APartIsThePartOfTheWhole) {
+  const Image<Bgr> image = noise(101, 83);
+  const Rect part{4, 7, 19, 11};
+  std::vector<std::uint16_t> scratch;
+  Image<Bgr> whole, small;
+  shrink_picture(image, 4, shrunk_bounds(image, 4), scratch, whole);
+  shrink_picture(image, 4, part, scratch, small);
+  expect_same(small, as_mat(whole)(as_cv(part)));
 }
 
 TEST(PictureSmoother, IsOpenCvsGaussian) {

@@ -74,31 +74,32 @@ HWY_EXPORT(AverageColumns);
 
 }  // namespace
 
-void shrink_picture(const Image<Bgr>& image, int scale, std::vector<std::uint16_t>& scratch,
-                    Image<Bgr>& small) {
-  small.resize(std::max(1, image.width() / scale), std::max(1, image.height() / scale));
+void shrink_picture(const Image<Bgr>& image, int scale, const Rect& part,
+                    std::vector<std::uint16_t>& scratch, Image<Bgr>& small) {
+  small.resize(part.width, part.height);
   const int rows = std::min(scale, image.height());
   const int columns = std::min(scale, image.width());
   if (rows * columns == 1) {
-    for (int y = 0; y < small.height(); ++y) {
-      std::copy_n(image.row(y * scale), small.width(), small.row(y));
+    for (int y = 0; y < part.height; ++y) {
+      std::copy_n(image.row((part.y + y) * scale) + std::ptrdiff_t{part.x} * scale, part.width,
+                  small.row(y));
     }
     return;
   }
-  const int count = 3 * small.width() * columns;
+  const int count = 3 * part.width * columns;
   constexpr int beyond = 3 * 16 + HWY_MAX_BYTES;
   const auto room = static_cast<std::size_t>(count + beyond);
   scratch.resize(room + room / 2 + 1);
   auto* const means = reinterpret_cast<std::uint8_t*>(scratch.data() + room);
   const std::ptrdiff_t pitch = std::ptrdiff_t{3} * image.width();
-  for (int y = 0; y < small.height(); ++y) {
+  for (int y = 0; y < part.height; ++y) {
+    const Bgr* const cells = image.row((part.y + y) * scale) + std::ptrdiff_t{part.x} * scale;
     HWY_DYNAMIC_DISPATCH(SumRows)
-    (reinterpret_cast<const std::uint8_t*>(image.row(y * scale)), pitch, rows, count,
-     scratch.data());
+    (reinterpret_cast<const std::uint8_t*>(cells), pitch, rows, count, scratch.data());
     HWY_DYNAMIC_DISPATCH(AverageColumns)(scratch.data(), columns, rows, count, means);
     Bgr* const pixels = small.row(y);
     const std::uint8_t* mean = means;
-    for (int x = 0; x < small.width(); ++x, mean += std::ptrdiff_t{3} * columns) {
+    for (int x = 0; x < part.width; ++x, mean += std::ptrdiff_t{3} * columns) {
       pixels[x] = {mean[0], mean[1], mean[2]};
     }
   }

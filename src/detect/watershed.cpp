@@ -1,5 +1,7 @@
 #include "detect/watershed.h"
 
+#include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <cstring>
 
@@ -20,14 +22,45 @@ int first_unknown(const std::uint8_t* labels, int count) {
                           : static_cast<int>(static_cast<const std::uint8_t*>(found) - labels);
 }
 
-}  // namespace
+/// Pixels by a difference from 0 to 255, of each difference first in, first out.
+class Queues {
+ public:
+  /// next: a place for each pixel.
+  explicit Queues(int* next) : next_(next) {
+    first_.fill(none);
+    for (std::size_t i = 0; i < first_.size(); ++i) end_[i] = &first_[i];
+  }
+  Queues(const Queues&) = delete;
+  Queues& operator=(const Queues&) = delete;
 
-void Watershed::push(int pixel, int difference) {
-  Queue& queue = queues_[difference];
-  (queue.first == none ? queue.first : next_[queue.last]) = pixel;
-  queue.last = pixel;
-  next_[pixel] = none;
-}
+  void push(int pixel, int difference) {
+    *end_[difference] = pixel;
+    end_[difference] = next_ + pixel;
+    next_[pixel] = none;
+    least_ = std::min(least_, difference);
+  }
+  /// A pixel of the least difference, or `none`.
+  int pop() {
+    while (first_[least_] == none) {
+      if (least_ == 255) return none;
+      ++least_;
+    }
+    const int pixel = first_[least_];
+    first_[least_] = next_[pixel];
+    if (first_[least_] == none) end_[least_] = &first_[least_];
+    return pixel;
+  }
+
+  static constexpr int none = -1;
+
+ private:
+  std::array<int, 256> first_;
+  std::array<int*, 256> end_;  ///< where the next one's number is to be written
+  int least_ = 255;            ///< no pixel in the queues has a smaller difference
+  int* next_;
+};
+
+}  // namespace
 
 template <class Label>
 void Watershed::flood_labels(const Image<Bgr>& picture, Image<Label>& labels) {
@@ -41,6 +74,7 @@ void Watershed::flood_labels(const Image<Bgr>& picture, Image<Label>& labels) {
   if (width < 3 || height < 3) return;
 
   next_.resize(labels.size());
+  Queues queues(next_.data());
   const Bgr* const colors = picture.data();
   Label* const label = labels.data();
   const std::array<int, 4> neighbors = {-1, 1, -width, width};
@@ -55,40 +89,34 @@ void Watershed::flood_labels(const Image<Bgr>& picture, Image<Label>& labels) {
         least = std::min(least, difference(colors[pixel], colors[pixel + offset]));
       }
       if (least == 256) continue;
-      push(pixel, least);
+      queues.push(pixel, least);
       label[pixel] = Labels::queued;
     }
   }
 
-  for (int active = 0; active < 256;) {
-    Queue& queue = queues_[active];
-    if (queue.first == none) {
-      ++active;
-      continue;
-    }
-    const int pixel = queue.first;
-    queue.first = next_[pixel];
-    Label basin = 0;
-    bool on_line = false;
+  // Few branches, because none of them can be predicted.
+  for (int pixel = queues.pop(); pixel != Queues::none; pixel = queues.pop()) {
+    Label lowest = Labels::last_basin;
+    Label highest = 0;
+    std::array<int, 4> unknown;
+    int unknown_count = 0;
     for (const int offset : neighbors) {
       const Label neighbor = label[pixel + offset];
-      if (!Labels::is_basin(neighbor)) continue;
-      on_line = on_line || (basin != 0 && basin != neighbor);
-      basin = neighbor;
+      const bool is_basin = Labels::is_basin(neighbor);
+      lowest = std::min(lowest, is_basin ? neighbor : Labels::last_basin);
+      highest = std::max(highest, is_basin ? neighbor : Label{0});
+      unknown[unknown_count] = pixel + offset;
+      unknown_count += neighbor == Labels::unknown ? 1 : 0;
     }
-    if (on_line) {
+    if (lowest != highest) {
       label[pixel] = Labels::line;
       line_.push_back(pixel);
       continue;
     }
-    label[pixel] = basin;
-    for (const int offset : neighbors) {
-      const int neighbor = pixel + offset;
-      if (label[neighbor] != Labels::unknown) continue;
-      const int step = difference(colors[pixel], colors[neighbor]);
-      push(neighbor, step);
-      label[neighbor] = Labels::queued;
-      active = std::min(active, step);
+    label[pixel] = highest;
+    for (int i = 0; i < unknown_count; ++i) {
+      queues.push(unknown[i], difference(colors[pixel], colors[unknown[i]]));
+      label[unknown[i]] = Labels::queued;
     }
   }
 }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -40,15 +39,7 @@ class Watershed {
  private:
   template <class Label>
   void flood_labels(const Image<Bgr>& picture, Image<Label>& labels);
-  void push(int pixel, int difference);
 
-  static constexpr int none = -1;
-  /// First in, first out, for each difference.
-  struct Queue {
-    int first = none;
-    int last = none;
-  };
-  std::array<Queue, 256> queues_;
   std::vector<int> next_;  ///< of a queued pixel, in its queue
   std::vector<int> line_;
 };
