@@ -52,10 +52,19 @@ Rect bounding_box(const Mask& mask, const Rect& part) {
 }
 
 std::size_t count_nonzero(const Mask& mask, const Rect& part) {
+  // As many as a byte can count at a time, so that the compiler takes many pixels at a time.
+  constexpr int most = 255;
   std::size_t count = 0;
   for (int y = part.y; y < part.bottom(); ++y) {
-    const std::uint8_t* row = mask.row(y);
-    for (int x = part.x; x < part.right(); ++x) count += row[x] != 0;
+    for (int begin = part.x; begin < part.right(); begin += most) {
+      const std::uint8_t* const row = mask.row(y);
+      const int end = std::min(begin + most, part.right());
+      std::uint8_t in_bytes = 0;
+      for (int x = begin; x < end; ++x) {
+        in_bytes = static_cast<std::uint8_t>(in_bytes + (row[x] != 0 ? 1 : 0));
+      }
+      count += in_bytes;
+    }
   }
   return count;
 }

@@ -64,11 +64,16 @@ void BlobSegmentation::average_colors() {
         continue;
       }
       const std::uint32_t blob = label[x];
-      Eigen::Vector4i sum = Eigen::Vector4i::Zero();
+      const int begin = x;
+      int blue = 0;
+      int green = 0;
+      int red = 0;
       for (; x < labels_.width() && label[x] == blob; ++x) {
-        sum += Eigen::Vector4i(color[x].b, color[x].g, color[x].r, 1);
+        blue += color[x].b;
+        green += color[x].g;
+        red += color[x].r;
       }
-      color_sums_[blob] += sum;
+      color_sums_[blob] += Eigen::Vector4i(blue, green, red, x - begin);
     }
   }
   mean_bgr_.resize(color_sums_.size());

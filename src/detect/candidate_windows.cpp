@@ -30,19 +30,21 @@ const std::vector<Rect>& CandidateWindows::find(const Image<Bgr>& image, const C
 
 void CandidateWindows::take_samples(const Image<Bgr>& image, const ColorTable& table, int pitch,
                                     const Limits& limits) {
-  candidates_.resize((image.width() + pitch - 1) / pitch, (image.height() + pitch - 1) / pitch);
+  candidates_.resize(std::max(1, image.width() / pitch), std::max(1, image.height() / pitch));
   core_.resize(candidates_.width(), candidates_.height());
+  const auto mean = [](int a, int b) { return static_cast<std::uint8_t>((a + b) / 2); };
+  const int middle = std::min(pitch / 2, image.width() - 1);
+  const int beside = std::max(middle - 1, 0);
   for (int y = 0; y < candidates_.height(); ++y) {
-    const Bgr* const row = image.row(std::min(y * pitch + pitch / 2, image.height() - 1));
-    for (int x = 0; x < candidates_.width(); ++x) {
-      const int column = std::min(x * pitch + pitch / 2, image.width() - 1);
-      const Bgr& left = row[std::max(column - 1, 0)];
-      const Bgr& right = row[column];
-      const auto mean = [](int a, int b) { return static_cast<std::uint8_t>((a + b) / 2); };
-      const ColorTable::Entry& entry =
-          table({mean(left.b, right.b), mean(left.g, right.g), mean(left.r, right.r)});
-      candidates_(x, y) = entry.neighbor <= limits.neighbor ? 255 : 0;
-      core_(x, y) = entry.core <= limits.core ? 1 : 0;
+    const Bgr* row = image.row(std::min(y * pitch + pitch / 2, image.height() - 1));
+    std::uint8_t* const candidate = candidates_.row(y);
+    std::uint8_t* const core = core_.row(y);
+    for (int x = 0; x < candidates_.width(); ++x, row += pitch) {
+      const Bgr& a = row[beside];
+      const Bgr& b = row[middle];
+      const ColorTable::Entry entry = table({mean(a.b, b.b), mean(a.g, b.g), mean(a.r, b.r)});
+      candidate[x] = entry.neighbor <= limits.neighbor ? 255 : 0;
+      core[x] = entry.core <= limits.core ? 1 : 0;
     }
   }
 }

@@ -19,19 +19,13 @@ std::span<const double> factors(bool round) {
   return round ? std::span<const double>(round_factors) : std::span<const double>(any_factors);
 }
 
-std::size_t count_both(const Mask& a, const Mask& b) {
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) count += (a.data()[i] & b.data()[i]) != 0;
-  return count;
-}
-
-/// Sets what is set in `object`, whose first pixel is `mask`'s (x, y), in `mask`, too.
-void add(const Mask& object, int x, int y, Mask& mask) {
-  for (int row = 0; row < object.height(); ++row) {
-    const std::uint8_t* const from = object.row(row);
-    std::uint8_t* const to = mask.row(y + row) + x;
-    for (int column = 0; column < object.width(); ++column) to[column] |= from[column];
+/// The pixels that are set in both masks.
+int count_both(const Mask& a, const Mask& b) {
+  int count = 0;
+  for (int y = 0; y < a.height(); ++y) {
+    for (int x = 0; x < a.width(); ++x) count += (a(x, y) & b(x, y)) != 0 ? 1 : 0;
   }
+  return count;
 }
 
 }  // namespace
@@ -140,7 +134,8 @@ bool ColorBlobFinder::find_any_region() {
   bool any = false;
   for (const ConnectedRegions::Region& region : selected_regions_.regions()) {
     if (!find_component(region, small_holes)) continue;
-    add(component_, 0, 0, region_);
+    std::transform(component_.begin(), component_.end(), region_.begin(), region_.begin(),
+                   [](std::uint8_t a, std::uint8_t b) { return std::max(a, b); });
     any = true;
   }
   return any;
@@ -194,7 +189,7 @@ bool ColorBlobFinder::find_component(const ConnectedRegions::Region& region, dou
   }
   component_pixels_ = region.pixels;
   fill_holes(largest_hole);
-  const auto core = static_cast<double>(count_both(component_, core_));
+  const int core = count_both(component_, core_);
   return component_pixels_ >= fewest_pixels_ && core >= smallest_core * component_pixels_;
 }
 
@@ -232,13 +227,16 @@ bool ColorBlobFinder::is_known_outline() {
 void ColorBlobFinder::refine(const Image<Bgr>& image, const Rect& window, Mask& mask) {
   const Rect part =
       refinement_.refine(image, region_, window, BlobSegmentation::scale(image), object_);
-  add(object_, part.x, part.y, mask);
+  object_regions_.find(object_, 255, Connectivity::eight);
+  for (const ConnectedRegions::Run& run : object_regions_.runs()) {
+    std::uint8_t* const row = mask.row(part.y + run.y) + part.x;
+    std::fill(row + run.first, row + run.last, std::uint8_t{255});
+  }
   if (round_) complete_round_shape(part, mask);
 }
 
 /// Fills what is missing of the outline: a part in the shadow, or against a similar colour.
 void ColorBlobFinder::complete_round_shape(const Rect& part, Mask& mask) {
-  object_regions_.find(object_, 255, Connectivity::eight);
   outline_.clear();
   for (const ConnectedRegions::Region& region : object_regions_.regions()) {
     trace_outline(object_, region.first, other_outline_);

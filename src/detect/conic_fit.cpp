@@ -76,8 +76,8 @@ std::optional<Ellipse> Moments::fit_circle() const {
 }
 
 Ellipse Moments::in_pixels(Ellipse ellipse) const {
-  ellipse.center = origin_ + unit_ * ellipse.center;
-  ellipse.half_axes *= unit_;
+  ellipse.center = origin_ + ellipse.center / per_unit_;
+  ellipse.half_axes /= per_unit_;
   return ellipse;
 }
 

@@ -19,17 +19,29 @@ struct Ellipse {
 /// similar size.
 class Moments {
  public:
-  Moments(const Eigen::Vector2d& origin, double unit) : origin_(origin), unit_(unit) {}
+  Moments(const Eigen::Vector2d& origin, double unit) : origin_(origin), per_unit_(1 / unit) {}
 
   void add(const Eigen::Vector2d& point) {
-    const Eigen::Vector2d from_origin = (point - origin_) / unit_;
-    const double x = from_origin.x();
-    const double y = from_origin.y();
-    const std::array<double, 5> x_powers = {1, x, x * x, x * x * x, x * x * x * x};
-    double y_power = 1;
-    for (int j = 0; j < 5; ++j, y_power *= y) {
-      for (int i = 0; i + j < 5; ++i) sums_[i][j] += x_powers[i] * y_power;
-    }
+    const double x = (point.x() - origin_.x()) * per_unit_;
+    const double y = (point.y() - origin_.y()) * per_unit_;
+    const double xx = x * x;
+    const double xy = x * y;
+    const double yy = y * y;
+    sums_[0][0] += 1;
+    sums_[1][0] += x;
+    sums_[0][1] += y;
+    sums_[2][0] += xx;
+    sums_[1][1] += xy;
+    sums_[0][2] += yy;
+    sums_[3][0] += xx * x;
+    sums_[2][1] += xx * y;
+    sums_[1][2] += x * yy;
+    sums_[0][3] += yy * y;
+    sums_[4][0] += xx * xx;
+    sums_[3][1] += xx * xy;
+    sums_[2][2] += xx * yy;
+    sums_[1][3] += xy * yy;
+    sums_[0][4] += yy * yy;
   }
 
   /// The ellipse of the least sum of squared algebraic distances (Fitzgibbon, Pilu & Fisher 1999,
@@ -42,7 +54,7 @@ class Moments {
   Ellipse in_pixels(Ellipse ellipse) const;
 
   Eigen::Vector2d origin_;
-  double unit_;
+  double per_unit_;
   std::array<std::array<double, 5>, 5> sums_{};
 };
 

@@ -108,6 +108,8 @@ std::optional<RoundShape> RoundShapeFitter::fit(const Outline& outline, const Ma
                [&](const Eigen::Vector2i& point) { return inner.contains(point.x(), point.y()); });
   if (points_.size() < fewest_points) return std::nullopt;
   const bool is_cut_off = points_.size() != outline.size();
+  box_.setEmpty();
+  for (const Eigen::Vector2i& point : points_) box_.extend(point);
   good_.assign(points_.size(), 1);
   std::optional<Ellipse> ellipse = fit_good_points(is_cut_off);
   // The first fit is drawn towards what does not belong to the outline, the later ones less.
@@ -145,10 +147,7 @@ bool RoundShapeFitter::leave_out_outliers(const Ellipse& ellipse) {
 }
 
 std::optional<Ellipse> RoundShapeFitter::fit_good_points(bool is_cut_off) const {
-  Rect box;
-  for (const Eigen::Vector2i& point : points_) extend(box, point.x(), point.y());
-  const double extent = std::max(box.width, box.height);
-  Moments moments({box.x + box.width / 2.0, box.y + box.height / 2.0}, extent / 2);
+  Moments moments(box_.center().cast<double>(), std::max(1, box_.sizes().maxCoeff()) / 2.0);
   for (std::size_t i = 0; i < points_.size(); ++i) {
     if (good_[i] != 0) moments.add(points_[i].cast<double>());
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <optional>
 #include <vector>
 
@@ -40,7 +41,8 @@ class RoundShapeFitter {
   std::optional<Ellipse> fit_good_points(bool is_cut_off) const;
 
   Outline points_;
-  std::vector<char> good_;  ///< of each point
+  Eigen::AlignedBox2i box_;  ///< of these
+  std::vector<char> good_;   ///< of each point
   std::vector<float> distances_px_, sorted_;
 };
 

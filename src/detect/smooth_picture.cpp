@@ -27,9 +27,15 @@ const std::uint8_t* PictureSmoother::row(const Image<Bgr>& picture, int y, int f
     return reinterpret_cast<const std::uint8_t*>(pixels + first);
   }
   scratch.resize(static_cast<std::size_t>(last - first));
-  for (int x = first; x < last; ++x) {
-    scratch[x - first] = pixels[std::clamp(x, 0, picture.width() - 1)];
+  auto to = scratch.begin();
+  int x = first;
+  for (; x < std::min(last, 0); ++x) *to++ = pixels[0];
+  const int end = std::min(last, picture.width());
+  if (x < end) {
+    to = std::copy(pixels + x, pixels + end, to);
+    x = end;
   }
+  for (; x < last; ++x) *to++ = pixels[picture.width() - 1];
   return reinterpret_cast<const std::uint8_t*>(scratch.data());
 }
 

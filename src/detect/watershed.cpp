@@ -81,8 +81,10 @@ void Watershed::flood_labels(const Image<Bgr>& picture, Image<Label>& labels) {
   for (int y = 1; y + 1 < height; ++y) {
     const int end = (y + 1) * width - 1;
     for (int pixel = y * width + 1; pixel < end; ++pixel) {
-      pixel += first_unknown(label + pixel, end - pixel);
-      if (pixel == end) break;
+      if (label[pixel] != Labels::unknown) {
+        pixel += first_unknown(label + pixel, end - pixel);
+        if (pixel == end) break;
+      }
       int least = 256;
       for (const int offset : neighbors) {
         if (!Labels::is_basin(label[pixel + offset])) continue;
