@@ -8,7 +8,7 @@
 namespace diminish {
 
 const std::vector<Rect>& CandidateWindows::find(const Image<Bgr>& image, const ColorTable& table,
-                                                int pitch, const Limits& limits, int margin) {
+                                                int pitch, const Limits& limits) {
   take_samples(image, table, pitch, limits);
   // Across a sample that noise or a highlight spoils.
   dilate(candidates_, {1, 1}, scratch_, joined_);
@@ -22,7 +22,9 @@ const std::vector<Rect>& CandidateWindows::find(const Image<Bgr>& image, const C
   windows_.clear();
   for (std::size_t i = 0; i < core_samples_.size(); ++i) {
     if (core_samples_[i] == 0 || core_samples_[i] < limits.fewest_core) continue;
-    windows_.push_back(intersect(grow(regions_.regions()[i].box, margin), candidates_.bounds()));
+    const Rect& box = regions_.regions()[i].box;
+    const int more = static_cast<int>(limits.margin_part * std::max(box.width, box.height));
+    windows_.push_back(intersect(grow(box, limits.margin + more), candidates_.bounds()));
   }
   join_overlapping();
   return windows_;

@@ -16,14 +16,16 @@ class CandidateWindows {
   struct Limits {
     int core, neighbor;  ///< of ColorTable's entries
     double fewest_core;  ///< samples within `core` that a part must have
+    int margin;          ///< added to each side of a part, in samples
+    double margin_part;  ///< and this part of its larger extent
   };
 
   /// The windows around the connected regions of samples within the neighbour limit that have
   /// enough within the core limit; no two overlap. A sample is the mean of two pixels beside each
   /// other in the middle of `pitch` x `pitch` pixels.
-  /// margin: added to each side. Windows and the margin are counted in samples.
+  /// Windows are counted in samples.
   const std::vector<Rect>& find(const Image<Bgr>& image, const ColorTable& table, int pitch,
-                                const Limits& limits, int margin);
+                                const Limits& limits);
 
  private:
   void take_samples(const Image<Bgr>& image, const ColorTable& table, int pitch,

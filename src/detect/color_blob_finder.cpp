@@ -59,7 +59,10 @@ void ColorBlobFinder::find_windows(const Image<Bgr>& image, double spread) {
   constexpr double smallest_area = 1.0 / 16;  // of the smallest object in the training images
   constexpr double generously = 1.5;
   constexpr int sample = 2;  // segment pixels wide and high
+  // What looks like the object beside it is told from it by the blobs' mean colours, for which they
+  // must be seen for the most part. A round object is told from it by its shape, too.
   constexpr int margin = 4;  // samples
+  const double margin_part = round_ ? 0 : 0.25;
   const int scale = BlobSegmentation::scale(image);
   const Rect picture = shrunk_bounds(image, scale);
   fewest_pixels_ =
@@ -68,9 +71,10 @@ void ColorBlobFinder::find_windows(const Image<Bgr>& image, double spread) {
     return static_cast<int>(generously * factor * spread * ColorTable::per_deviation);
   };
   const CandidateWindows::Limits limits{entries(1), entries(factors(round_).back()),
-                                        smallest_core / 4 * fewest_pixels_ / (sample * sample)};
+                                        smallest_core / 4 * fewest_pixels_ / (sample * sample),
+                                        margin, margin_part};
   windows_.clear();
-  for (const Rect& window : candidates_.find(image, table_, sample * scale, limits, margin)) {
+  for (const Rect& window : candidates_.find(image, table_, sample * scale, limits)) {
     const Rect pixels{sample * window.x, sample * window.y, sample * window.width,
                       sample * window.height};
     windows_.push_back(intersect(pixels, picture));
