@@ -108,7 +108,7 @@ Mask refine(const DiscPicture& picture, int scale) {
   const Rect part = refinement.refine(picture.image, picture.region, picture.window, scale, object);
   EXPECT_EQ(object.bounds(), (Rect{0, 0, part.width, part.height}));
   Mask whole(picture.image.width(), picture.image.height(), 0);
-  object.bounds().empty() ? void() : as_mat(object).copyTo(as_mat(whole)(as_cv(part)));
+  as_mat(object).copyTo(as_mat(whole)(as_cv(part)));
   return whole;
 }
 
@@ -118,7 +118,9 @@ TEST(OutlineRefinement, IsThePlainOne) {
       const DiscPicture picture({20 * scale, 17 * scale}, 9 * scale, scale, off_cells);
       const Mask refined = refine(picture, scale);
       EXPECT_EQ(refined, refine_plainly(picture.image, picture.region, picture.window, scale));
-      if (scale > 1) EXPECT_GT(intersection_over_union(refined, picture.truth), 0.97);
+      if (scale > 1 && off_cells == 0) {
+        EXPECT_GT(intersection_over_union(refined, picture.truth), 0.97);
+      }
     }
   }
 }
