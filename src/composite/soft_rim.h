@@ -13,6 +13,8 @@ class SoftRim {
   void blend(const Image<Bgr>& camera, const Mask& mask, int width_px, Image<Bgr>& picture);
 
  private:
+  void find_distances(const Mask& mask, const Rect& box, int width_px);
+
   Mask distance_;         ///< of the mask's box: up to width_px + 1
   Mask inside_, eroded_;  ///< of the box and a pixel more on each side
 };

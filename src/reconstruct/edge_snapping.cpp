@@ -3,6 +3,8 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <cstring>
 
 #include "core/rows.h"
 #include "reconstruct/sdct.h"
@@ -12,6 +14,8 @@ namespace {
 
 /// How far from an edge pixels are looked at, and which their neighbours are.
 constexpr int reach = 2;
+/// Pixels without depth between two surfaces.
+constexpr int longest_gap_px = 3;
 /// Two surfaces: at least so far apart, and by so many times the noise.
 constexpr float least_gap_m = 0.05F;
 constexpr float least_gap_noise = 3;
@@ -22,12 +26,85 @@ constexpr float usual_spread = 10;
 /// Of a surface's slope, against its neighbours' number: there are few.
 constexpr float slope_ridge = 1;
 
-bool is_neighbour(int x, int y) {
-  return x * x + y * y <= reach * reach;
+/// How far apart two surfaces are at least, the nearer one's depth given.
+float least_gap(const DepthNoise& noise, float depth_m) {
+  return std::max(least_gap_m, least_gap_noise * noise.at(depth_m));
+}
+
+/// The same in a depth image's units: plain enough for vectors.
+struct Gap {
+  float least, constant, by_square;
+
+  Gap(const DepthNoise& noise, float unit_m)
+      : least(least_gap_m / unit_m),
+        constant(least_gap_noise * noise.constant_m / unit_m),
+        by_square(least_gap_noise * noise.by_square * unit_m) {}
+
+  int is_between(int a, int b) const {
+    const auto nearer = static_cast<float>(std::min(a, b));
+    const auto wide = std::max(least, constant + by_square * nearer * nearer);
+    return static_cast<float>(std::abs(a - b)) > wide ? 1 : 0;
+  }
+};
+
+/// Calls visit(i) for each that is not 0.
+template <class Visit>
+void for_each_set(const std::uint8_t* flags, int count, const Visit& visit) {
+  const std::uint8_t* const end = flags + count;
+  for (const std::uint8_t* at = flags;; ++at) {
+    at = static_cast<const std::uint8_t*>(std::memchr(at, 1, static_cast<std::size_t>(end - at)));
+    if (!at) return;
+    visit(static_cast<int>(at - flags));
+  }
+}
+
+/// Marks the pixels on both sides of a depth edge, and those without depth between them.
+void find_gaps_in_row(const std::uint16_t* depth, int count, const Gap& gap,
+                      std::uint8_t* is_edge) {
+  constexpr int block = 32;
+  int last = -1;
+  for (int first = 0; first < count; first += block) {
+    const int end = std::min(first + block, count);
+    // Most blocks are one surface.
+    int breaks = end < count && last == first - 1 ? 0 : 1;
+    for (int i = std::max(first - 1, 0); i < end && end < count; ++i) {
+      breaks |= (depth[i] == 0 ? 1 : 0) | gap.is_between(depth[i], depth[i + 1]);
+    }
+    if (breaks == 0) {
+      last = end - 1;
+      continue;
+    }
+    for (int i = first; i < end; ++i) {
+      if (depth[i] == 0) continue;
+      if (last >= 0 && i - last <= longest_gap_px + 1 &&
+          gap.is_between(depth[i], depth[last]) != 0) {
+        std::fill(is_edge + last, is_edge + i + 1, std::uint8_t{1});
+      }
+      last = i;
+    }
+  }
+}
+
+/// The same and what is up to `by` pixels beside it, within `part`.
+void widen(const Image<std::uint8_t>& flags, const Rect& part, int by, Image<std::uint8_t>& wider) {
+  for_rows(part.height, [&](Rows rows) {
+    for (int y = part.y + rows.first; y < part.y + rows.last; ++y) {
+      std::uint8_t* result = wider.row(y) + part.x;
+      std::fill_n(result, part.width, std::uint8_t{0});
+      const int last = std::min(part.bottom() - 1, y + by);
+      for (int row = std::max(part.y, y - by); row <= last; ++row) {
+        for_each_set(flags.row(row) + part.x, part.width, [&](int x) {
+          std::fill(result + std::max(0, x - by), result + std::min(part.width, x + by + 1),
+                    std::uint8_t{1});
+        });
+      }
+    }
+  });
 }
 
 float distance(const Bgr3& a, const Bgr3& b) {
-  return std::hypot(a.b - b.b, a.g - b.g, a.r - b.r);
+  return std::sqrt((a.b - b.b) * (a.b - b.b) + (a.g - b.g) * (a.g - b.g) +
+                   (a.r - b.r) * (a.r - b.r));
 }
 
 /// A surface's colours: their mean, and the root mean square distance from it.
@@ -59,11 +136,8 @@ template <class Iterator>
 float depth_of_plane(Iterator begin, Iterator end) {
   float weight_sum = 0;
   float mean = 0;
-  const auto weight_of = [](const auto& n) {
-    return std::exp(-static_cast<float>(n.x * n.x + n.y * n.y) / (reach * reach));
-  };
   for (auto n = begin; n != end; ++n) {
-    const float weight = weight_of(*n);
+    const float weight = n->offset->weight;
     weight_sum += weight;
     mean += weight / n->depth_m;
   }
@@ -71,8 +145,9 @@ float depth_of_plane(Iterator begin, Iterator end) {
   Eigen::Matrix3f normal = Eigen::Vector3f(0, slope_ridge, slope_ridge).asDiagonal();
   Eigen::Vector3f right = Eigen::Vector3f::Zero();
   for (auto n = begin; n != end; ++n) {
-    const float weight = weight_of(*n);
-    const Eigen::Vector3f place(1, static_cast<float>(n->x), static_cast<float>(n->y));
+    const float weight = n->offset->weight;
+    const Eigen::Vector3f place(1, static_cast<float>(n->offset->x),
+                                static_cast<float>(n->offset->y));
     normal += weight * place * place.transpose();
     right += weight * (1 / n->depth_m - mean) * place;
   }
@@ -82,87 +157,127 @@ float depth_of_plane(Iterator begin, Iterator end) {
 
 }  // namespace
 
+/// Of the circle of radius `reach`, by a Gaussian.
+const std::array<EdgeSnapping::Offset, 13> EdgeSnapping::offsets = [] {
+  std::array<Offset, 13> circle{};
+  std::size_t count = 0;
+  for (int y = -reach; y <= reach; ++y) {
+    for (int x = -reach; x <= reach; ++x) {
+      const int square = x * x + y * y;
+      if (square > reach * reach) continue;
+      circle[count++] = {x, y, std::exp(-static_cast<float>(square) / (reach * reach))};
+    }
+  }
+  return circle;
+}();
+
 EdgeSnapping::EdgeSnapping(const RgbdCamera& camera)
     : camera_(camera),
       rays_(Lens(camera.depth).rays()),
       to_color_(camera.color_from_depth),
       color_(Lens(camera.color)),
       unit_m_(static_cast<float>(camera.depth_unit_m)) {
+  is_edge_.resize(camera.depth.width, camera.depth.height, 0);
   beside_edge_.resize(camera.depth.width, camera.depth.height, 0);
   is_read_.resize(camera.depth.width, camera.depth.height, 0);
   colors_.resize(camera.depth.width, camera.depth.height);
 }
 
 void EdgeSnapping::snap(const Images& images, const Rect& part, Image<std::uint16_t>& depth) {
-  const Rect inner = intersect(part, grow(depth.bounds(), -reach));
-  if (inner.empty()) return;
+  const Rect whole = intersect(part, depth.bounds());
+  if (whole.empty()) return;
   depth_ = depth;
-  find_edges(inner);
-  read_colors(images, inner);
-  for_rows(inner.height, [&](Rows rows) {
-    for (int y = inner.y + rows.first; y < inner.y + rows.last; ++y) {
-      snap_row(images, inner, y, depth);
+  find_edges(whole);
+  read_colors(images, whole);
+  for_rows(whole.height, [&](Rows rows) {
+    for (int y = whole.y + rows.first; y < whole.y + rows.last; ++y) {
+      for_each_set(beside_edge_.row(y) + whole.x, whole.width,
+                   [&](int i) { snap_pixel(images, whole.x + i, y, depth); });
     }
   });
 }
 
-/// By the span of depth in the square around each pixel.
+/// Marks what `find_gaps` finds along rows and along columns, and the pixels beside it.
 void EdgeSnapping::find_edges(const Rect& part) {
-  const auto gap = static_cast<std::uint16_t>(std::min(65535.F, least_gap_m / unit_m_));
+  const Gap gap(noise_, unit_m_);
   for_rows(part.height, [&](Rows rows) {
-    auto& [nearest, furthest] = spans_[rows.first == 0 ? 0 : 1];
-    nearest.resize(static_cast<std::size_t>(part.width + 2 * reach));
-    furthest.resize(nearest.size());
     for (int y = part.y + rows.first; y < part.y + rows.last; ++y) {
-      std::fill(nearest.begin(), nearest.end(), std::uint16_t{65535});
-      std::fill(furthest.begin(), furthest.end(), std::uint16_t{0});
-      for (int row = y - reach; row <= y + reach; ++row) {
-        const std::uint16_t* depth = depth_.row(row) + part.x - reach;
-        for (std::size_t i = 0; i < nearest.size(); ++i) {
-          // 0, no measurement, is the furthest for one and the nearest for the other.
-          const auto measured = static_cast<std::uint16_t>(depth[i] - 1);
-          nearest[i] = std::min(nearest[i], measured);
-          furthest[i] = std::max(furthest[i], depth[i]);
-        }
-      }
-      std::uint8_t* beside_edge = beside_edge_.row(y) + part.x;
-      for (int i = 0; i < part.width; ++i) {
-        int least = 65535;
-        int most = 0;
-        for (int k = i; k <= i + 2 * reach; ++k) {
-          least = std::min<int>(least, nearest[static_cast<std::size_t>(k)]);
-          most = std::max<int>(most, furthest[static_cast<std::size_t>(k)]);
-        }
-        beside_edge[i] = most - least - 1 > gap ? 1 : 0;
-      }
+      std::uint8_t* is_edge = is_edge_.row(y) + part.x;
+      std::fill_n(is_edge, part.width, std::uint8_t{0});
+      find_gaps_in_row(depth_.row(y) + part.x, part.width, gap, is_edge);
     }
   });
+  // Columns are divided between threads as rows are.
+  for_rows(part.width, [&](Rows columns) {
+    find_gaps_in_columns(
+        {part.x + columns.first, part.y, columns.last - columns.first, part.height},
+        columns_[columns.first == 0 ? 0 : 1]);
+  });
+  widen(is_edge_, part, 1, beside_edge_);
+  for_rows(part.height, [&](Rows rows) {
+    for (int y = part.y + rows.first; y < part.y + rows.last; ++y) {
+      for_each_set(beside_edge_.row(y) + part.x, part.width, [&](int i) {
+        if (!may_have_two_surfaces(part, part.x + i, y, gap)) beside_edge_(part.x + i, y) = 0;
+      });
+    }
+  });
+  widen(beside_edge_, part, reach, is_read_);
 }
 
-/// The colours of the pixels beside edges and of their neighbours.
+template <class Gap>
+bool EdgeSnapping::may_have_two_surfaces(const Rect& part, int x, int y, const Gap& gap) const {
+  int least = 65535;
+  int most = 0;
+  for (const Offset& offset : offsets) {
+    if (!part.contains(x + offset.x, y + offset.y)) return false;
+    const int depth = depth_(x + offset.x, y + offset.y);
+    least = depth == 0 ? least : std::min(least, depth);
+    most = std::max(most, depth);
+  }
+  return most > least && gap.is_between(least, most) != 0;
+}
+
+/// Row by row, so that columns are worked on side by side.
+void EdgeSnapping::find_gaps_in_columns(const Rect& part, Columns& columns) {
+  const Gap gap(noise_, unit_m_);
+  const auto width = static_cast<std::size_t>(part.width);
+  columns.last_depth.assign(width, 0);
+  columns.age.assign(width, 0);
+  columns.has_gap.resize(width);
+  for (int y = part.y; y < part.bottom(); ++y) {
+    const std::uint16_t* depth = depth_.row(y) + part.x;
+    std::uint16_t* last = columns.last_depth.data();
+    std::uint16_t* age = columns.age.data();
+    std::uint8_t* has_gap = columns.has_gap.data();
+    for (std::size_t x = 0; x < width; ++x) {
+      const int is_measured = (depth[x] != 0 ? 1 : 0) & (last[x] != 0 ? 1 : 0);
+      has_gap[x] = static_cast<std::uint8_t>(is_measured & gap.is_between(depth[x], last[x]));
+    }
+    for_each_set(has_gap, part.width, [&](int x) {
+      for (int row = y - age[x] - 1; row <= y; ++row) is_edge_(part.x + x, row) = 1;
+    });
+    for (std::size_t x = 0; x < width; ++x) {
+      const bool is_measured = depth[x] != 0;
+      const bool is_too_long = age[x] >= longest_gap_px;
+      last[x] = is_measured ? depth[x] : is_too_long ? std::uint16_t{0} : last[x];
+      age[x] = is_measured ? std::uint16_t{0} : static_cast<std::uint16_t>(age[x] + 1);
+    }
+  }
+}
+
+/// Reads the colours of the pixels that `is_read_` marks, and unmarks those that have none.
 void EdgeSnapping::read_colors(const Images& images, const Rect& part) {
-  const Rect around = grow(part, reach);
-  for_rows(around.height, [&](Rows rows) {
-    for (int y = around.y + rows.first; y < around.y + rows.last; ++y) {
-      std::uint8_t* is_read = is_read_.row(y);
-      std::fill(is_read + around.x, is_read + around.right(), std::uint8_t{0});
-      for (int row = std::max(part.y, y - reach); row <= std::min(part.bottom() - 1, y + reach);
-           ++row) {
-        const std::uint8_t* beside_edge = beside_edge_.row(row);
-        for (int x = part.x; x < part.right(); ++x) {
-          if (beside_edge[x] == 0) continue;
-          std::fill(is_read + x - reach, is_read + x + reach + 1, std::uint8_t{1});
-        }
-      }
-      for (int x = around.x; x < around.right(); ++x) {
-        if (is_read[x] == 0) continue;
+  for_rows(part.height, [&](Rows rows) {
+    for (int y = part.y + rows.first; y < part.y + rows.last; ++y) {
+      for_each_set(is_read_.row(y) + part.x, part.width, [&](int i) {
+        const int x = part.x + i;
         const std::uint16_t value = depth_(x, y);
         const bool is_free = value != 0 && images.depth_mask(x, y) == 0;
         const auto color =
             is_free ? color_at(images, x, y, static_cast<float>(value) * unit_m_) : std::nullopt;
-        is_read[x] = color ? 1 : 0;
+        is_read_(x, y) = color ? 1 : 0;
         if (color) colors_(x, y) = *color;
-      }
+      });
     }
   });
 }
@@ -202,39 +317,39 @@ std::optional<Bgr3> EdgeSnapping::color_at(const Images& images, int x, int y,
   return Bgr3{static_cast<float>(b) / 9, static_cast<float>(g) / 9, static_cast<float>(r) / 9};
 }
 
-void EdgeSnapping::snap_row(const Images& images, const Rect& part, int y,
-                            Image<std::uint16_t>& depth) const {
+void EdgeSnapping::snap_pixel(const Images& images, int x, int y,
+                              Image<std::uint16_t>& depth) const {
+  if (images.depth_mask(x, y) != 0) return;
   Neighbours neighbours;
-  for (int x = part.x; x < part.right(); ++x) {
-    if (beside_edge_(x, y) == 0 || images.depth_mask(x, y) != 0) continue;
-    std::size_t count = 0;
-    for (int dy = -reach; dy <= reach; ++dy) {
-      for (int dx = -reach; dx <= reach; ++dx) {
-        if (!is_neighbour(dx, dy)) continue;
-        const std::uint16_t value = depth_(x + dx, y + dy);
-        if (value == 0 || images.depth_mask(x + dx, y + dy) != 0) continue;
-        neighbours[count++] = {dx, dy, static_cast<float>(value) * unit_m_,
-                               is_read_(x + dx, y + dy) != 0 ? &colors_(x + dx, y + dy) : nullptr};
-      }
+  std::size_t count = 0;
+  for (const Offset& offset : offsets) {
+    const int column = x + offset.x;
+    const int row = y + offset.y;
+    const std::uint16_t value = depth_(column, row);
+    if (value == 0 || images.depth_mask(column, row) != 0) continue;
+    const float depth_m = static_cast<float>(value) * unit_m_;
+    // In their order of depth.
+    std::size_t place = count++;
+    for (; place > 0 && neighbours[place - 1].depth_m > depth_m; --place) {
+      neighbours[place] = neighbours[place - 1];
     }
-    const auto chosen_m = choose(images, x, y, neighbours, count);
-    if (!chosen_m) continue;
-    depth(x, y) =
-        static_cast<std::uint16_t>(std::clamp(std::lrint(*chosen_m / unit_m_), 1L, 65535L));
+    neighbours[place] = {&offset, depth_m,
+                         is_read_(column, row) != 0 ? &colors_(column, row) : nullptr};
   }
+  const auto chosen_m = choose(images, x, y, neighbours, count);
+  if (!chosen_m) return;
+  depth(x, y) = static_cast<std::uint16_t>(std::clamp(std::lrint(*chosen_m / unit_m_), 1L, 65535L));
 }
 
 /// The pixel's depth on the surface that it belongs to; nothing if there are not two of them, or
 /// they cannot be told apart.
 std::optional<float> EdgeSnapping::choose(const Images& images, int x, int y,
-                                          Neighbours& neighbours, std::size_t count) const {
+                                          const Neighbours& neighbours, std::size_t count) const {
   const auto begin = neighbours.begin();
   const auto end = begin + static_cast<std::ptrdiff_t>(count);
-  std::sort(begin, end,
-            [](const Neighbour& a, const Neighbour& b) { return a.depth_m < b.depth_m; });
   auto cut = begin;
   if (count > 0) {
-    float gap = std::max(least_gap_m, least_gap_noise * noise_.at(begin->depth_m));
+    float gap = least_gap(noise_, begin->depth_m);
     for (auto n = begin + 1; n < end; ++n) {
       if (n->depth_m - (n - 1)->depth_m <= gap) continue;
       gap = n->depth_m - (n - 1)->depth_m;
@@ -254,7 +369,7 @@ std::optional<float> EdgeSnapping::choose(const Images& images, int x, int y,
   if (!front_sight || !back_sight) return std::nullopt;
   const float front_misfit = distance(*front_sight, front->mean);
   const float back_misfit = distance(*back_sight, back->mean);
-  const auto is_own = [](const Neighbour& n) { return n.x == 0 && n.y == 0; };
+  const auto is_own = [](const Neighbour& n) { return n.offset->x == 0 && n.offset->y == 0; };
   if (std::any_of(begin, cut, is_own) && front_misfit < least_contrast) return front_m;
   if (std::any_of(cut, end, is_own) && back_misfit < least_contrast) return back_m;
   return front_misfit < back_misfit ? front_m : back_m;

@@ -37,17 +37,31 @@ class EdgeSnapping {
   void snap(const Images& images, const Rect& part, Image<std::uint16_t>& depth);
 
  private:
+  /// A neighbour's place from a pixel, and its weight.
+  struct Offset {
+    int x, y;
+    float weight;
+  };
+  static const std::array<Offset, 13> offsets;
   struct Neighbour {
-    int x, y;  ///< from the pixel
+    const Offset* offset;
     float depth_m;
     const Bgr3* color;  ///< null: not known
   };
   using Neighbours = std::array<Neighbour, 13>;
+  /// What is known of each column above a row.
+  struct Columns {
+    std::vector<std::uint16_t> last_depth, age;  ///< the last depth met, and rows since then
+    std::vector<std::uint8_t> has_gap;
+  };
 
   void find_edges(const Rect& part);
+  void find_gaps_in_columns(const Rect& part, Columns& columns);
+  template <class Gap>
+  bool may_have_two_surfaces(const Rect& part, int x, int y, const Gap& gap) const;
   void read_colors(const Images& images, const Rect& part);
-  void snap_row(const Images& images, const Rect& part, int y, Image<std::uint16_t>& depth) const;
-  std::optional<float> choose(const Images& images, int x, int y, Neighbours& neighbours,
+  void snap_pixel(const Images& images, int x, int y, Image<std::uint16_t>& depth) const;
+  std::optional<float> choose(const Images& images, int x, int y, const Neighbours& neighbours,
                               std::size_t count) const;
   std::optional<Bgr3> color_at(const Images& images, int x, int y, float depth_m) const;
 
@@ -59,13 +73,11 @@ class EdgeSnapping {
   DepthNoise noise_;
 
   Image<std::uint16_t> depth_;       ///< as it comes
-  Image<std::uint8_t> beside_edge_;  ///< whether two surfaces are within reach
-  Image<std::uint8_t> is_read_;      ///< whether `colors_` holds a depth pixel's colour
+  Image<std::uint8_t> is_edge_;      ///< 1: at a depth edge
+  Image<std::uint8_t> beside_edge_;  ///< 1: two surfaces may be within reach
+  Image<std::uint8_t> is_read_;      ///< 1: `colors_` holds a depth pixel's colour
   Image<Bgr3> colors_;
-  struct Span {
-    std::vector<std::uint16_t> nearest, furthest;  ///< of each column
-  };
-  Span spans_[2];  ///< of each thread
+  Columns columns_[2];  ///< of each thread
 };
 
 }  // namespace diminish

@@ -107,6 +107,8 @@ TEST_F(SpoiltEdges, OnlyInThePart) {
   int changed = 0;
   for (int y = 0; y < depth.height(); ++y) {
     for (int x = 0; x < depth.width(); ++x) {
+      // At the part's border neighbours are missing.
+      if (part.contains(x, y) && !grow(part, -4).contains(x, y)) continue;
       const auto& expected = part.contains(x, y) ? everywhere : with_rim_;
       ASSERT_EQ(depth(x, y), expected(x, y));
       changed += depth(x, y) != with_rim_(x, y) ? 1 : 0;
