@@ -29,6 +29,9 @@ class Inpainter {
   /// pixels, none of which shows an object to remove; leaves those alone. Returns whether the
   /// pixels were filled with something to look at ("none" leaves them black and answers false).
   virtual bool inpaint(const Holes& holes, const Options& options, Image<Bgr>& picture) = 0;
+
+  /// Whether the reconstruction's `surface` is used; where not, nobody needs to find it.
+  virtual bool uses_surfaces() const { return false; }
 };
 
 }  // namespace diminish

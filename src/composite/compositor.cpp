@@ -1,6 +1,7 @@
 #include "composite/compositor.h"
 
 #include <algorithm>
+#include <string_view>
 
 #include "core/rows.h"
 #include "core/stopwatch.h"
@@ -77,16 +78,21 @@ void sort_pixels(const Image<Bgr>& camera, const OcclusionMasks& masks, Diminish
   report.valid_pixels = report.mask_pixels - report.missing_pixels;
 }
 
+constexpr std::string_view gpu_prefix = "gl_";
+
+std::string without_gpu_prefix(const std::string& name) {
+  return name.starts_with(gpu_prefix) ? name.substr(gpu_prefix.size()) : name;
+}
+
 /// Calls work(method). Where the frame was drawn on the GPU, and there is a method "gl_" + name, by
 /// that; where it fails, by the processor's.
 template <class Interface, class Work>
 void on_gpu_or_processor(const std::string& name,
                          std::map<std::string, std::unique_ptr<Interface>>& made,
                          FrameReport& report, const Work& work) {
-  const std::string prefix = "gl_";
-  const bool is_asked_for = name.starts_with(prefix);
-  const std::string on_processor = is_asked_for ? name.substr(prefix.size()) : name;
-  const std::string on_gpu = prefix + on_processor;
+  const bool is_asked_for = name.starts_with(gpu_prefix);
+  const std::string on_processor = without_gpu_prefix(name);
+  const std::string on_gpu = std::string(gpu_prefix) + on_processor;
   const bool is_drawn_on_gpu = !report.drawing.device.empty();
   if ((is_asked_for || is_drawn_on_gpu) && Registry<Interface>::contains(on_gpu)) {
     try {
@@ -138,6 +144,11 @@ void Compositor::composite(const Image<Bgr>& camera, const OcclusionMasks& masks
     }
     view_mode(options.mode).show(camera, options, result);
   }
+}
+
+bool Compositor::uses_surfaces(const Options& options) {
+  return options.lift_shadows || options.remove_shadows ||
+         inpainter(without_gpu_prefix(options.inpaint)).uses_surfaces();
 }
 
 void Compositor::correct_colors(const Image<Bgr>& camera, const Mask& occlusion,

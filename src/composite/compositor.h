@@ -23,6 +23,9 @@ class Compositor {
   void composite(const Image<Bgr>& camera, const OcclusionMasks& masks, const Options& options,
                  DiminishedFrame& result);
 
+  /// Whether the reconstruction's `surface` is used.
+  bool uses_surfaces(const Options& options);
+
  private:
   void correct_colors(const Image<Bgr>& camera, const Mask& occlusion, const std::string& name,
                       DiminishedFrame& result);

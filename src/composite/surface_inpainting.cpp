@@ -28,6 +28,8 @@ constexpr Code foreground = surface_label::foreground & label_bits;
 /// is left is filled from all pixels around.
 class SurfaceInpainting : public Inpainter {
  public:
+  bool uses_surfaces() const override { return true; }
+
   bool inpaint(const Holes& holes, const Options&, Image<Bgr>& picture) override {
     const Rect box = bounding_box(holes.missing);
     if (box.empty()) return true;

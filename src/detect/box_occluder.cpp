@@ -14,7 +14,7 @@ namespace {
 class BoxOccluder : public OccluderDetector {
  public:
   BoxOccluder(const OccluderSpec& spec, const Rig& rig)
-      : name_(spec.name), rig_(rig), color_lens_(rig.color) {
+      : name_(spec.name), rig_(rig), color_drawer_(Lens(rig.color)) {
     const Config& config = spec.config;
     config.expect_keys({"name", "detector", "frame", "min", "max"});
     read_frame(config.at("frame"));
@@ -24,7 +24,7 @@ class BoxOccluder : public OccluderDetector {
       config.at("max").fail("expected three numbers, each above min's");
     }
     for (const RgbdCamera& camera : rig.rgbd) {
-      rgbd_lenses_.emplace_back(camera.color);
+      rgbd_drawers_.emplace_back(Lens(camera.color));
       depth_rays_.push_back(Lens(camera.depth).rays());
     }
     meshes_.resize(rig.rgbd.size());
@@ -137,12 +137,12 @@ class BoxOccluder : public OccluderDetector {
   }
 
   bool draw_in_color(const Poses& poses, Mask& mask) {
-    return draw(color_lens_, mask, object_in_color_,
+    return draw(rig_.color, color_drawer_, mask, object_in_color_,
                 [&](std::size_t from) { return poses.color_from_depth[from]; });
   }
 
   bool draw_in_rgbd(std::size_t k, const Poses& poses, Mask& mask) {
-    return draw(rgbd_lenses_[k], mask, object_in_rgbd_[k],
+    return draw(rig_.rgbd[k].color, rgbd_drawers_[k], mask, object_in_rgbd_[k],
                 [&](std::size_t from) -> std::optional<RigidTransform> {
                   const auto depth_from_other = depth_from_depth(k, from, poses);
                   if (!depth_from_other) return std::nullopt;
@@ -150,10 +150,11 @@ class BoxOccluder : public OccluderDetector {
                 });
   }
 
-  /// Adds what all RGB-D cameras saw in the box to `mask`, as it looks through `lens`.
+  /// Adds what all RGB-D cameras saw in the box to `mask`, as `camera` sees it.
   /// camera_from_depth(k): absent where not known.
   template <class CameraFromDepth>
-  bool draw(const Lens& lens, Mask& mask, Mask& object, const CameraFromDepth& camera_from_depth) {
+  bool draw(const Intrinsics& camera, SilhouetteDrawer& drawer, Mask& mask, Mask& object,
+            const CameraFromDepth& camera_from_depth) {
     object.resize(mask.width(), mask.height(), 0);
     bool any = false;
     int widest_px = 0;
@@ -165,8 +166,8 @@ class BoxOccluder : public OccluderDetector {
       for (const Eigen::Vector3d& x_in_depth : meshes_[k].vertices) {
         vertices_in_camera_.push_back(*transform * x_in_depth);
       }
-      any |= fill_triangles(vertices_in_camera_, meshes_[k].triangles, lens, object);
-      const double ratio = lens.intrinsics().fx / rig_.rgbd[k].depth.fx;
+      any |= drawer.fill_triangles(vertices_in_camera_, meshes_[k].triangles, object);
+      const double ratio = camera.fx / rig_.rgbd[k].depth.fx;
       widest_px = std::max(widest_px, static_cast<int>(std::ceil(hole_px * ratio)));
     }
     if (!any) return false;
@@ -187,8 +188,8 @@ class BoxOccluder : public OccluderDetector {
   std::optional<std::size_t> frame_camera_;  ///< whose depth frame the box is in; absent: world
   Eigen::Vector3d min_;
   Eigen::Vector3d max_;
-  Lens color_lens_;
-  std::vector<Lens> rgbd_lenses_;
+  SilhouetteDrawer color_drawer_;
+  std::vector<SilhouetteDrawer> rgbd_drawers_;
   std::vector<Image<Eigen::Vector2f>> depth_rays_;
   std::vector<TriangleMesh>
       meshes_;         ///< what each RGB-D camera sees in the box, in its depth frame

@@ -50,7 +50,7 @@ class BoxOccluderOnPlate : public testing::Test {
 
   Mask plate_mask(const Intrinsics& intrinsics, const RigidTransform& camera_from_world) const {
     Mask mask(intrinsics.width, intrinsics.height);
-    fill_convex_hull(plate(camera_from_world), Lens(intrinsics), mask);
+    SilhouetteDrawer(Lens(intrinsics)).fill_convex_hull(plate(camera_from_world), mask);
     return mask;
   }
 

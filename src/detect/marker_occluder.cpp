@@ -44,7 +44,7 @@ std::vector<Eigen::Vector3d> corners_of_box(const std::vector<Eigen::Vector3d>& 
 class MarkerOccluder : public OccluderDetector {
  public:
   MarkerOccluder(const OccluderSpec& spec, const Rig& rig)
-      : name_(spec.name), rig_(rig), color_lens_(rig.color) {
+      : name_(spec.name), rig_(rig), color_lens_(rig.color), color_drawer_(color_lens_) {
     const Config& config = spec.config;
     config.expect_keys({"name", "detector", "marker", "vertices", "mesh"});
     marker_ = read_marker(config.at("marker"));
@@ -59,7 +59,8 @@ class MarkerOccluder : public OccluderDetector {
     shape_corners_ = corners_of_box(shape_.vertices);
     for (const RgbdCamera& camera : rig.rgbd) {
       rgbd_color_lenses_.emplace_back(camera.color);
-      rgbd_depth_lenses_.emplace_back(camera.depth);
+      rgbd_color_drawers_.emplace_back(rgbd_color_lenses_.back());
+      rgbd_depth_drawers_.emplace_back(Lens(camera.depth));
     }
   }
 
@@ -81,7 +82,7 @@ class MarkerOccluder : public OccluderDetector {
     OccluderReport report;
     report.name = name_;
     report.in_color =
-        camera_from_marker[0] && draw(*camera_from_marker[0], color_lens_, masks.color);
+        camera_from_marker[0] && draw(*camera_from_marker[0], color_drawer_, masks.color);
     for (std::size_t k = 0; k < rig_.rgbd.size(); ++k) {
       const auto& pose = camera_from_marker[k + 1];
       const bool draws = pose && observation.frame.rgbd[k].available();
@@ -120,19 +121,19 @@ class MarkerOccluder : public OccluderDetector {
   bool draw_in_rgbd(std::size_t k, const RigidTransform& color_from_marker, OcclusionMasks& masks) {
     const RigidTransform depth_from_marker =
         rig_.rgbd[k].color_from_depth.inverse() * color_from_marker;
-    const bool in_color = draw(color_from_marker, rgbd_color_lenses_[k], masks.rgbd_color[k]);
-    const bool in_depth = draw(depth_from_marker, rgbd_depth_lenses_[k], masks.rgbd_depth[k]);
+    const bool in_color = draw(color_from_marker, rgbd_color_drawers_[k], masks.rgbd_color[k]);
+    const bool in_depth = draw(depth_from_marker, rgbd_depth_drawers_[k], masks.rgbd_depth[k]);
     return in_color || in_depth;
   }
 
-  bool draw(const RigidTransform& camera_from_marker, const Lens& lens, Mask& mask) {
+  bool draw(const RigidTransform& camera_from_marker, SilhouetteDrawer& drawer, Mask& mask) {
     vertices_in_camera_.clear();
     for (const Eigen::Vector3d& vertex : shape_.vertices) {
       vertices_in_camera_.push_back(camera_from_marker * vertex);
     }
     return shape_.triangles.empty()
-               ? fill_convex_hull(vertices_in_camera_, lens, mask)
-               : fill_triangles(vertices_in_camera_, shape_.triangles, lens, mask);
+               ? drawer.fill_convex_hull(vertices_in_camera_, mask)
+               : drawer.fill_triangles(vertices_in_camera_, shape_.triangles, mask);
   }
 
   /// What is missing. An object that is out of a camera's sight is not: its place is known.
@@ -160,7 +161,8 @@ class MarkerOccluder : public OccluderDetector {
   std::vector<Eigen::Vector3d> shape_corners_;  ///< of the box around it
   Lens color_lens_;
   std::vector<Lens> rgbd_color_lenses_;
-  std::vector<Lens> rgbd_depth_lenses_;
+  SilhouetteDrawer color_drawer_;
+  std::vector<SilhouetteDrawer> rgbd_color_drawers_, rgbd_depth_drawers_;
   std::vector<Eigen::Vector3d> vertices_in_camera_;
 };
 

@@ -113,10 +113,10 @@ class FieldOfView {
 /// Draws polygons of rays; keeps its memory from one polygon to the next.
 class PolygonFiller {
  public:
-  PolygonFiller(const Lens& lens, Mask& mask) : lens_(lens), field_(lens), mask_(mask) {}
+  explicit PolygonFiller(const Lens& lens) : lens_(lens), field_(lens) {}
 
   /// Draws a convex polygon of rays. Changes `rays`.
-  bool fill(Polygon& rays) {
+  bool fill(Polygon& rays, Mask& mask) {
     field_.clip_to_field(rays, scratch_);
     if (rays.size() < 3) return false;
     pixels_.clear();
@@ -127,7 +127,7 @@ class PolygonFiller {
       append_bent_edge(previous, begin, rays[i], end);
       begin = end;
     }
-    return fill_pixels();
+    return fill_pixels(mask);
   }
 
  private:
@@ -153,17 +153,17 @@ class PolygonFiller {
   }
 
   /// Sets the pixels whose centres are inside `pixels_`, by the even-odd rule.
-  bool fill_pixels() {
+  bool fill_pixels(Mask& mask) {
     const auto by_y = [](const auto& a, const auto& b) { return a.y() < b.y(); };
     const auto [top, bottom] = std::minmax_element(pixels_.begin(), pixels_.end(), by_y);
     const int first_row = static_cast<int>(std::ceil(std::max(top->y(), 0.0)));
-    const int last_row = static_cast<int>(std::floor(std::min(bottom->y(), mask_.height() - 1.0)));
+    const int last_row = static_cast<int>(std::floor(std::min(bottom->y(), mask.height() - 1.0)));
     bool any = false;
-    for (int row = first_row; row <= last_row; ++row) any |= fill_row(row);
+    for (int row = first_row; row <= last_row; ++row) any |= fill_row(row, mask);
     return any;
   }
 
-  bool fill_row(int row) {
+  bool fill_row(int row, Mask& mask) {
     crossings_.clear();
     for (std::size_t i = 0; i < pixels_.size(); ++i) {
       const Eigen::Vector2d& a = i > 0 ? pixels_[i - 1] : pixels_.back();
@@ -177,30 +177,29 @@ class PolygonFiller {
     bool any = false;
     for (std::size_t i = 0; i + 1 < crossings_.size(); i += 2) {
       const double left = std::max(crossings_[i] - rounding_px, 0.0);
-      const double right = std::min(crossings_[i + 1] + rounding_px, mask_.width() - 1.0);
+      const double right = std::min(crossings_[i + 1] + rounding_px, mask.width() - 1.0);
       const int first = static_cast<int>(std::ceil(left));
       const int last = static_cast<int>(std::floor(right));
       if (first > last) continue;
-      std::fill(mask_.row(row) + first, mask_.row(row) + last + 1, std::uint8_t{255});
+      std::fill(mask.row(row) + first, mask.row(row) + last + 1, std::uint8_t{255});
       any = true;
     }
     return any;
   }
 
-  const Lens& lens_;
+  Lens lens_;
   FieldOfView field_;
-  Mask& mask_;
   Polygon scratch_;
   Polygon pixels_;
   std::vector<double> crossings_;
 };
 
-/// The corners of the convex hull, in order (Andrew 1979).
-Polygon convex_hull(Polygon points) {
+/// Finds the corners of the convex hull, in order (Andrew 1979). Sorts `points`.
+void find_convex_hull(Polygon& points, Polygon& hull) {
   std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) {
     return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
   });
-  Polygon hull;
+  hull.clear();
   const auto add_chain = [&hull](auto begin, auto end) {
     const std::size_t start = hull.size();
     for (auto point = begin; point != end; ++point) {
@@ -214,14 +213,28 @@ Polygon convex_hull(Polygon points) {
   };
   add_chain(points.begin(), points.end());
   add_chain(points.rbegin(), points.rend());
-  return hull;
 }
 
 }  // namespace
 
-bool fill_convex_hull(const std::vector<Eigen::Vector3d>& points_in_camera, const Lens& lens,
-                      Mask& mask) {
-  Polygon rays;
+struct SilhouetteDrawer::Implementation {
+  explicit Implementation(const Lens& lens) : filler(lens) {}
+
+  PolygonFiller filler;
+  Polygon rays, hull;
+  std::vector<Eigen::Vector3d> corners, in_front;  ///< of a triangle
+};
+
+SilhouetteDrawer::SilhouetteDrawer(const Lens& lens)
+    : implementation_(std::make_unique<Implementation>(lens)) {}
+SilhouetteDrawer::~SilhouetteDrawer() = default;
+SilhouetteDrawer::SilhouetteDrawer(SilhouetteDrawer&&) noexcept = default;
+SilhouetteDrawer& SilhouetteDrawer::operator=(SilhouetteDrawer&&) noexcept = default;
+
+bool SilhouetteDrawer::fill_convex_hull(const std::vector<Eigen::Vector3d>& points_in_camera,
+                                        Mask& mask) {
+  auto& [filler, rays, hull, corners, in_front] = *implementation_;
+  rays.clear();
   for (const Eigen::Vector3d& point : points_in_camera) {
     if (point.z() < near_m) continue;
     rays.emplace_back(point.head<2>() / point.z());
@@ -233,17 +246,14 @@ bool fill_convex_hull(const std::vector<Eigen::Vector3d>& points_in_camera, cons
       rays.emplace_back(corner.head<2>() / near_m);
     }
   }
-  Polygon hull = convex_hull(std::move(rays));
-  return PolygonFiller(lens, mask).fill(hull);
+  find_convex_hull(rays, hull);
+  return filler.fill(hull, mask);
 }
 
-bool fill_triangles(const std::vector<Eigen::Vector3d>& vertices_in_camera,
-                    const std::vector<std::array<int, 3>>& triangles, const Lens& lens,
-                    Mask& mask) {
-  PolygonFiller filler(lens, mask);
-  std::vector<Eigen::Vector3d> corners;
-  std::vector<Eigen::Vector3d> in_front;
-  Polygon rays;
+bool SilhouetteDrawer::fill_triangles(const std::vector<Eigen::Vector3d>& vertices_in_camera,
+                                      const std::vector<std::array<int, 3>>& triangles,
+                                      Mask& mask) {
+  auto& [filler, rays, hull, corners, in_front] = *implementation_;
   bool any = false;
   for (const std::array<int, 3>& triangle : triangles) {
     corners.clear();
@@ -252,7 +262,7 @@ bool fill_triangles(const std::vector<Eigen::Vector3d>& vertices_in_camera,
         corners, [](const Eigen::Vector3d& point) { return point.z() - near_m; }, in_front);
     rays.clear();
     for (const Eigen::Vector3d& point : in_front) rays.emplace_back(point.head<2>() / point.z());
-    any |= filler.fill(rays);
+    any |= filler.fill(rays, mask);
   }
   return any;
 }

@@ -107,7 +107,7 @@ TEST(Silhouette, ConvexHullIsWhatRaysMeet) {
       for (int repeat = 0; repeat < 4; ++repeat) {
         const Points points = random_points(random, 4 + repeat, shape.centre, shape.size_m);
         Mask mask(intrinsics.width, intrinsics.height);
-        const bool drawn = fill_convex_hull(points, lens, mask);
+        const bool drawn = SilhouetteDrawer(lens).fill_convex_hull(points, mask);
         EXPECT_EQ(drawn, count_nonzero(mask, mask.bounds()) > 0);
         hits += expect_as_ray_cast(mask, lens, points, all_triples(4 + repeat));
       }
@@ -126,7 +126,7 @@ TEST(Silhouette, TrianglesAreWhatRaysMeet) {
         const Points points = random_points(random, 7, shape.centre, shape.size_m);
         const Triangles triangles = {{0, 1, 2}, {2, 3, 4}, {4, 5, 6}};
         Mask mask(intrinsics.width, intrinsics.height);
-        const bool drawn = fill_triangles(points, triangles, lens, mask);
+        const bool drawn = SilhouetteDrawer(lens).fill_triangles(points, triangles, mask);
         EXPECT_EQ(drawn, count_nonzero(mask, mask.bounds()) > 0);
         expect_as_ray_cast(mask, lens, points, triangles);
       }
@@ -150,7 +150,7 @@ TEST(Silhouette, NeighbouringTrianglesLeaveNoGap) {
     }
   }
   Mask mask(barrel.width, barrel.height);
-  EXPECT_TRUE(fill_triangles(points, triangles, lens, mask));
+  EXPECT_TRUE(SilhouetteDrawer(lens).fill_triangles(points, triangles, mask));
   EXPECT_EQ(mask, Mask(barrel.width, barrel.height, 255));
 }
 
@@ -160,20 +160,21 @@ TEST(Silhouette, EdgeOnAndOutsideShapesSetNothing) {
   const Eigen::Vector3d toward(0.113, 0.047, 1);  // a plane through the camera's centre
   const Points edge_on = {toward, 2 * toward, toward + Eigen::Vector3d(0.2, 0.1, 0),
                           2 * toward + Eigen::Vector3d(0.2, 0.1, 0)};
-  EXPECT_FALSE(fill_convex_hull(edge_on, lens, mask));
-  EXPECT_FALSE(fill_triangles(edge_on, {{0, 1, 2}, {1, 2, 3}}, lens, mask));
+  EXPECT_FALSE(SilhouetteDrawer(lens).fill_convex_hull(edge_on, mask));
+  EXPECT_FALSE(SilhouetteDrawer(lens).fill_triangles(edge_on, {{0, 1, 2}, {1, 2, 3}}, mask));
   const Points behind = {{0, 0, -1}, {1, 0, -1}, {0, 1, -1}, {1, 1, -2}};
-  EXPECT_FALSE(fill_convex_hull(behind, lens, mask));
+  EXPECT_FALSE(SilhouetteDrawer(lens).fill_convex_hull(behind, mask));
   const Points beside = {{50, 0, 1}, {51, 0, 1}, {50, 1, 1}, {51, 1, 2}};
-  EXPECT_FALSE(fill_convex_hull(beside, lens, mask));
-  EXPECT_FALSE(fill_convex_hull({}, lens, mask));
+  EXPECT_FALSE(SilhouetteDrawer(lens).fill_convex_hull(beside, mask));
+  EXPECT_FALSE(SilhouetteDrawer(lens).fill_convex_hull({}, mask));
   EXPECT_EQ(mask, Mask(pincushion.width, pincushion.height));
 }
 
 TEST(Silhouette, LeavesOtherPixelsAlone) {
   const Lens lens(barrel);
   Mask mask(barrel.width, barrel.height, 7);
-  fill_convex_hull({{0, 0, 2}, {0.1, 0, 2}, {0, 0.1, 2}, {0.1, 0.1, 2}}, lens, mask);
+  SilhouetteDrawer(lens).fill_convex_hull({{0, 0, 2}, {0.1, 0, 2}, {0, 0.1, 2}, {0.1, 0.1, 2}},
+                                          mask);
   EXPECT_EQ(mask(10, 10), 7);
   EXPECT_EQ(mask(85, 63), 255);
 }

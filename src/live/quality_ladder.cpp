@@ -18,17 +18,18 @@ struct Step {
 };
 
 /// Each includes those before it.
-constexpr std::array<Step, 6> steps = {{
+constexpr std::array<Step, 7> steps = {{
     {"whole view not reconstructed, shadows outside the mask stay",
      [](Options& o) {
        o.whole_view = false;
        o.remove_shadows = false;
      }},
+    {"depth edges stay where they are", [](Options& o) { o.snap_edges = false; }},
+    {"shadows not lifted", [](Options& o) { o.lift_shadows = false; }},
     {"invented pixels filled smoothly",
      [](Options& o) {
        if (o.inpaint != "none") o.inpaint = "harmonic";
      }},
-    {"shadows not lifted", [](Options& o) { o.lift_shadows = false; }},
     {"one colour map, no membrane",
      [](Options& o) {
        if (o.color_correct != "none") o.color_correct = "affine";
@@ -36,7 +37,6 @@ constexpr std::array<Step, 6> steps = {{
     {"poses not refined", [](Options& o) { o.refine_poses = false; }},
     {"depth not cleaned",
      [](Options& o) {
-       o.snap_edges = false;
        o.smooth_depth = false;
        o.remove_flying = false;
        o.remove_hidden = false;

@@ -108,6 +108,7 @@ struct Pipeline::Implementation {
           }
         },
         [&] { clean_depths(frame); });
+    const bool finds_surfaces = compositor.uses_surfaces(options);
     const auto draw = [&] {
       backend.reconstruct(frame, depths, poses, masks, region, options, reconstruction,
                           report.drawing);
@@ -116,10 +117,17 @@ struct Pipeline::Implementation {
       find_background(objects, reconstruction);
       region = join(region, cast_shadows.bounds());
       draw();
-    } else {
+    } else if (finds_surfaces) {
       oneapi::tbb::parallel_invoke([&] { find_background(objects, reconstruction); }, draw);
+    } else {
+      cast_shadows.clear();
+      draw();
     }
-    background_planes.label(reconstruction);
+    if (finds_surfaces) {
+      background_planes.label(reconstruction);
+    } else {
+      reconstruction.surface.resize(0, 0);
+    }
     if (cast_shadows.any()) {
       cast_shadows.shade(reconstruction);
     } else {
