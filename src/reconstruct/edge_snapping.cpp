@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "core/rows.h"
+#include "reconstruct/depth_noise.h"
 #include "reconstruct/sdct.h"
 
 namespace diminish {
@@ -21,31 +22,8 @@ constexpr float least_gap_m = 0.05F;
 constexpr float least_gap_noise = 3;
 /// Surfaces of colours closer than this are not told apart.
 constexpr float least_contrast = 20;
-/// What even a plain surface's colours differ by.
-constexpr float usual_spread = 10;
 /// Of a surface's slope, against its neighbours' number: there are few.
 constexpr float slope_ridge = 1;
-
-/// How far apart two surfaces are at least, the nearer one's depth given.
-float least_gap(const DepthNoise& noise, float depth_m) {
-  return std::max(least_gap_m, least_gap_noise * noise.at(depth_m));
-}
-
-/// The same in a depth image's units: plain enough for vectors.
-struct Gap {
-  float least, constant, by_square;
-
-  Gap(const DepthNoise& noise, float unit_m)
-      : least(least_gap_m / unit_m),
-        constant(least_gap_noise * noise.constant_m / unit_m),
-        by_square(least_gap_noise * noise.by_square * unit_m) {}
-
-  int is_between(int a, int b) const {
-    const auto nearer = static_cast<float>(std::min(a, b));
-    const auto wide = std::max(least, constant + by_square * nearer * nearer);
-    return static_cast<float>(std::abs(a - b)) > wide ? 1 : 0;
-  }
-};
 
 /// Calls visit(i) for each that is not 0.
 template <class Visit>
@@ -58,34 +36,7 @@ void for_each_set(const std::uint8_t* flags, int count, const Visit& visit) {
   }
 }
 
-/// Marks the pixels on both sides of a depth edge, and those without depth between them.
-void find_gaps_in_row(const std::uint16_t* depth, int count, const Gap& gap,
-                      std::uint8_t* is_edge) {
-  constexpr int block = 32;
-  int last = -1;
-  for (int first = 0; first < count; first += block) {
-    const int end = std::min(first + block, count);
-    // Most blocks are one surface.
-    int breaks = end < count && last == first - 1 ? 0 : 1;
-    for (int i = std::max(first - 1, 0); i < end && end < count; ++i) {
-      breaks |= (depth[i] == 0 ? 1 : 0) | gap.is_between(depth[i], depth[i + 1]);
-    }
-    if (breaks == 0) {
-      last = end - 1;
-      continue;
-    }
-    for (int i = first; i < end; ++i) {
-      if (depth[i] == 0) continue;
-      if (last >= 0 && i - last <= longest_gap_px + 1 &&
-          gap.is_between(depth[i], depth[last]) != 0) {
-        std::fill(is_edge + last, is_edge + i + 1, std::uint8_t{1});
-      }
-      last = i;
-    }
-  }
-}
-
-/// The same and what is up to `by` pixels beside it, within `part`.
+/// Marks in `wider` what is marked in `flags`, and what is up to `by` pixels beside it, in `part`.
 void widen(const Image<std::uint8_t>& flags, const Rect& part, int by, Image<std::uint8_t>& wider) {
   for_rows(part.height, [&](Rows rows) {
     for (int y = part.y + rows.first; y < part.y + rows.last; ++y) {
@@ -107,13 +58,9 @@ float distance(const Bgr3& a, const Bgr3& b) {
                    (a.r - b.r) * (a.r - b.r));
 }
 
-/// A surface's colours: their mean, and the root mean square distance from it.
-struct SurfaceColors {
-  Bgr3 mean;
-  float spread;
-};
+/// The mean of the neighbours' colours, as far as they are known.
 template <class Iterator>
-std::optional<SurfaceColors> colors_of(Iterator begin, Iterator end) {
+std::optional<Bgr3> mean_color(Iterator begin, Iterator end) {
   Bgr3 sum{0, 0, 0};
   float known = 0;
   for (auto n = begin; n != end; ++n) {
@@ -122,12 +69,7 @@ std::optional<SurfaceColors> colors_of(Iterator begin, Iterator end) {
     ++known;
   }
   if (known == 0) return std::nullopt;
-  const Bgr3 mean{sum.b / known, sum.g / known, sum.r / known};
-  float squares = 0;
-  for (auto n = begin; n != end; ++n) {
-    if (n->color) squares += distance(*n->color, mean) * distance(*n->color, mean);
-  }
-  return SurfaceColors{mean, std::sqrt(squares / known)};
+  return Bgr3{sum.b / known, sum.g / known, sum.r / known};
 }
 
 /// A surface's depth at a pixel, from its neighbours there, the nearest first: along a plane 1/z is
@@ -171,12 +113,17 @@ const std::array<EdgeSnapping::Offset, 13> EdgeSnapping::offsets = [] {
   return circle;
 }();
 
+EdgeSnapping::Gap::Gap(float unit_m)
+    : least(least_gap_m / unit_m),
+      constant(least_gap_noise * DepthNoise().constant_m / unit_m),
+      by_square(least_gap_noise * DepthNoise().by_square * unit_m) {}
+
 EdgeSnapping::EdgeSnapping(const RgbdCamera& camera)
-    : camera_(camera),
-      rays_(Lens(camera.depth).rays()),
+    : rays_(Lens(camera.depth).rays()),
       to_color_(camera.color_from_depth),
       color_(Lens(camera.color)),
-      unit_m_(static_cast<float>(camera.depth_unit_m)) {
+      unit_m_(static_cast<float>(camera.depth_unit_m)),
+      gap_(unit_m_) {
   is_edge_.resize(camera.depth.width, camera.depth.height, 0);
   beside_edge_.resize(camera.depth.width, camera.depth.height, 0);
   is_read_.resize(camera.depth.width, camera.depth.height, 0);
@@ -197,14 +144,13 @@ void EdgeSnapping::snap(const Images& images, const Rect& part, Image<std::uint1
   });
 }
 
-/// Marks what `find_gaps` finds along rows and along columns, and the pixels beside it.
+/// Marks the pixels around which there are two surfaces.
 void EdgeSnapping::find_edges(const Rect& part) {
-  const Gap gap(noise_, unit_m_);
   for_rows(part.height, [&](Rows rows) {
     for (int y = part.y + rows.first; y < part.y + rows.last; ++y) {
       std::uint8_t* is_edge = is_edge_.row(y) + part.x;
       std::fill_n(is_edge, part.width, std::uint8_t{0});
-      find_gaps_in_row(depth_.row(y) + part.x, part.width, gap, is_edge);
+      find_gaps_in_row(depth_.row(y) + part.x, part.width, is_edge);
     }
   });
   // Columns are divided between threads as rows are.
@@ -217,15 +163,14 @@ void EdgeSnapping::find_edges(const Rect& part) {
   for_rows(part.height, [&](Rows rows) {
     for (int y = part.y + rows.first; y < part.y + rows.last; ++y) {
       for_each_set(beside_edge_.row(y) + part.x, part.width, [&](int i) {
-        if (!may_have_two_surfaces(part, part.x + i, y, gap)) beside_edge_(part.x + i, y) = 0;
+        if (!may_have_two_surfaces(part, part.x + i, y)) beside_edge_(part.x + i, y) = 0;
       });
     }
   });
   widen(beside_edge_, part, reach, is_read_);
 }
 
-template <class Gap>
-bool EdgeSnapping::may_have_two_surfaces(const Rect& part, int x, int y, const Gap& gap) const {
+bool EdgeSnapping::may_have_two_surfaces(const Rect& part, int x, int y) const {
   int least = 65535;
   int most = 0;
   for (const Offset& offset : offsets) {
@@ -234,12 +179,38 @@ bool EdgeSnapping::may_have_two_surfaces(const Rect& part, int x, int y, const G
     least = depth == 0 ? least : std::min(least, depth);
     most = std::max(most, depth);
   }
-  return most > least && gap.is_between(least, most) != 0;
+  return most > least && gap_.is_between(least, most) != 0;
 }
 
-/// Row by row, so that columns are worked on side by side.
+/// Marks the pixels on both sides of a depth edge, and those without depth between them.
+void EdgeSnapping::find_gaps_in_row(const std::uint16_t* depth, int count,
+                                    std::uint8_t* is_edge) const {
+  constexpr int block = 32;
+  int last = -1;
+  for (int first = 0; first < count; first += block) {
+    const int end = std::min(first + block, count);
+    // Most blocks are one surface.
+    int breaks = end < count && last == first - 1 ? 0 : 1;
+    for (int i = std::max(first - 1, 0); i < end && end < count; ++i) {
+      breaks |= (depth[i] == 0 ? 1 : 0) | gap_.is_between(depth[i], depth[i + 1]);
+    }
+    if (breaks == 0) {
+      last = end - 1;
+      continue;
+    }
+    for (int i = first; i < end; ++i) {
+      if (depth[i] == 0) continue;
+      if (last >= 0 && i - last <= longest_gap_px + 1 &&
+          gap_.is_between(depth[i], depth[last]) != 0) {
+        std::fill(is_edge + last, is_edge + i + 1, std::uint8_t{1});
+      }
+      last = i;
+    }
+  }
+}
+
+/// The same along columns. Row by row, so that columns are worked on side by side.
 void EdgeSnapping::find_gaps_in_columns(const Rect& part, Columns& columns) {
-  const Gap gap(noise_, unit_m_);
   const auto width = static_cast<std::size_t>(part.width);
   columns.last_depth.assign(width, 0);
   columns.age.assign(width, 0);
@@ -251,7 +222,7 @@ void EdgeSnapping::find_gaps_in_columns(const Rect& part, Columns& columns) {
     std::uint8_t* has_gap = columns.has_gap.data();
     for (std::size_t x = 0; x < width; ++x) {
       const int is_measured = (depth[x] != 0 ? 1 : 0) & (last[x] != 0 ? 1 : 0);
-      has_gap[x] = static_cast<std::uint8_t>(is_measured & gap.is_between(depth[x], last[x]));
+      has_gap[x] = static_cast<std::uint8_t>(is_measured & gap_.is_between(depth[x], last[x]));
     }
     for_each_set(has_gap, part.width, [&](int x) {
       for (int row = y - age[x] - 1; row <= y; ++row) is_edge_(part.x + x, row) = 1;
@@ -349,26 +320,27 @@ std::optional<float> EdgeSnapping::choose(const Images& images, int x, int y,
   const auto end = begin + static_cast<std::ptrdiff_t>(count);
   auto cut = begin;
   if (count > 0) {
-    float gap = least_gap(noise_, begin->depth_m);
+    float widest_m = std::max(least_gap_m, least_gap_noise * DepthNoise().at(begin->depth_m));
     for (auto n = begin + 1; n < end; ++n) {
-      if (n->depth_m - (n - 1)->depth_m <= gap) continue;
-      gap = n->depth_m - (n - 1)->depth_m;
+      const float gap_m = n->depth_m - (n - 1)->depth_m;
+      if (gap_m <= widest_m) continue;
+      widest_m = gap_m;
       cut = n;
     }
   }
   if (cut == begin) return std::nullopt;
 
-  const auto front = colors_of(begin, cut);
-  const auto back = colors_of(cut, end);
-  if (!front || !back || distance(front->mean, back->mean) < least_contrast) return std::nullopt;
+  const auto front = mean_color(begin, cut);
+  const auto back = mean_color(cut, end);
+  if (!front || !back || distance(*front, *back) < least_contrast) return std::nullopt;
   // The colour sensor stands beside the depth sensor: what it sees there depends on the depth.
   const float front_m = depth_of_plane(begin, cut);
   const float back_m = depth_of_plane(cut, end);
   const auto front_sight = color_at(images, x, y, front_m);
   const auto back_sight = color_at(images, x, y, back_m);
   if (!front_sight || !back_sight) return std::nullopt;
-  const float front_misfit = distance(*front_sight, front->mean);
-  const float back_misfit = distance(*back_sight, back->mean);
+  const float front_misfit = distance(*front_sight, *front);
+  const float back_misfit = distance(*back_sight, *back);
   const auto is_own = [](const Neighbour& n) { return n.offset->x == 0 && n.offset->y == 0; };
   if (std::any_of(begin, cut, is_own) && front_misfit < least_contrast) return front_m;
   if (std::any_of(cut, end, is_own) && back_misfit < least_contrast) return back_m;

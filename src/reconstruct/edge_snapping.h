@@ -1,14 +1,15 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstdlib>
 #include <optional>
 #include <vector>
 
 #include "diminish/image.h"
 #include "diminish/rig.h"
 #include "geometry/projection.h"
-#include "reconstruct/depth_noise.h"
 
 namespace diminish {
 
@@ -49,6 +50,17 @@ class EdgeSnapping {
     const Bgr3* color;  ///< null: not known
   };
   using Neighbours = std::array<Neighbour, 13>;
+  /// Whether two depths, in the image's units, are of two surfaces.
+  struct Gap {
+    float least, constant, by_square;
+
+    explicit Gap(float unit_m);
+    int is_between(int a, int b) const {  // 1 or 0: plain enough for vectors
+      const auto nearer = static_cast<float>(std::min(a, b));
+      const float wide = std::max(least, constant + by_square * nearer * nearer);
+      return static_cast<float>(std::abs(a - b)) > wide ? 1 : 0;
+    }
+  };
   /// What is known of each column above a row.
   struct Columns {
     std::vector<std::uint16_t> last_depth, age;  ///< the last depth met, and rows since then
@@ -56,21 +68,20 @@ class EdgeSnapping {
   };
 
   void find_edges(const Rect& part);
+  void find_gaps_in_row(const std::uint16_t* depth, int count, std::uint8_t* is_edge) const;
   void find_gaps_in_columns(const Rect& part, Columns& columns);
-  template <class Gap>
-  bool may_have_two_surfaces(const Rect& part, int x, int y, const Gap& gap) const;
+  bool may_have_two_surfaces(const Rect& part, int x, int y) const;
   void read_colors(const Images& images, const Rect& part);
   void snap_pixel(const Images& images, int x, int y, Image<std::uint16_t>& depth) const;
   std::optional<float> choose(const Images& images, int x, int y, const Neighbours& neighbours,
                               std::size_t count) const;
   std::optional<Bgr3> color_at(const Images& images, int x, int y, float depth_m) const;
 
-  RgbdCamera camera_;
   Image<Eigen::Vector2f> rays_;
   FloatTransform to_color_;
   Projection color_;
   float unit_m_;
-  DepthNoise noise_;
+  Gap gap_;
 
   Image<std::uint16_t> depth_;       ///< as it comes
   Image<std::uint8_t> is_edge_;      ///< 1: at a depth edge
