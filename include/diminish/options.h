@@ -13,7 +13,7 @@ struct Options {
   int mask_margin_px = 5;
   double margin_deviations = 2;
   int soft_rim_px = 2;
-  int rgbd_mask_margin_px = 6;
+  int rgbd_mask_margin_px = 9;
   double blob_spread = 1.0;
   bool refine_poses = true;
   bool remove_flying = true;
