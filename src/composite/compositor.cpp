@@ -41,21 +41,21 @@ Counts sort_row(const std::uint8_t* mask, const std::uint8_t* source, int begin,
 }
 
 /// Copies the camera's picture and sorts the mask's pixels into seen and missing.
-/// missing_box: where `missing` was set before; becomes where it is now.
+/// objects: the last mask's bounding box, outside of which nothing of `missing` is set; becomes
+/// this one's.
 void sort_pixels(const Image<Bgr>& camera, const OcclusionMasks& masks, DiminishedFrame& result,
-                 Mask& missing, Rect& missing_box) {
+                 Mask& missing, Rect& objects) {
   const int width = camera.width();
   const int height = camera.height();
   result.picture.resize(width, height);
   result.mask.resize(width, height);
   result.provenance.resize(width, height);
   if (missing.width() == width && missing.height() == height) {
-    missing.fill(missing_box, 0);
+    missing.fill(objects, 0);
   } else {
     missing.resize(width, height, 0);
   }
-  const Rect objects = bounding_box(masks.color);
-  missing_box = objects;
+  objects = bounding_box(masks.color);
   const Rect drawn = intersect(objects, result.reconstruction.region);
   const Counts counts = sum_over_rows(height, [&](Rows rows) {
     Counts sum;
@@ -113,7 +113,7 @@ void Compositor::composite(const Image<Bgr>& camera, const OcclusionMasks& masks
   StageTimes& milliseconds = result.report.milliseconds;
   {
     const ScopedTimer timer(milliseconds, Stage::compositing);
-    sort_pixels(camera, masks, result, missing_, missing_box_);
+    sort_pixels(camera, masks, result, missing_, objects_);
   }
   if (result.report.valid_pixels > 0) {
     const ScopedTimer timer(milliseconds, Stage::color_correction);
@@ -140,7 +140,8 @@ void Compositor::composite(const Image<Bgr>& camera, const OcclusionMasks& masks
     // Where the shadow outside is gone, too, the camera's picture is another.
     if (!has_shadows || !options.remove_shadows) {
       const int most_px = options.mask_margin_px / 2;
-      soft_rim_.blend(camera, masks.color, std::min(options.soft_rim_px, most_px), result.picture);
+      const int width_px = std::min(options.soft_rim_px, most_px);
+      soft_rim_.blend(camera, masks.color, objects_, width_px, result.picture);
     }
     view_mode(options.mode).show(camera, options, result);
   }

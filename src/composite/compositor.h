@@ -41,7 +41,7 @@ class Compositor {
   ShadowLifting shadow_lifting_;
   SoftRim soft_rim_;
   Mask missing_;
-  Rect missing_box_;
+  Rect objects_;  ///< the mask's bounding box
 };
 
 }  // namespace diminish

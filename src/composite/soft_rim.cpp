@@ -67,8 +67,8 @@ void SoftRim::find_distances(const Mask& mask, const Rect& box, int width_px) {
   }
 }
 
-void SoftRim::blend(const Image<Bgr>& camera, const Mask& mask, int width_px, Image<Bgr>& picture) {
-  const Rect box = bounding_box(mask);
+void SoftRim::blend(const Image<Bgr>& camera, const Mask& mask, const Rect& box, int width_px,
+                    Image<Bgr>& picture) {
   if (width_px <= 0 || box.empty()) return;
   find_distances(mask, box, width_px);
   const int whole = width_px + 1;

@@ -16,7 +16,7 @@ const Image<Bgr> background(90, 70, Bgr{80, 240, 40});
 
 Image<Bgr> blended(const Mask& mask, int width_px) {
   Image<Bgr> picture = background;
-  SoftRim().blend(camera, mask, width_px, picture);
+  SoftRim().blend(camera, mask, bounding_box(mask), width_px, picture);
   return picture;
 }
 

@@ -92,6 +92,7 @@ std::optional<std::size_t> FrameAssembler::assemble(
     FrameSet& frame) {
   const double tolerance_s = sync_tolerance_s(settings);
   const double wait_s = sync_wait_s(settings);
+  // After a reset of the camera's clock all images are new.
   const bool was_reset = color_.with_images([&](const auto& color, const auto&) {
     return color.size() > 0 && color.newest().stamp_s < last_stamp_s_;
   });
