@@ -101,28 +101,19 @@ struct Pipeline::Implementation {
     Rect region =
         options.whole_view ? whole : intersect(grow(objects, options.surroundings_px), whole);
     sampler.sample(frame, poses, masks, options.remove_shadows ? whole : region, reconstruction);
+    const bool finds_surfaces = compositor.uses_surfaces(options);
+    cast_shadows.clear();
     oneapi::tbb::parallel_invoke(
         [&] {
           if (options.refine_poses) {
             pose_refinement.refine(frame, masks.color, reconstruction, poses);
           }
+          if (finds_surfaces) find_background(objects, reconstruction);
         },
         [&] { clean_depths(frame); });
-    const bool finds_surfaces = compositor.uses_surfaces(options);
-    const auto draw = [&] {
-      backend.reconstruct(frame, depths, poses, masks, region, options, reconstruction,
-                          report.drawing);
-    };
-    if (options.remove_shadows) {
-      find_background(objects, reconstruction);
-      region = join(region, cast_shadows.bounds());
-      draw();
-    } else if (finds_surfaces) {
-      oneapi::tbb::parallel_invoke([&] { find_background(objects, reconstruction); }, draw);
-    } else {
-      cast_shadows.clear();
-      draw();
-    }
+    if (options.remove_shadows) region = join(region, cast_shadows.bounds());
+    backend.reconstruct(frame, depths, poses, masks, region, options, reconstruction,
+                        report.drawing);
     if (finds_surfaces) {
       background_planes.label(reconstruction);
     } else {
@@ -137,7 +128,6 @@ struct Pipeline::Implementation {
 
   void find_background(const Rect& objects, const Reconstruction& reconstruction) {
     background_planes.find(objects, reconstruction.samples);
-    cast_shadows.clear();
     if (options.lift_shadows || options.remove_shadows) {
       cast_shadows.find(background_planes.planes(), reconstruction.samples,
                         reconstruction.object_points_m);

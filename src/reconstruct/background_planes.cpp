@@ -2,11 +2,13 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 
 #include "core/rows.h"
 #include "reconstruct/depth_noise.h"
+#include "reconstruct/surface_rows.h"
 
 namespace diminish {
 namespace {
@@ -148,44 +150,19 @@ bool BackgroundPlanes::next_plane(BackgroundPlane& plane) {
 
 void BackgroundPlanes::label_row(int y, Reconstruction& reconstruction) const {
   const Rect& region = reconstruction.region;
-  std::uint8_t* surface = reconstruction.surface.row(y);
-  const float* depth_m = reconstruction.depth_m.row(y);
+  std::array<surface_rows::InverseDepth, most_planes> planes;
   for (int x = region.x; x < region.right();) {
     const RayGrid::Segment rays = rays_.segment(x, y, region.right());
-    const int count = rays.count;
     const Eigen::Vector2f second = rays.first + rays.slope;
-    // By pixel; loops without branches, which compilers turn into vector instructions.
-    float inverse[RayGrid::step];
-    float greatest[RayGrid::step] = {};
-    std::int32_t nearest[RayGrid::step] = {};
-    std::int32_t own[RayGrid::step];
-    std::fill(std::begin(own), std::end(own), surface_label::foreground);
-    const auto is_measured = [](float z) { return z > 0; };
-    const bool all_measured = std::all_of(depth_m + x, depth_m + x + count, is_measured);
-    const bool any_measured =
-        all_measured || std::any_of(depth_m + x, depth_m + x + count, is_measured);
+    // Along a row the inverse depth of a plane grows linearly.
     for (std::size_t k = 0; k < planes_.size(); ++k) {
-      // Along a row the inverse depth of a plane grows linearly.
       const float start = planes_[k].inverse_depth(rays.first.x(), rays.first.y());
-      const float slope = planes_[k].inverse_depth(second.x(), second.y()) - start;
-      const auto label = static_cast<std::int32_t>(surface_label::first_plane + k);
-      for (int i = 0; i < count; ++i) inverse[i] = start + static_cast<float>(i) * slope;
-      for (int i = 0; !all_measured && i < count; ++i) {
-        const bool is_nearer = inverse[i] > greatest[i];
-        nearest[i] = is_nearer ? label : nearest[i];
-        greatest[i] = is_nearer ? inverse[i] : greatest[i];
-      }
-      for (int i = 0; any_measured && i < count; ++i) {
-        // (1/z - inverse) z is the difference in depth, relative to the plane's.
-        const float z = depth_m[x + i];
-        const bool is_on = std::abs(1 - inverse[i] * z) * z <= 2 * tolerance.at(z);
-        own[i] = is_on ? label : own[i];
-      }
+      planes[k] = {start, planes_[k].inverse_depth(second.x(), second.y()) - start};
     }
-    for (int i = 0; i < count; ++i) {
-      surface[x + i] = static_cast<std::uint8_t>(depth_m[x + i] > 0 ? own[i] : nearest[i]);
-    }
-    x += count;
+    surface_rows::label(reconstruction.depth_m.row(y) + x, rays.count, planes.data(),
+                        static_cast<int>(planes_.size()), tolerance,
+                        reconstruction.surface.row(y) + x);
+    x += rays.count;
   }
 }
 

@@ -9,13 +9,13 @@
 #include "core/channels.h"
 #include "core/rows.h"
 #include "reconstruct/depth_noise.h"
+#include "reconstruct/surface_rows.h"
 
 namespace diminish {
 namespace {
 
 constexpr float cell_m = 0.02F;
 constexpr int grid_cells = 128;
-constexpr Rect grid{0, 0, grid_cells, grid_cells};
 /// What is this near a plane may be the plane.
 constexpr float least_height_m = 0.02F;
 constexpr std::size_t fewest_lit = 150;
@@ -40,9 +40,10 @@ Rect cell_of(const Eigen::Vector2f& place) {
   const Eigen::Vector2f at = to_cells(place);
   return {static_cast<int>(std::lrint(at.x())), static_cast<int>(std::lrint(at.y())), 1, 1};
 }
-Rect cells_around(const Eigen::Vector2f& place) {
-  constexpr int reach = 1;
-  return intersect(grow(cell_of(place), reach), grid);
+std::array<std::uint64_t, 2> either(const std::array<std::uint64_t, 2>& a,
+                                    const std::array<std::uint64_t, 2>& b,
+                                    const std::array<std::uint64_t, 2>& c) {
+  return {a[0] | b[0] | c[0], a[1] | b[1] | c[1]};
 }
 
 }  // namespace
@@ -130,17 +131,34 @@ void CastShadows::choose_lit(const Ground& ground, const std::vector<SceneSample
   }
 }
 
-bool CastShadows::fit() {
-  hidden_.resize(grid_cells, grid_cells, DirectionBits{});
+/// Blockers are as large as a few cells: what one hides is the cell that its shadow falls on, and
+/// those around it.
+void CastShadows::find_hidden() {
+  constexpr Rect wider = {0, 0, grid_cells + 2, grid_cells + 2};
+  struck_.resize(wider.width, wider.height, DirectionBits{});
   for (std::size_t d = 0; d < slopes_.size(); ++d) {
     const std::uint64_t bit = std::uint64_t{1} << (d % bits_a_word);
     for (const Blocker& blocker : blockers_) {
-      const Rect cells = cells_around(blocker.place - blocker.height_m * slopes_[d]);
-      for (int y = cells.y; y < cells.bottom(); ++y) {
-        for (int x = cells.x; x < cells.right(); ++x) hidden_(x, y)[d / bits_a_word] |= bit;
-      }
+      const Rect cell = cell_of(blocker.place - blocker.height_m * slopes_[d]);
+      if (!wider.contains(cell.x + 1, cell.y + 1)) continue;
+      struck_(cell.x + 1, cell.y + 1)[d / bits_a_word] |= bit;
     }
   }
+  hidden_.resize(grid_cells, grid_cells);
+  struck_in_column_.resize(wider.width, 1);
+  for (int y = 0; y < grid_cells; ++y) {
+    DirectionBits* column = struck_in_column_.row(0);
+    for (int x = 0; x < wider.width; ++x) {
+      column[x] = either(struck_(x, y), struck_(x, y + 1), struck_(x, y + 2));
+    }
+    for (int x = 0; x < grid_cells; ++x) {
+      hidden_(x, y) = either(column[x], column[x + 1], column[x + 2]);
+    }
+  }
+}
+
+bool CastShadows::fit() {
+  find_hidden();
   fit_.begin(slopes_.size());
   for (const Lit& lit : lit_) {
     const Rect cell = cell_of(lit.place);
@@ -240,34 +258,23 @@ void CastShadows::shade_row(const Shadow& cast, int y, Reconstruction& reconstru
   constexpr float invisible = 1.F / 256;
   const Rect& region = reconstruction.region;
   const std::uint8_t* surface = reconstruction.surface.row(y);
-  const float* depth_m = reconstruction.depth_m.row(y);
-  Bgr* light = reconstruction.light.row(y);
-  const BackgroundPlane& plane = cast.ground.plane;
+  surface_rows::Shading shading;
+  shading.label = cast.label;
+  shading.plane = cast.ground.plane;
   for (int begin = region.x; begin < region.right();) {
     const RayGrid::Segment rays = rays_.segment(begin, y, region.right());
-    const auto ray_at = [&](int i) -> Eigen::Vector2f {
-      return rays.first + static_cast<float>(i) * rays.slope;
-    };
+    shading.slope = rays.slope;
     for (int first = 0; first < rays.count; first += node) {
-      const int last = std::min(first + node, rays.count);
-      const std::uint8_t* labels = surface + begin;
-      if (std::find(labels + first, labels + last, cast.label) == labels + last) continue;
-      const Eigen::Array3f left = dark_at(cast, ray_at(first));
-      const Eigen::Array3f right = dark_at(cast, ray_at(first + node));
-      if (std::max(left.maxCoeff(), right.maxCoeff()) < invisible) continue;
-      for (int i = first; i < last; ++i) {
-        if (labels[i] != cast.label) continue;
-        Eigen::Array3f dark = left + static_cast<float>(i - first) / node * (right - left);
-        if (const float z = depth_m[begin + i]; z > 0) {
-          // What stands on the plane is labelled as the plane up to some height: shadows fade
-          // between 0.6 and 1.2 times what a depth may be off by.
-          const Eigen::Vector2f ray = ray_at(i);
-          const float height_m = std::abs(plane.height_m({ray.x() * z, ray.y() * z, z}));
-          dark *= std::clamp(2 - height_m / (0.6F * noise.at(z)), 0.F, 1.F);
-        }
-        const auto level = [&](int c) { return static_cast<std::uint8_t>(255.5F - 255 * dark[c]); };
-        light[begin + i] = {level(0), level(1), level(2)};
-      }
+      const int x = begin + first;
+      const int count = std::min(node, rays.count - first);
+      if (std::find(surface + x, surface + x + count, cast.label) == surface + x + count) continue;
+      shading.ray = rays.first + static_cast<float>(first) * rays.slope;
+      shading.dark = dark_at(cast, shading.ray);
+      const Eigen::Array3f right = dark_at(cast, shading.ray + float{node} * rays.slope);
+      if (std::max(shading.dark.maxCoeff(), right.maxCoeff()) < invisible) continue;
+      shading.dark_slope = (right - shading.dark) / node;
+      surface_rows::shade(shading, reconstruction.depth_m.row(y) + x, surface + x, count,
+                          reconstruction.light.row(y) + x);
     }
     begin += rays.count;
   }

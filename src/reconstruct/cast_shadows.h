@@ -65,6 +65,7 @@ class CastShadows {
   void choose_blockers(const Ground& ground, const std::vector<BackgroundPlane>& planes,
                        const std::vector<Eigen::Vector3f>& object_points_m);
   void choose_lit(const Ground& ground, const std::vector<SceneSample>& samples);
+  void find_hidden();
   bool fit();
   bool is_hidden(int x, int y, std::size_t direction) const {
     return (hidden_(x, y)[direction / bits_a_word] >> (direction % bits_a_word) & 1U) != 0;
@@ -78,7 +79,8 @@ class CastShadows {
   std::vector<Eigen::Vector2f> slopes_;  ///< of each direction: metres along the plane a metre up
   std::vector<Blocker> blockers_;
   std::vector<Lit> lit_;
-  Image<DirectionBits> hidden_;  ///< by cell
+  /// By cell; the first with a rim of one around the grid.
+  Image<DirectionBits> struck_, struck_in_column_, hidden_;
   std::vector<std::uint8_t> directions_;
   ShadowFit fit_;
   std::vector<Eigen::Array3f> shares_;  ///< by direction
