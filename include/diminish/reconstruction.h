@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "diminish/image.h"
+#include "diminish/tiled_region.h"
 
 namespace diminish {
 
@@ -30,7 +31,7 @@ inline constexpr std::uint8_t foreground = 255;  ///< measured, in front of the 
 /// The scene behind the objects as the RGB-D cameras see it, drawn from the colour camera's
 /// viewpoint. All images have the colour camera's size.
 struct Reconstruction {
-  Rect region;                 ///< the part that was drawn; nothing is known outside it
+  TiledRegion region;          ///< the part that was drawn; nothing is known outside it
   Image<Bgra> color;           ///< alpha 255 where a triangle was drawn, else all 0
   Image<float> depth_m;        ///< z in the colour camera's frame; 0 where alpha is 0
   Image<std::uint8_t> source;  ///< 0 where alpha is 0, else 1 + the RGB-D camera's index

@@ -32,8 +32,8 @@ class Reconstructor {
   /// region: the part to draw, inside the colour image. RGB-D cameras without images or without a
   /// pose in this frame take no part.
   virtual void reconstruct(const FrameSet& frame, const DepthImages& depths, const Poses& poses,
-                           const OcclusionMasks& masks, const Rect& region, const Options& options,
-                           Reconstruction& reconstruction) = 0;
+                           const OcclusionMasks& masks, const TiledRegion& region,
+                           const Options& options, Reconstruction& reconstruction) = 0;
 
   /// The GPU that draws, by its driver's name; empty where the processor does.
   virtual const std::string& device() const {

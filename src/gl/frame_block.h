@@ -45,8 +45,10 @@ struct FrameBlock {
   std::int32_t region_x, region_y, region_width, region_height;
   float threshold_m, inverse_reach, agreement_m;
   std::uint32_t camera_count;
+  std::int32_t tiles_x, tiles_y, tiles_width;
+  std::uint32_t tiles_at;
 };
-static_assert(sizeof(FrameBlock) == 80);
+static_assert(sizeof(FrameBlock) == 96);
 
 struct CameraBlock {
   LensBlock rgbd_color;

@@ -59,6 +59,9 @@ FrameUpload::FrameUpload(const Rig& rig) {
              bytes_of<std::uint8_t>(camera.color) + bytes_of<Bgr>(camera.color);
     of_rig_.push_back(block);
   }
+  constexpr int tile = TiledRegion::tile;
+  bytes += whole_words(static_cast<std::size_t>(rig.color.width / tile + 1) *
+                       static_cast<std::size_t>(rig.color.height / tile + 1));
   // A pixel's last byte is read with the word after it.
   bytes += 4;
   mapped_.reserve(bytes);
@@ -85,7 +88,8 @@ void FrameUpload::upload_rays(const Rig& rig) {
 }
 
 void FrameUpload::pack(const FrameSet& frame, const DepthImages& depths, const Poses& poses,
-                       const OcclusionMasks& masks, const Rect& region, const Options& options) {
+                       const OcclusionMasks& masks, const TiledRegion& region,
+                       const Options& options) {
   blocks_.clear();
   std::size_t at = block_at(1 + of_rig_.size());
   const auto append = [&](const auto& image) {
@@ -108,6 +112,11 @@ void FrameUpload::pack(const FrameSet& frame, const DepthImages& depths, const P
     std::memcpy(mapped_.data() + block_at(1 + blocks_.size()), &block, sizeof(block));
     blocks_.push_back(block);
   }
+  const Rect tiles = region.tiles();
+  frame_.tiles_x = tiles.x;
+  frame_.tiles_y = tiles.y;
+  frame_.tiles_width = tiles.width;
+  frame_.tiles_at = append(region.kept_tiles());
   bytes_ = at + 4;
 
   const sdct::Threshold threshold(options.discontinuity_threshold_m, options.discontinuity_reach_m);

@@ -18,7 +18,7 @@ class FrameUpload {
 
   /// Writes the frame into mapped memory; needs no context. The GPU must be done with the last.
   void pack(const FrameSet& frame, const DepthImages& depths, const Poses& poses,
-            const OcclusionMasks& masks, const Rect& region, const Options& options);
+            const OcclusionMasks& masks, const TiledRegion& region, const Options& options);
   /// Copies it to the GPU's own memory and binds the frame and the images (frame.glsl).
   void send();
   /// Makes it the turn of one of the cameras that take part.

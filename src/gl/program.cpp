@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "diminish/error.h"
+#include "diminish/tiled_region.h"
 #include "reconstruct/sdct.h"
 #include "shader_files.h"
 
@@ -88,8 +89,9 @@ std::string shader_prologue() {
       "#version 450 core\n"
       "#define SUBPIXEL_BITS {}\n"
       "#define MAX_COORDINATE_PX {:.1f}\n"
-      "#define NEAR_PLANE_M {:.9g}\n",
-      sdct::subpixel_bits, sdct::max_coordinate_px, sdct::near_plane_m);
+      "#define NEAR_PLANE_M {:.9g}\n"
+      "#define TILE_PX {}\n",
+      sdct::subpixel_bits, sdct::max_coordinate_px, sdct::near_plane_m, TiledRegion::tile);
 }
 
 Program::Program(const std::vector<Shader>& shaders) : name_(glCreateProgram()) {

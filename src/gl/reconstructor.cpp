@@ -64,7 +64,7 @@ GlReconstructor::~GlReconstructor() {
 
 void GlReconstructor::reconstruct(const FrameSet& frame, const DepthImages& depths,
                                   const Poses& poses, const OcclusionMasks& masks,
-                                  const Rect& region, const Options& options,
+                                  const TiledRegion& region, const Options& options,
                                   Reconstruction& reconstruction) {
   passes_.clear();
   clear_outside(color_, region, reconstruction);

@@ -46,7 +46,7 @@ class GlReconstructor : public Reconstructor {
   ~GlReconstructor() override;
 
   void reconstruct(const FrameSet& frame, const DepthImages& depths, const Poses& poses,
-                   const OcclusionMasks& masks, const Rect& region, const Options& options,
+                   const OcclusionMasks& masks, const TiledRegion& region, const Options& options,
                    Reconstruction& reconstruction) override;
   const std::string& device() const override { return device_; }
   const std::vector<GpuPass>& gpu_passes() const override { return passes_; }

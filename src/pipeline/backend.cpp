@@ -36,8 +36,9 @@ Reconstructor& Backend::processor() {
 }
 
 void Backend::reconstruct(const FrameSet& frame, const DepthImages& depths, const Poses& poses,
-                          const OcclusionMasks& masks, const Rect& region, const Options& options,
-                          Reconstruction& reconstruction, DrawingReport& report) {
+                          const OcclusionMasks& masks, const TiledRegion& region,
+                          const Options& options, Reconstruction& reconstruction,
+                          DrawingReport& report) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
   message_.clear();

@@ -19,7 +19,7 @@ class Backend {
 
   /// Reconstructor::reconstruct by the chosen backend. Fills `report`.
   void reconstruct(const FrameSet& frame, const DepthImages& depths, const Poses& poses,
-                   const OcclusionMasks& masks, const Rect& region, const Options& options,
+                   const OcclusionMasks& masks, const TiledRegion& region, const Options& options,
                    Reconstruction& reconstruction, DrawingReport& report);
   /// Why the last frame was not drawn by the chosen backend; empty where it was.
   const std::string& message() const { return message_; }

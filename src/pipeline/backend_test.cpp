@@ -28,7 +28,7 @@ class Unreliable : public Reconstructor {
     ++made;
   }
   void reconstruct(const FrameSet& frame, const DepthImages& depths, const Poses& poses,
-                   const OcclusionMasks& masks, const Rect& region, const Options& options,
+                   const OcclusionMasks& masks, const TiledRegion& region, const Options& options,
                    Reconstruction& reconstruction) override {
     if (frame.index == failing_frame) {
       // What it leaves behind must not show.

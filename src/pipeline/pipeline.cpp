@@ -98,8 +98,7 @@ struct Pipeline::Implementation {
                    Reconstruction& reconstruction) {
     Poses& poses = report.poses;
     const Rect whole = rig.color.bounds();
-    Rect region =
-        options.whole_view ? whole : intersect(grow(objects, options.surroundings_px), whole);
+    region = options.whole_view ? whole : intersect(grow(objects, options.surroundings_px), whole);
     sampler.sample(frame, poses, masks, options.remove_shadows ? whole : region, reconstruction);
     const bool finds_surfaces = compositor.uses_surfaces(options);
     cast_shadows.clear();
@@ -111,7 +110,11 @@ struct Pipeline::Implementation {
           if (finds_surfaces) find_background(objects, reconstruction);
         },
         [&] { clean_depths(frame); });
-    if (options.remove_shadows) region = join(region, cast_shadows.bounds());
+    if (options.remove_shadows) {
+      region = join(region, cast_shadows.bounds());
+    } else if (!options.whole_view) {
+      region.keep_near(masks.color, options.surroundings_px);
+    }
     backend.reconstruct(frame, depths, poses, masks, region, options, reconstruction,
                         report.drawing);
     if (finds_surfaces) {
@@ -163,6 +166,7 @@ struct Pipeline::Implementation {
   Backend backend;
   std::vector<DepthCleaner> depth_cleaners;
   DepthImages depths;
+  TiledRegion region;  ///< to be drawn
   SceneSampler sampler;
   PoseRefinement pose_refinement;
   BackgroundPlanes background_planes;

@@ -19,7 +19,7 @@ void clear_outside(const Rect& region, const Rect& drawn, Image<Pixel>& image) {
 
 /// Gives a reconstruction its size and its region. Everything outside becomes empty; the region's
 /// pixels are to be written afterwards. Cost: what the last region had that this one has not.
-inline void clear_outside(const Intrinsics& color, const Rect& region,
+inline void clear_outside(const Intrinsics& color, const TiledRegion& region,
                           Reconstruction& reconstruction) {
   const bool same_size =
       reconstruction.color.width() == color.width && reconstruction.color.height() == color.height;

@@ -18,7 +18,7 @@ class ReferenceReconstructor : public Reconstructor {
   }
 
   void reconstruct(const FrameSet& frame, const DepthImages& depths, const Poses& poses,
-                   const OcclusionMasks& masks, const Rect& region, const Options& options,
+                   const OcclusionMasks& masks, const TiledRegion& region, const Options& options,
                    Reconstruction& reconstruction) override {
     clear(region, reconstruction);
     const sdct::Threshold threshold(options.discontinuity_threshold_m,
@@ -31,13 +31,18 @@ class ReferenceReconstructor : public Reconstructor {
                          vertices_);
       layers_[k].clear(color_.width, color_.height, region);
       draw_mesh(vertices_, frame.rgbd[k].color, threshold, region, layers_[k]);
+      for (int y = region.y; y < region.bottom(); ++y) {
+        region.for_each_gap(y, [&](int first, int last) {
+          std::fill(layers_[k].depth_m.row(y) + first, layers_[k].depth_m.row(y) + last, 0.F);
+        });
+      }
       drawn_[k] = &layers_[k];
     }
     merge_layers(drawn_, static_cast<float>(options.depth_agreement_m), reconstruction);
   }
 
  private:
-  void clear(const Rect& region, Reconstruction& reconstruction) const {
+  void clear(const TiledRegion& region, Reconstruction& reconstruction) const {
     reconstruction.region = region;
     reconstruction.color.resize(color_.width, color_.height, {});
     reconstruction.depth_m.resize(color_.width, color_.height, 0.F);

@@ -32,7 +32,7 @@ HWY_INLINE hn::Vec<D> Linear(D d, float start, float slope, hn::Vec<D> at) {
   return hn::Add(hn::Set(d, start), hn::Mul(at, hn::Set(d, slope)));
 }
 template <class D>
-HWY_INLINE void StoreBytes(D d, hn::Vec<D> values, std::uint8_t* bytes) {
+HWY_INLINE void StoreBytes(D /*d*/, hn::Vec<D> values, std::uint8_t* bytes) {
   const hn::RebindToSigned<D> ints;
   const hn::Rebind<std::uint8_t, D> to;
   hn::StoreU(hn::DemoteTo(to, hn::ConvertTo(ints, values)), to, bytes);

@@ -31,7 +31,8 @@ class CameraMesh {
   }
 
   /// Two rows of vertices at a time; cells that cannot touch the region are left out by the block.
-  void draw(const VertexRows::Frame& frame, const sdct::Threshold& threshold, int which) {
+  void draw(const VertexRows::Frame& frame, const TiledRegion& region,
+            const sdct::Threshold& threshold, int which) {
     const int middle = rows_.height() / 2;
     const int first = which == 0 ? 0 : middle;
     const int last = which == 0 ? middle : rows_.height() - 1;
@@ -48,6 +49,11 @@ class CameraMesh {
         if ((upper.beyond[b] & upper.beyond[b + 1] & lower.beyond[b] & lower.beyond[b + 1]) != 0) {
           continue;
         }
+        if (!region.is_whole() &&
+            !region.touches(join(join(upper.bounds[b], upper.bounds[b + 1]),
+                                 join(lower.bounds[b], lower.bounds[b + 1])))) {
+          continue;
+        }
         for (int k = block; k < std::min(block + 2, blocks); ++k) {
           const auto i = static_cast<std::size_t>(k);
           if (!upper.has_colors[i]) rows_.find_colors(frame, y, k, upper);
@@ -59,10 +65,15 @@ class CameraMesh {
   }
 
   /// Brings a row's parts together, once they are drawn.
-  void merge(int y) {
+  void merge(const TiledRegion& region, int y) {
     SurfaceBuffer& upper = parts_[0].surface;
-    const SurfaceBuffer& lower = parts_[1].surface;
+    SurfaceBuffer& lower = parts_[1].surface;
     if (upper.touches(y) && lower.touches(y)) keep_nearest(lower, y, upper);
+    SurfaceBuffer& merged = parts_[upper.touches(y) ? 0 : 1].surface;
+    region.for_each_gap(y, [&](int first, int last) {
+      float* row = merged.inverse_z.data() + merged.row(y) - region.x;
+      std::fill(row + first, row + last, 0.F);
+    });
   }
 
   /// The merged surface of a row.
@@ -93,7 +104,7 @@ class VectorizedReconstructor : public Reconstructor {
   }
 
   void reconstruct(const FrameSet& frame, const DepthImages& depths, const Poses& poses,
-                   const OcclusionMasks& masks, const Rect& region, const Options& options,
+                   const OcclusionMasks& masks, const TiledRegion& region, const Options& options,
                    Reconstruction& reconstruction) override {
     clear_outside(color_, region, reconstruction);
     drawn_.clear();
@@ -108,11 +119,12 @@ class VectorizedReconstructor : public Reconstructor {
           const std::size_t k = drawn_[i / CameraMesh::parts].camera;
           meshes_[k].draw({depths[k], masks.rgbd_depth[k], masks.rgbd_color[k],
                            FloatTransform(*poses.color_from_depth[k]), region},
-                          threshold, static_cast<int>(i % CameraMesh::parts));
+                          region, threshold, static_cast<int>(i % CameraMesh::parts));
         });
     for_rows(region.height, [&](Rows rows) {
       for (const Drawn& drawn : drawn_) {
-        for (int y = rows.first; y < rows.last; ++y) meshes_[drawn.camera].merge(region.y + y);
+        for (int y = rows.first; y < rows.last; ++y)
+          meshes_[drawn.camera].merge(region, region.y + y);
       }
     });
     if (drawn_.size() > 1) sort_by_coverage(region);

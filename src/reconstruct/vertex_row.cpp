@@ -71,6 +71,8 @@ void ProjectRow(const VertexRows::Constants& constants, const FloatTransform& to
     LaneMask not_right = not_left;
     LaneMask not_above = not_left;
     LaneMask not_below = not_left;
+    Vector least_x = Set(sdct::max_coordinate_px), greatest_x = Set(-sdct::max_coordinate_px);
+    Vector least_y = least_x, greatest_y = greatest_x;
     for (int i = start; i < start + VertexRow::block; i += lanes) {
       hn::Vec<decltype(d16)> values;
       hn::Vec<decltype(d8)> masked;
@@ -116,12 +118,25 @@ void ProjectRow(const VertexRows::Constants& constants, const FloatTransform& to
       not_right = hn::Or(not_right, hn::And(valid, hn::Lt(px, right)));
       not_above = hn::Or(not_above, hn::And(valid, hn::Ge(py, top)));
       not_below = hn::Or(not_below, hn::And(valid, hn::Lt(py, bottom)));
+      least_x = hn::IfThenElse(valid, hn::Min(least_x, px), least_x);
+      greatest_x = hn::IfThenElse(valid, hn::Max(greatest_x, px), greatest_x);
+      least_y = hn::IfThenElse(valid, hn::Min(least_y, py), least_y);
+      greatest_y = hn::IfThenElse(valid, hn::Max(greatest_y, py), greatest_y);
     }
     const auto bit = [&](LaneMask mask_, int value)
                          HWY_ATTR { return hn::AllFalse(d, mask_) ? value : 0; };
     const auto index = static_cast<std::size_t>(start / VertexRow::block);
     row.beyond[index] = static_cast<std::uint8_t>(bit(not_left, 1) | bit(not_right, 2) |
                                                   bit(not_above, 4) | bit(not_below, 8));
+    const auto least = [&](Vector values) HWY_ATTR {
+      return static_cast<int>(hn::GetLane(hn::MinOfLanes(d, values))) - 1;
+    };
+    const auto size = [&](Vector values, int first) HWY_ATTR {
+      return static_cast<int>(hn::GetLane(hn::MaxOfLanes(d, values))) + 2 - first;
+    };
+    const int first_x = least(least_x);
+    const int first_y = least(least_y);
+    row.bounds[index] = {first_x, first_y, size(greatest_x, first_x), size(greatest_y, first_y)};
     row.has_colors[index] = 0;
   }
 }
@@ -185,6 +200,7 @@ void VertexRow::resize(int width) {
   u_over_z.resize(size);
   v_over_z.resize(size);
   beyond.resize(blocks);
+  bounds.resize(blocks);
   has_colors.resize(blocks);
   std::fill_n(inverse_z.end() - block, block, 0.F);
   beyond.back() = 15;

@@ -22,6 +22,7 @@ struct VertexRow {
   /// A block's valid vertices lie all: 1 left of the region to draw, 2 right of it, 4 above, 8
   /// below.
   std::vector<std::uint8_t> beyond;
+  std::vector<Rect> bounds;              ///< of a block's valid vertices, in pixels
   std::vector<std::uint8_t> has_colors;  ///< u and v are known, and the vertices that have none out
 
   void resize(int width);

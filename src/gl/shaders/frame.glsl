@@ -16,6 +16,9 @@ layout(std140, binding = 0) uniform Frame {
   ivec4 region;  // x, y, width, height
   float threshold_m, inverse_reach, agreement_m;
   uint camera_count;
+  // The region's tiles: first column, first row, columns, place in `words`; 0 columns: all are kept.
+  ivec3 tiles;
+  uint tiles_at;
 };
 
 // The RGB-D camera whose turn it is.
@@ -37,6 +40,13 @@ uint word_at(uint index) { return texelFetch(words, int(index)).x; }
 
 uint read_byte(uint word, uint index) {
   return (word_at(word + (index >> 2)) >> (8u * (index & 3u))) & 0xFFu;
+}
+
+// Whether a pixel of the rectangle belongs to the region (TiledRegion::keeps).
+bool is_kept(ivec2 pixel) {
+  if (tiles.z == 0) return true;
+  ivec2 place = pixel / TILE_PX - tiles.xy;
+  return read_byte(tiles_at, uint(place.y * tiles.z + place.x)) != 0u;
 }
 
 uint read_short(uint word, uint index) {

@@ -1,7 +1,9 @@
 // What draw_small and draw_large have found: looks up the one triangle that is seen.
 
-// 1 / z as a float's bits; 0: the camera sees nothing.
-uint inverse_z_at(uint which, ivec2 pixel) { return layers[layer_index(which, pixel)]; }
+// 1 / z as a float's bits; 0: the camera sees nothing of the region.
+uint inverse_z_at(uint which, ivec2 pixel) {
+  return is_kept(pixel) ? layers[layer_index(which, pixel)] : 0u;
+}
 
 // Of the camera whose turn it is.
 uint seen_color(ivec2 pixel, float z) {
