@@ -20,10 +20,18 @@ struct FirstFrame {
   }
 
   const Rig& rig() const { return recording.rig; }
-  Rect whole_view() const { return recording.rig.color.bounds(); }
+  TiledRegion whole_view() const { return recording.rig.color.bounds(); }
+  /// The tiles around two slender objects.
+  TiledRegion tiled_part() const {
+    Mask objects(rig().color.width, rig().color.height, 0);
+    for (int i = 0; i < 300; ++i) objects(250 + 2 * i, 200 + i) = objects(700 - i, 420) = 255;
+    TiledRegion region(Rect{240, 190, 621, 333});
+    region.keep_near(objects, 16);
+    return region;
+  }
 
   /// By the pipeline's poses, with `depths` and `masks`.
-  void reconstruct(Reconstructor& reconstructor, const Rect& region,
+  void reconstruct(Reconstructor& reconstructor, const TiledRegion& region,
                    Reconstruction& reconstruction) const {
     reconstructor.reconstruct(frame, depths, result.report.poses, masks, region, options,
                               reconstruction);

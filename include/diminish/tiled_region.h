@@ -18,12 +18,12 @@ class TiledRegion : public Rect {
   TiledRegion() = default;
   /// All of the rectangle.
   TiledRegion(const Rect& box) : Rect(box) {}
-  TiledRegion& operator=(const Rect& box) {
+  /// Becomes all of the rectangle, and keeps its memory.
+  void set(const Rect& box) {
     Rect::operator=(box);
     first_column_ = first_row_ = columns_ = rows_ = 0;
     kept_.clear();
     sums_.clear();
-    return *this;
   }
 
   /// Leaves out the tiles that are further than `distance_px`, rounded up to whole tiles, from all

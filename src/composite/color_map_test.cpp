@@ -93,7 +93,7 @@ struct Picture {
 
   Picture() : occlusion(83, 40, 0), picture(83, 40, {1, 2, 3}) {
     std::mt19937 random(3);
-    reconstruction.region = {3, 2, 79, 37};
+    reconstruction.region = Rect{3, 2, 79, 37};
     reconstruction.color.resize(83, 40);
     reconstruction.source.resize(83, 40);
     for (std::size_t i = 0; i < picture.size(); ++i) {
@@ -160,7 +160,7 @@ struct TwoLooks {
   }
 
   TwoLooks() {
-    reconstruction.region = {100, 80, 200, 140};
+    reconstruction.region = Rect{100, 80, 200, 140};
     reconstruction.color.resize(400, 300);
     reconstruction.source.resize(400, 300);
     occlusion.fill({120, 100, 160, 100}, 255);

@@ -24,7 +24,7 @@ class Compositing : public testing::Test {
     }
     masks.color.resize(120, 90, 0);
     masks.color.fill({30, 20, 50, 40}, 255);
-    result.reconstruction.region = {20, 10, 70, 60};
+    result.reconstruction.region = Rect{20, 10, 70, 60};
     result.reconstruction.color.resize(120, 90, {});
     result.reconstruction.depth_m.resize(120, 90, 0.F);
     result.reconstruction.source.resize(120, 90, 0);

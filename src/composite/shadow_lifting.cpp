@@ -18,6 +18,18 @@ std::uint8_t lit(std::uint8_t level, std::uint8_t light) {
   return static_cast<std::uint8_t>(std::min(255.F, sum / static_cast<float>(std::max(light, one))));
 }
 
+/// Channel by channel, some at a time: nearly all or none of them have all light.
+void lift_row(const std::uint8_t* light, int count, std::uint8_t* levels) {
+  constexpr int step = 48;
+  for (int first = 0; first < count; first += step) {
+    const int end = std::min(first + step, count);
+    std::uint8_t least = 255;
+    for (int i = first; i < end; ++i) least = std::min(least, light[i]);
+    if (least == 255) continue;
+    for (int i = first; i < end; ++i) levels[i] = lit(levels[i], light[i]);
+  }
+}
+
 /// The rows of the region with less than all light.
 Rect shaded_part(const Reconstruction& reconstruction) {
   const Rect& region = reconstruction.region;
@@ -34,25 +46,33 @@ Rect shaded_part(const Reconstruction& reconstruction) {
   return intersect(grow({region.x, top, region.width, bottom - top}, fading_px), region);
 }
 
+/// How far each pixel of a row is from the next outside the mask, up to `fading_px`. Without
+/// dependences from pixel to pixel, so that the compiler takes many at a time.
+void measure_in_row(const std::uint8_t* mask, int width, std::uint8_t* distances,
+                    std::vector<std::uint8_t>& padded) {
+  // Beyond the row there is no outside.
+  constexpr int longest_step = 5;
+  padded.assign(static_cast<std::size_t>(width) + 2 * longest_step, fading_px);
+  std::uint8_t* last = padded.data() + longest_step;
+  for (int x = 0; x < width; ++x) distances[x] = mask[x] != 0 ? fading_px : 0;
+  // Every distance is a sum of some of these.
+  for (const int step : {1, 2, 4, longest_step}) {
+    std::copy_n(distances, width, last);
+    for (int x = 0; x < width; ++x) {
+      const int beside = std::min(last[x - step], last[x + step]) + step;
+      distances[x] = std::min(last[x], static_cast<std::uint8_t>(beside));
+    }
+  }
+}
+
 }  // namespace
 
 void ShadowLifting::lift(const Reconstruction& reconstruction, Image<Bgr>& picture) const {
   const Rect& region = reconstruction.region;
   for_rows(region.height, [&](Rows rows) {
     for (int y = region.y + rows.first; y < region.y + rows.last; ++y) {
-      // Channel by channel, some at a time: nearly all or none of them have all light.
-      constexpr int step = 48;
-      const auto* light =
-          reinterpret_cast<const std::uint8_t*>(reconstruction.light.row(y) + region.x);
-      auto* levels = reinterpret_cast<std::uint8_t*>(picture.row(y) + region.x);
-      const int count = 3 * region.width;
-      for (int first = 0; first < count; first += step) {
-        const int end = std::min(first + step, count);
-        std::uint8_t least = 255;
-        for (int i = first; i < end; ++i) least = std::min(least, light[i]);
-        if (least == 255) continue;
-        for (int i = first; i < end; ++i) levels[i] = lit(levels[i], light[i]);
-      }
+      lift_row(reinterpret_cast<const std::uint8_t*>(reconstruction.light.row(y) + region.x),
+               3 * region.width, reinterpret_cast<std::uint8_t*>(picture.row(y) + region.x));
     }
   });
 }
@@ -89,22 +109,12 @@ void ShadowLifting::measure_distances(const Mask& occlusion, const Rect& part) {
   distances_.resize(part.width, part.height);
   for_rows(part.height, [&](Rows rows) {
     for (int y = rows.first; y < rows.last; ++y) {
-      const std::uint8_t* mask = occlusion.row(part.y + y) + part.x;
-      std::uint8_t* own = distances_.row(y);
-      int distance = fading_px;
-      for (int x = 0; x < part.width; ++x) {
-        distance = mask[x] != 0 ? std::min(distance + 1, fading_px) : 0;
-        own[x] = static_cast<std::uint8_t>(distance);
-      }
-      distance = fading_px;
-      for (int x = part.width - 1; x >= 0; --x) {
-        distance = std::min(distance + 1, int{own[x]});
-        own[x] = static_cast<std::uint8_t>(distance);
-      }
+      measure_in_row(occlusion.row(part.y + y) + part.x, part.width, distances_.row(y),
+                     padded_[rows.first == 0 ? 0 : 1]);
     }
   });
-  const auto pass_on = [&](const std::uint8_t* from, std::uint8_t* to) {
-    for (int x = 0; x < part.width; ++x) {
+  const auto pass_on = [width = part.width](const std::uint8_t* from, std::uint8_t* to) {
+    for (int x = 0; x < width; ++x) {
       to[x] = std::min(to[x], static_cast<std::uint8_t>(from[x] + 1));
     }
   };

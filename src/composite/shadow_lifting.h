@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "diminish/image.h"
 #include "diminish/reconstruction.h"
 
@@ -18,7 +20,8 @@ class ShadowLifting {
  private:
   void measure_distances(const Mask& occlusion, const Rect& part);
 
-  Image<std::uint8_t> distances_;  ///< to the mask's rim, at most `fading_px`
+  std::vector<std::uint8_t> padded_[2];  ///< a row of each thread
+  Image<std::uint8_t> distances_;        ///< to the mask's rim, at most `fading_px`
 };
 
 }  // namespace diminish

@@ -11,7 +11,7 @@ namespace {
 class HalfInShadow : public ::testing::Test {
  protected:
   HalfInShadow() {
-    reconstruction.region = {10, 10, 80, 80};
+    reconstruction.region = Rect{10, 10, 80, 80};
     reconstruction.light.resize(100, 100, {255, 255, 255});
     reconstruction.light.fill({10, 50, 80, 40}, {128, 128, 128});
     occlusion.fill({20, 20, 60, 60}, 255);

@@ -35,6 +35,26 @@ std::uint8_t mix(int from, int to, int part, int whole) {
   return static_cast<std::uint8_t>((from * (whole - part) + to * part + whole / 2) / whole);
 }
 
+/// Calls visit(x) for each distance that is neither 0 nor `whole`.
+template <class Visit>
+void for_each_between(const std::uint8_t* distances, int width, int whole, const Visit& visit) {
+  // Most pixels are far from the rim: without a branch for each, compilers take many at a time.
+  constexpr int step = 32;
+  for (int first = 0; first < width; first += step) {
+    const int end = std::min(first + step, width);
+    std::uint8_t least = 255;
+    std::uint8_t most = 0;
+    for (int x = first; x < end; ++x) {
+      least = std::min(least, distances[x]);
+      most = std::max(most, distances[x]);
+    }
+    if (most == 0 || least == whole) continue;
+    for (int x = first; x < end; ++x) {
+      if (distances[x] != 0 && distances[x] != whole) visit(x);
+    }
+  }
+}
+
 }  // namespace
 
 /// Beyond the images' borders is no outside: there the mask is continued.
@@ -45,7 +65,9 @@ void SoftRim::find_distances(const Mask& mask, const Rect& box, int width_px) {
     for (int y = rows.first; y < rows.last; ++y) {
       const std::uint8_t* from = mask.row(std::clamp(around.y + y, 0, mask.height() - 1)) + box.x;
       std::uint8_t* to = inside_.row(y) + 1;
-      for (int x = 0; x < box.width; ++x) to[x] = from[x] != 0 ? 1 : 0;
+      // Not read through a reference: for all the compiler knows, bytes that are stored change it.
+      const int width = box.width;
+      for (int x = 0; x < width; ++x) to[x] = from[x] != 0 ? 1 : 0;
       to[-1] = box.x > 0 ? 0 : to[0];
       to[box.width] = box.right() < mask.width() ? 0 : to[box.width - 1];
     }
@@ -58,7 +80,8 @@ void SoftRim::find_distances(const Mask& mask, const Rect& box, int width_px) {
         erode_row(inside_, y, step % 2 != 0, eroded_.row(y));
         std::uint8_t* distance = distance_.row(y);
         const std::uint8_t* further = eroded_.row(y);
-        for (int x = 0; x < around.width; ++x) {
+        const int width = around.width;
+        for (int x = 0; x < width; ++x) {
           distance[x] = static_cast<std::uint8_t>(distance[x] + further[x]);
         }
       }
@@ -77,12 +100,11 @@ void SoftRim::blend(const Image<Bgr>& camera, const Mask& mask, const Rect& box,
       const std::uint8_t* distance = distance_.row(y + 1) + 1;
       const Bgr* from = camera.row(box.y + y) + box.x;
       Bgr* to = picture.row(box.y + y) + box.x;
-      for (int x = 0; x < box.width; ++x) {
+      for_each_between(distance, box.width, whole, [&](int x) {
         const int d = distance[x];
-        if (d == 0 || d == whole) continue;
         to[x] = {mix(from[x].b, to[x].b, d, whole), mix(from[x].g, to[x].g, d, whole),
                  mix(from[x].r, to[x].r, d, whole)};
-      }
+      });
     }
   });
 }

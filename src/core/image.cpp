@@ -1,13 +1,21 @@
 #include "diminish/image.h"
 
+#include <cstring>
+
 namespace diminish {
 namespace {
 
 bool any_set(const std::uint8_t* row, int count) {
   // Without a branch, so that the compiler takes many pixels at a time.
-  std::uint8_t all = 0;
-  for (int x = 0; x < count; ++x) all |= row[x];
-  return all != 0;
+  std::uint64_t any = 0;
+  int x = 0;
+  for (; x + 8 <= count; x += 8) {
+    std::uint64_t pixels;
+    std::memcpy(&pixels, row + x, sizeof(pixels));
+    any |= pixels;
+  }
+  for (; x < count; ++x) any |= row[x];
+  return any != 0;
 }
 
 /// The first non-zero of `count` pixels; `count` if there is none.
@@ -37,17 +45,17 @@ Rect bounding_box(const Mask& mask) {
 Rect bounding_box(const Mask& mask, const Rect& part) {
   int left = part.width;
   int right = -1;
-  int top = -1;
-  int bottom = -1;
-  for (int y = part.y; y < part.bottom(); ++y) {
+  const auto is_empty = [&](int y) { return !any_set(mask.row(y) + part.x, part.width); };
+  int top = part.y;
+  int bottom = part.bottom() - 1;
+  while (top <= bottom && is_empty(top)) ++top;
+  while (bottom > top && is_empty(bottom)) --bottom;
+  for (int y = top; y <= bottom; ++y) {
     const std::uint8_t* row = mask.row(y) + part.x;
-    if (!any_set(row, part.width)) continue;
-    if (top < 0) top = y;
-    bottom = y;
-    left = std::min(left, first_set(row, left));
+    left = first_set(row, left);
     right += 1 + last_set(row + right + 1, part.width - right - 1);
   }
-  if (top < 0) return {};
+  if (top > bottom) return {};
   return {part.x + left, top, right - left + 1, bottom - top + 1};
 }
 

@@ -98,7 +98,8 @@ struct Pipeline::Implementation {
                    Reconstruction& reconstruction) {
     Poses& poses = report.poses;
     const Rect whole = rig.color.bounds();
-    region = options.whole_view ? whole : intersect(grow(objects, options.surroundings_px), whole);
+    region.set(options.whole_view ? whole
+                                  : intersect(grow(objects, options.surroundings_px), whole));
     sampler.sample(frame, poses, masks, options.remove_shadows ? whole : region, reconstruction);
     const bool finds_surfaces = compositor.uses_surfaces(options);
     cast_shadows.clear();
@@ -111,7 +112,7 @@ struct Pipeline::Implementation {
         },
         [&] { clean_depths(frame); });
     if (options.remove_shadows) {
-      region = join(region, cast_shadows.bounds());
+      region.set(join(region, cast_shadows.bounds()));
     } else if (!options.whole_view) {
       region.keep_near(masks.color, options.surroundings_px);
     }

@@ -84,7 +84,7 @@ TEST_F(OnAnalyticScene, WithoutSamplesThereAreNoPlanes) {
   BackgroundPlanes planes(frame.rig.color);
   planes.find(frame.rig.color.bounds(), {});
   EXPECT_TRUE(planes.planes().empty());
-  reconstruction.region = {0, 0, 40, 30};
+  reconstruction.region = Rect{0, 0, 40, 30};
   reconstruction.source.resize(320, 256, 0);
   reconstruction.depth_m.resize(320, 256, 0.F);
   planes.label(reconstruction);

@@ -171,10 +171,11 @@ void EdgeSnapping::find_edges(const Rect& part) {
 }
 
 bool EdgeSnapping::may_have_two_surfaces(const Rect& part, int x, int y) const {
+  const Rect inner{part.x + reach, part.y + reach, part.width - 2 * reach, part.height - 2 * reach};
+  if (!inner.contains(x, y)) return false;
   int least = 65535;
   int most = 0;
   for (const Offset& offset : offsets) {
-    if (!part.contains(x + offset.x, y + offset.y)) return false;
     const int depth = depth_(x + offset.x, y + offset.y);
     least = depth == 0 ? least : std::min(least, depth);
     most = std::max(most, depth);

@@ -9,7 +9,7 @@ class MergeLayers : public testing::Test {
  protected:
   MergeLayers() {
     for (Layer& layer : layers) layer.clear(10, 4, {0, 0, 10, 4});
-    reconstruction.region = {0, 0, 10, 4};
+    reconstruction.region = Rect{0, 0, 10, 4};
     reconstruction.color.resize(10, 4, {});
     reconstruction.depth_m.resize(10, 4, 0.F);
     reconstruction.source.resize(10, 4, 0);

@@ -184,7 +184,7 @@ TEST_P(AnyReconstructor, DrawsTheRegionAndNothingElse) {
   Reconstruction part;
   // Twice, so that what an earlier frame left behind would show.
   reconstructor->reconstruct(frame.frame, testing::depths_of(frame.frame), frame.poses,
-                             empty_masks(frame.rig), {0, 0, 200, 200}, {}, part);
+                             empty_masks(frame.rig), Rect{0, 0, 200, 200}, {}, part);
   reconstructor->reconstruct(frame.frame, testing::depths_of(frame.frame), frame.poses,
                              empty_masks(frame.rig), region, {}, part);
   for (int y = 0; y < whole.color.height(); ++y) {

@@ -20,6 +20,15 @@ constexpr float edge = 0.03F;
 
 constexpr int reach = 2;
 
+/// In the picture: more than a step of samples, and what refinement may move.
+constexpr int margin_px = 64;
+
+/// From a sample to the next, in depth pixels.
+int step_of(const Image<std::uint16_t>& depth) {
+  const double pixels = static_cast<double>(depth.width()) * depth.height();
+  return std::max(1, static_cast<int>(std::lround(std::sqrt(pixels / wanted_samples))));
+}
+
 bool on_surface(const Image<std::uint16_t>& depth, int column, int row) {
   const auto own = static_cast<float>(depth(column, row));
   for (const auto& [dx, dy] : {std::pair{-reach, 0}, {reach, 0}, {0, -reach}, {0, reach}}) {
@@ -33,77 +42,85 @@ bool on_surface(const Image<std::uint16_t>& depth, int column, int row) {
 
 SceneSampler::SceneSampler(const Rig& rig) {
   for (const RgbdCamera& camera : rig.rgbd) {
-    by_camera_.push_back({DepthMesh(camera, rig.color), {}, {}, {}});
+    by_camera_.push_back({DepthMesh(camera, rig.color), {}, {}});
   }
 }
 
 void SceneSampler::sample(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks,
                           const Rect& region, Reconstruction& reconstruction) {
-  oneapi::tbb::parallel_for(std::size_t{0}, by_camera_.size(), [&](std::size_t k) {
-    Camera& camera = by_camera_[k];
-    camera.samples.clear();
-    camera.object_points_m.clear();
-    camera.part = {};
-    if (!frame.rgbd[k].available() || !poses.color_from_depth[k]) return;
-    sample_camera(frame.rgbd[k],
-                  {frame.rgbd[k].depth, masks.rgbd_depth[k], masks.rgbd_color[k],
-                   FloatTransform(*poses.color_from_depth[k])},
-                  region, static_cast<std::uint8_t>(k + 1), camera);
+  constexpr std::size_t halves = std::tuple_size_v<decltype(Camera::halves)>;
+  oneapi::tbb::parallel_for(std::size_t{0}, halves * by_camera_.size(), [&](std::size_t i) {
+    const std::size_t k = i / halves;
+    Half& half = by_camera_[k].halves[i % halves];
+    half.samples.clear();
+    half.object_points_m.clear();
+    half.part = {};
+    const RgbdFrame& rgbd = frame.rgbd[k];
+    if (!rgbd.available() || !poses.color_from_depth[k]) return;
+    const View view{rgbd,
+                    by_camera_[k].mesh,
+                    {rgbd.depth, masks.rgbd_depth[k], masks.rgbd_color[k],
+                     FloatTransform(*poses.color_from_depth[k])},
+                    grow(region, margin_px),
+                    static_cast<std::uint8_t>(k + 1)};
+    const int middle = rgbd.depth.height() / 2;
+    sample_rows(view, i % halves == 0 ? Rows{0, middle} : Rows{middle, rgbd.depth.height()}, half);
   });
   std::vector<SceneSample>& samples = reconstruction.samples;
   std::vector<Eigen::Vector3f>& points = reconstruction.object_points_m;
   samples.clear();
   points.clear();
-  for (const Camera& camera : by_camera_) {
-    samples.insert(samples.end(), camera.samples.begin(), camera.samples.end());
-    points.insert(points.end(), camera.object_points_m.begin(), camera.object_points_m.end());
+  for (std::size_t k = 0; k < by_camera_.size(); ++k) {
+    Camera& camera = by_camera_[k];
+    camera.part = {};
+    for (const Half& half : camera.halves) {
+      samples.insert(samples.end(), half.samples.begin(), half.samples.end());
+      points.insert(points.end(), half.object_points_m.begin(), half.object_points_m.end());
+      camera.part = join(camera.part, half.part);
+    }
+    const Image<std::uint16_t>& depth = frame.rgbd[k].depth;
+    camera.part = intersect(grow(camera.part, 2 * step_of(depth)), depth.bounds());
   }
 }
 
-void SceneSampler::sample_camera(const RgbdFrame& images, const DepthMesh::Frame& frame,
-                                 const Rect& region, std::uint8_t source, Camera& camera) const {
-  const int width = images.depth.width();
-  const int height = images.depth.height();
-  const int step = std::max(1, static_cast<int>(std::lround(std::sqrt(static_cast<double>(width) *
-                                                                      height / wanted_samples))));
+void SceneSampler::sample_rows(const View& view, Rows rows, Half& half) {
+  const Image<std::uint16_t>& depth = view.images.depth;
+  const Image<Bgr>& image = view.images.color;
+  const int step = step_of(depth);
   constexpr int rim = even_color_reach_px;
-  // In the picture: more than a step of samples, and what refinement may move.
-  constexpr int margin = 64;
-  const Rect around = grow(region, margin);
-  for (int row = reach + step / 2; row < height - reach; row += step) {
-    for (int column = reach + step / 2; column < width - reach; column += step) {
-      if (frame.depth_mask(column, row) != 0 && on_surface(images.depth, column, row)) {
-        camera.object_points_m.push_back(camera.mesh.point_m(frame, column, row));
+  for (int row = reach + step / 2; row < depth.height() - reach; row += step) {
+    if (row < rows.first || row >= rows.last) continue;
+    for (int column = reach + step / 2; column < depth.width() - reach; column += step) {
+      if (view.frame.depth_mask(column, row) != 0 && on_surface(depth, column, row)) {
+        half.object_points_m.push_back(view.mesh.point_m(view.frame, column, row));
         continue;
       }
-      const MeshVertex vertex = camera.mesh.vertex(frame, column, row);
+      const MeshVertex vertex = view.mesh.vertex(view.frame, column, row);
       if (!vertex.valid()) continue;
       SceneSample sample;
       sample.pixel = Eigen::Vector2f(static_cast<float>(vertex.x), static_cast<float>(vertex.y)) /
                      sdct::subpixels;
-      if (around.contains(vertex.x / sdct::subpixels, vertex.y / sdct::subpixels)) {
-        extend(camera.part, column, row);
+      if (view.around.contains(vertex.x / sdct::subpixels, vertex.y / sdct::subpixels)) {
+        extend(half.part, column, row);
       }
-      if (!on_surface(images.depth, column, row)) continue;
+      if (!on_surface(depth, column, row)) continue;
       const int u = static_cast<int>(std::lrint(vertex.u));
       const int v = static_cast<int>(std::lrint(vertex.v));
-      if (u < rim || u >= images.color.width() - rim || v < rim ||
-          v >= images.color.height() - rim) {
+      if (u < rim || u >= image.width() - rim || v < rim || v >= image.height() - rim) {
         continue;
       }
-      const EvenColor color = even_color(images.color, u, v);
+      const EvenColor color = even_color(image, u, v);
       const auto level = [&](int c) {
         return static_cast<std::uint8_t>(std::lrint(color.channels[c]));
       };
-      sample.point_m = camera.mesh.point_m(frame, column, row);
+      sample.point_m = view.mesh.point_m(view.frame, column, row);
       sample.texture = {vertex.u, vertex.v};
       sample.color = {level(0), level(1), level(2)};
-      sample.source = source;
+      sample.source = view.source;
       sample.even = color.even;
-      camera.samples.push_back(sample);
+      half.samples.push_back(sample);
     }
   }
-  camera.part = intersect(grow(camera.part, 2 * step), images.depth.bounds());
 }
 
 }  // namespace diminish

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <array>
 #include <vector>
+
+#include "core/rows.h"
 
 #include "diminish/frame_set.h"
 #include "diminish/occlusion_masks.h"
@@ -26,14 +29,25 @@ class SceneSampler {
   const Rect& part(std::size_t camera) const { return by_camera_[camera].part; }
 
  private:
-  struct Camera {
-    DepthMesh mesh;
+  /// What some rows of a depth image show.
+  struct Half {
     std::vector<SceneSample> samples;
     std::vector<Eigen::Vector3f> object_points_m;
     Rect part;
   };
-  void sample_camera(const RgbdFrame& images, const DepthMesh::Frame& frame, const Rect& region,
-                     std::uint8_t source, Camera& camera) const;
+  struct Camera {
+    DepthMesh mesh;
+    std::array<Half, 2> halves;
+    Rect part;
+  };
+  struct View {
+    const RgbdFrame& images;
+    const DepthMesh& mesh;
+    DepthMesh::Frame frame;
+    Rect around;  ///< the region, generously
+    std::uint8_t source;
+  };
+  static void sample_rows(const View& view, Rows rows, Half& half);
 
   std::vector<Camera> by_camera_;
 };

@@ -112,18 +112,17 @@ void ShadowFit::weigh(float end_in_shadow) {
   }
 }
 
-/// The left side of the shares' equations.
+/// The left side of the shares' equations. Directions come in order: half of it is enough.
 void ShadowFit::add_up_squares() {
   const Eigen::Index count = shares_.rows();
   squares_.setZero(count, count);
   for (const Point& point : points_) {
     for (std::uint32_t i = point.first_hidden; i < point.last_hidden; ++i) {
       float* column = squares_.data() + count * hidden_[i];
-      for (std::uint32_t j = point.first_hidden; j < point.last_hidden; ++j) {
-        column[hidden_[j]] += point.weight;
-      }
+      for (std::uint32_t j = i; j < point.last_hidden; ++j) column[hidden_[j]] += point.weight;
     }
   }
+  squares_.triangularView<Eigen::StrictlyUpper>() = squares_.transpose();
   squares_.diagonal().array() += ridge;
 }
 

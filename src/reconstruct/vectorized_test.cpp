@@ -28,6 +28,7 @@ void expect_same(const Reconstruction& fast, const Reconstruction& plain) {
         ASSERT_EQ(fast.depth_m(x, y), 0);
         continue;
       }
+      ASSERT_TRUE(plain.region.keeps(x, y)) << x << ' ' << y;
       ++drawn;
       if (fast.source(x, y) != plain.source(x, y)) {
         ++other_source;
@@ -60,8 +61,8 @@ TEST_P(VectorizedOnRecordings, DrawsWhatThePlainVersionDraws) {
   Reconstruction b;
   for (const bool masked : {false, true}) {
     if (masked) first.mask_parts();
-    for (const Rect& region :
-         {first.whole_view(), Rect{300, 200, 421, 333}, Rect{0, 900, 1, 124}}) {
+    for (const TiledRegion& region : {first.whole_view(), TiledRegion(Rect{300, 200, 421, 333}),
+                                      first.tiled_part(), TiledRegion(Rect{0, 900, 1, 124})}) {
       const bool empty = region.width == 1;
       first.reconstruct(*fast, region, a);
       first.reconstruct(*plain, region, b);
