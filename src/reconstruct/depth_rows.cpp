@@ -7,23 +7,16 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "reconstruct/row_vectors-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace diminish::depth_rows::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
-
-constexpr int most_lanes = 16;
-
-/// Visits a row a vector at a time, what is left over a pixel at a time.
-template <class Visit>
-HWY_INLINE void ForEachVector(int count, const Visit& visit) {
-  const hn::CappedTag<float, most_lanes> d;
-  const auto lanes = static_cast<int>(hn::Lanes(d));
-  int x = 0;
-  for (; x + lanes <= count; x += lanes) visit(d, x);
-  for (; x < count; ++x) visit(hn::CappedTag<float, 1>(), x);
-}
+using diminish::HWY_NAMESPACE::ForEachVector;
+using diminish::HWY_NAMESPACE::most_lanes;
+using diminish::HWY_NAMESPACE::NoiseAt;
 
 template <class D>
 HWY_INLINE hn::Vec<D> Load(D d, const std::uint16_t* depth) {
@@ -36,12 +29,6 @@ HWY_INLINE void Store(D, hn::Vec<D> values, std::uint16_t* depth) {
   const hn::RebindToSigned<D> ints;
   const hn::Rebind<std::uint16_t, D> words;
   hn::StoreU(hn::DemoteTo(words, hn::ConvertTo(ints, values)), words, depth);
-}
-
-/// Of a depth in metres.
-template <class D>
-HWY_INLINE hn::Vec<D> NoiseAt(D d, const DepthNoise& noise, hn::Vec<D> z) {
-  return hn::Add(hn::Set(d, noise.constant_m), hn::Mul(hn::Mul(hn::Set(d, noise.by_square), z), z));
 }
 
 /// Whether a surface goes on to depth z. first, second: its pixels beside that, and one further.

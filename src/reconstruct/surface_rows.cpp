@@ -5,28 +5,17 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "reconstruct/row_vectors-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace diminish::surface_rows::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
+using diminish::HWY_NAMESPACE::ForEachVector;
+using diminish::HWY_NAMESPACE::most_lanes;
+using diminish::HWY_NAMESPACE::NoiseAt;
 
-constexpr int most_lanes = 16;
-
-/// Visits pixels a vector at a time, what is left over one at a time.
-template <class Visit>
-HWY_INLINE void ForEachVector(int count, const Visit& visit) {
-  const hn::CappedTag<float, most_lanes> d;
-  const auto lanes = static_cast<int>(hn::Lanes(d));
-  int x = 0;
-  for (; x + lanes <= count; x += lanes) visit(d, x);
-  for (; x < count; ++x) visit(hn::CappedTag<float, 1>(), x);
-}
-
-template <class D>
-HWY_INLINE hn::Vec<D> NoiseAt(D d, const DepthNoise& noise, hn::Vec<D> z) {
-  return hn::Add(hn::Set(d, noise.constant_m), hn::Mul(hn::Mul(hn::Set(d, noise.by_square), z), z));
-}
 template <class D>
 HWY_INLINE hn::Vec<D> Linear(D d, float start, float slope, hn::Vec<D> at) {
   return hn::Add(hn::Set(d, start), hn::Mul(at, hn::Set(d, slope)));

@@ -1,0 +1,40 @@
+// Included once for each instruction set: what kernels on rows of depths have in common.
+#if defined(DIMINISH_ROW_VECTORS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef DIMINISH_ROW_VECTORS_INL_H
+#undef DIMINISH_ROW_VECTORS_INL_H
+#else
+#define DIMINISH_ROW_VECTORS_INL_H
+#endif
+
+#include <hwy/highway.h>
+
+#include "reconstruct/depth_noise.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace diminish::HWY_NAMESPACE {
+namespace {
+
+constexpr int most_lanes = 16;
+
+/// Visits a row a vector at a time, what is left over a pixel at a time.
+template <class Visit>
+HWY_INLINE void ForEachVector(int count, const Visit& visit) {
+  const hwy::HWY_NAMESPACE::CappedTag<float, most_lanes> d;
+  const auto lanes = static_cast<int>(hwy::HWY_NAMESPACE::Lanes(d));
+  int x = 0;
+  for (; x + lanes <= count; x += lanes) visit(d, x);
+  for (; x < count; ++x) visit(hwy::HWY_NAMESPACE::CappedTag<float, 1>(), x);
+}
+
+/// Of a depth in metres.
+template <class D, class V = hwy::HWY_NAMESPACE::Vec<D>>
+HWY_INLINE V NoiseAt(D d, const DepthNoise& noise, V z) {
+  namespace hn = hwy::HWY_NAMESPACE;
+  return hn::Add(hn::Set(d, noise.constant_m), hn::Mul(hn::Mul(hn::Set(d, noise.by_square), z), z));
+}
+
+}  // namespace
+}  // namespace diminish::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
