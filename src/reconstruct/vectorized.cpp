@@ -18,8 +18,8 @@ namespace {
 /// Colours are looked up eight bytes at a time.
 constexpr int min_texture_side = 8;
 
-/// Draws one RGB-D camera's mesh, in two parts that threads may draw side by side: the upper and
-/// the lower half of the depth image.
+/// Draws one RGB-D camera's mesh, in two parts that threads may draw side by side: every other band
+/// of the depth image's rows, so that both have about as much to do wherever the objects are.
 class CameraMesh {
  public:
   static constexpr int parts = 2;
@@ -33,13 +33,44 @@ class CameraMesh {
   /// Two rows of vertices at a time; cells that cannot touch the region are left out by the block.
   void draw(const VertexRows::Frame& frame, const TiledRegion& region,
             const sdct::Threshold& threshold, int which) {
-    const int middle = rows_.height() / 2;
-    const int first = which == 0 ? 0 : middle;
-    const int last = which == 0 ? middle : rows_.height() - 1;
-    auto& [vertices, surface] = parts_[which];
-    surface.clear(frame.region);
-    rows_.project(frame, first, vertices[first % 2]);
-    for (int y = first; y < last; ++y) {
+    parts_[which].surface.clear(frame.region);
+    for (int first = which * band; first < rows_.height() - 1; first += parts * band) {
+      draw_band(frame, region, threshold, {first, std::min(first + band, rows_.height() - 1)},
+                parts_[which]);
+    }
+  }
+
+  /// Brings a row's parts together, once they are drawn.
+  void merge(const TiledRegion& region, int y) {
+    SurfaceBuffer& upper = parts_[0].surface;
+    SurfaceBuffer& lower = parts_[1].surface;
+    if (upper.touches(y) && lower.touches(y)) keep_nearest(lower, y, upper);
+    SurfaceBuffer& merged = parts_[upper.touches(y) ? 0 : 1].surface;
+    region.for_each_gap(y, [&](int first, int last) {
+      float* row = merged.inverse_z.data() + merged.row(y) - region.x;
+      std::fill(row + first, row + last, 0.F);
+    });
+  }
+
+  /// The merged surface of a row.
+  const SurfaceBuffer& surface(int y) const {
+    return parts_[parts_[0].surface.touches(y) ? 0 : 1].surface;
+  }
+
+ private:
+  static constexpr int band = 32;  ///< rows
+
+  struct Part {
+    VertexRow vertices[2];
+    SurfaceBuffer surface;
+  };
+
+  /// The cells below each of the rows.
+  void draw_band(const VertexRows::Frame& frame, const TiledRegion& region,
+                 const sdct::Threshold& threshold, Rows rows, Part& part) const {
+    auto& [vertices, surface] = part;
+    rows_.project(frame, rows.first, vertices[rows.first % 2]);
+    for (int y = rows.first; y < rows.last; ++y) {
       VertexRow& upper = vertices[y % 2];
       VertexRow& lower = vertices[(y + 1) % 2];
       rows_.project(frame, y + 1, lower);
@@ -63,29 +94,6 @@ class CameraMesh {
       }
     }
   }
-
-  /// Brings a row's parts together, once they are drawn.
-  void merge(const TiledRegion& region, int y) {
-    SurfaceBuffer& upper = parts_[0].surface;
-    SurfaceBuffer& lower = parts_[1].surface;
-    if (upper.touches(y) && lower.touches(y)) keep_nearest(lower, y, upper);
-    SurfaceBuffer& merged = parts_[upper.touches(y) ? 0 : 1].surface;
-    region.for_each_gap(y, [&](int first, int last) {
-      float* row = merged.inverse_z.data() + merged.row(y) - region.x;
-      std::fill(row + first, row + last, 0.F);
-    });
-  }
-
-  /// The merged surface of a row.
-  const SurfaceBuffer& surface(int y) const {
-    return parts_[parts_[0].surface.touches(y) ? 0 : 1].surface;
-  }
-
- private:
-  struct Part {
-    VertexRow vertices[2];
-    SurfaceBuffer surface;
-  };
 
   VertexRows rows_;
   Part parts_[parts];
