@@ -171,7 +171,7 @@ class BoxOccluder : public OccluderDetector {
       widest_px = std::max(widest_px, static_cast<int>(std::ceil(hole_px * ratio)));
     }
     if (!any) return false;
-    close_by_disc(object, widest_px, scratch_);
+    dilation_.close(object, widest_px);
     for (int y = 0; y < mask.height(); ++y) {
       std::transform(object.row(y), object.row(y) + mask.width(), mask.row(y), mask.row(y),
                      [](std::uint8_t a, std::uint8_t b) { return std::max(a, b); });
@@ -197,7 +197,7 @@ class BoxOccluder : public OccluderDetector {
   std::vector<Eigen::Vector3d> vertices_in_camera_;
   Mask object_in_color_;
   std::vector<Mask> object_in_rgbd_;
-  Mask scratch_;
+  DiscDilation dilation_;
 };
 
 const bool registered =

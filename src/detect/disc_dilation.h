@@ -1,14 +1,30 @@
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "diminish/image.h"
 
 namespace diminish {
 
-/// Sets every pixel of `mask` at most `radius` pixels (Euclidean, between centres) from a non-zero
-/// pixel to 255, and the others to 0. `scratch` is memory to use again.
-void dilate_by_disc(Mask& mask, int radius, Mask& scratch);
+/// Grows masks by discs.
+class DiscDilation {
+ public:
+  /// Sets every pixel of `mask` at most `radius` pixels (Euclidean, between centres) from a
+  /// non-zero pixel to 255, and the others to 0.
+  void dilate(Mask& mask, int radius);
 
-/// Fills gaps and holes that a disc of `radius` pixels does not fit in: dilation, then erosion.
-void close_by_disc(Mask& mask, int radius, Mask& scratch);
+  /// Fills gaps and holes that a disc of `radius` pixels does not fit in: dilation, then erosion.
+  void close(Mask& mask, int radius);
+
+ private:
+  void copy_part(const Mask& mask, const Rect& part);
+  template <class IsSet>
+  void spread_runs(const Rect& part, int radius, const IsSet& is_set, std::uint8_t value,
+                   Mask& target);
+
+  Mask before_;
+  std::vector<int> half_widths_;  ///< of the disc's rows, from its middle on
+};
 
 }  // namespace diminish

@@ -38,20 +38,20 @@ const Case cases[] = {{1, 1, 1, 1},        {1, 1, 3, 0},          {3, 13, 2, 0.1
                       {33, 31, 5, 1}};
 
 TEST(DiscDilation, SetsWhatOpenCvSetsWithTheSameDisc) {
-  Mask scratch;
+  DiscDilation dilation;
   for (const auto& [width, height, radius, density] : cases) {
     SCOPED_TRACE(radius);
     const Mask before = random_mask(width, height, density, 1);
     Mask expected(width, height);
     cv::dilate(as_mat(before), as_mat(expected), disc(radius));
     Mask mask = before;
-    dilate_by_disc(mask, radius, scratch);
+    dilation.dilate(mask, radius);
     EXPECT_EQ(mask, expected);
   }
 }
 
 TEST(DiscDilation, ClosesWhatOpenCvClosesWithTheSameDisc) {
-  Mask scratch;
+  DiscDilation dilation;
   for (const auto& [width, height, radius, density] : cases) {
     SCOPED_TRACE(radius);
     const Mask before = random_mask(width, height, std::min(1.0, 5 * density), 2);
@@ -59,7 +59,7 @@ TEST(DiscDilation, ClosesWhatOpenCvClosesWithTheSameDisc) {
     cv::dilate(as_mat(before), as_mat(expected), disc(radius));
     cv::erode(as_mat(expected), as_mat(expected), disc(radius));
     Mask mask = before;
-    close_by_disc(mask, radius, scratch);
+    dilation.close(mask, radius);
     EXPECT_EQ(mask, expected);
   }
 }

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "detect/disc_dilation.h"
-
 namespace diminish {
 namespace {
 
@@ -31,8 +29,7 @@ OccluderStage::OccluderStage(const Rig& rig, const Scene& scene) : rig_(rig) {
     detectors_.push_back(Detectors::get(spec.detector)(spec, rig));
     names_.push_back(spec.name);
   }
-  scratch_.rgbd_color.resize(rig.rgbd.size());
-  scratch_.rgbd_depth.resize(rig.rgbd.size());
+  dilations_.resize(rig.rgbd.size() + 1);
 }
 
 bool OccluderStage::needs_markers() const {
@@ -79,15 +76,15 @@ void OccluderStage::grow_by_margins(const Options& options, double deviation_px,
   const double wanted_px =
       options.margin_deviations > 0 ? options.margin_deviations * deviation_px : 0;
   const auto more_px = static_cast<int>(std::lrint(std::clamp(wanted_px - usual_px, 0.0, most_px)));
-  const auto grow_by = [](int margin_px, Mask& mask, Mask& scratch) {
-    if (margin_px > 0) dilate_by_disc(mask, margin_px, scratch);
-  };
   oneapi::tbb::parallel_for(std::size_t{0}, rig_.rgbd.size() + 1, [&](std::size_t i) {
-    if (i == 0) return grow_by(options.mask_margin_px + more_px, masks.color, scratch_.color);
+    const auto grow_by = [&](int margin_px, Mask& mask) {
+      if (margin_px > 0) dilations_[i].dilate(mask, margin_px);
+    };
+    if (i == 0) return grow_by(options.mask_margin_px + more_px, masks.color);
     const std::size_t k = i - 1;
     const int margin_px = options.rgbd_mask_margin_px + more_px;
-    grow_by(margin_px, masks.rgbd_color[k], scratch_.rgbd_color[k]);
-    grow_by(depth_margin_px(rig_.rgbd[k], margin_px), masks.rgbd_depth[k], scratch_.rgbd_depth[k]);
+    grow_by(margin_px, masks.rgbd_color[k]);
+    grow_by(depth_margin_px(rig_.rgbd[k], margin_px), masks.rgbd_depth[k]);
   });
 }
 

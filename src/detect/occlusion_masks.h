@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "detect/disc_dilation.h"
 #include "diminish/occluder_detector.h"
 
 namespace diminish {
@@ -29,8 +30,8 @@ class OccluderStage {
 
   Rig rig_;
   std::vector<std::unique_ptr<OccluderDetector>> detectors_;
-  std::vector<std::string> names_;  ///< of the objects
-  OcclusionMasks scratch_;
+  std::vector<std::string> names_;       ///< of the objects
+  std::vector<DiscDilation> dilations_;  ///< of the colour camera, and each RGB-D camera
 };
 
 }  // namespace diminish

@@ -65,10 +65,10 @@ void MarkerDetector::detect(const Image<Bgr>& image, const Lens& lens,
     if (!reading) continue;
     refine_corners(image, lens, modules, fine_pass, quad);
     std::rotate(quad.begin(), quad.begin() + reading->top_left, quad.end());
-    markers.push_back({reading->id, quad});
+    const auto by_id = [](int id, const Marker& marker) { return id < marker.id; };
+    markers.insert(std::upper_bound(markers.begin(), markers.end(), reading->id, by_id),
+                   {reading->id, quad});
   }
-  std::stable_sort(markers.begin(), markers.end(),
-                   [](const Marker& a, const Marker& b) { return a.id < b.id; });
   remove_ambiguous(markers);
 }
 
