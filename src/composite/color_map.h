@@ -39,10 +39,23 @@ enum class ColorMapModel { affine, field };
 
 /// Fits robustly (iteratively reweighted least squares with Tukey's weights): pairs that do not
 /// show the same surface, being occluded or misregistered, have no say as long as they are fewer
-/// than half. affine: a gain and an offset for each channel. field: everything above.
-/// What few pairs do not determine stays near a gain for each channel; without pairs the map
-/// changes nothing. bounds: the picture's. Cost: 0.1 us a pair.
-ColorMap fit_color_map(const std::vector<ColorPair>& pairs, ColorMapModel model,
-                       const Rect& bounds);
+/// than half.
+class ColorMapFit {
+ public:
+  /// affine: a gain and an offset for each channel. field: everything that a ColorMap has.
+  /// What few pairs do not determine stays near a gain for each channel; without pairs the map
+  /// changes nothing. bounds: the picture's. Cost: 0.1 us a pair.
+  ColorMap fit(const std::vector<ColorPair>& pairs, ColorMapModel model, const Rect& bounds);
+
+ private:
+  void start_with_gains(const std::vector<ColorPair>& pairs);
+  void weigh(const std::vector<ColorPair>& pairs);
+  void fit_channels(const std::vector<ColorPair>& pairs, ColorMapModel model);
+  void fit_field(const std::vector<ColorPair>& pairs);
+
+  ColorMap map_;
+  Eigen::Vector3f gains_;
+  std::vector<float> residuals_, weights_, values_;
+};
 
 }  // namespace diminish

@@ -57,7 +57,8 @@ float worst_difference(const ColorMap& a, const ColorMap& b) {
 TEST(ColorMap, FindsTheMapAmongWrongPairs) {
   const ColorMap map = some_map();
   for (const unsigned wrong : {0U, 30U}) {
-    const ColorMap found = fit_color_map(pairs_of(map, 3000, wrong), ColorMapModel::field, bounds);
+    const ColorMap found =
+        ColorMapFit().fit(pairs_of(map, 3000, wrong), ColorMapModel::field, bounds);
     EXPECT_LT(worst_difference(found, map), 1.5F) << wrong << " % wrong";
   }
 }
@@ -66,20 +67,21 @@ TEST(ColorMap, AffineFindsGainsAndOffsets) {
   ColorMap map = some_map();
   map.field.setZero();
   map.matrix = map.matrix.diagonal().asDiagonal();
-  const ColorMap found = fit_color_map(pairs_of(map, 2000, 30), ColorMapModel::affine, bounds);
+  const ColorMap found = ColorMapFit().fit(pairs_of(map, 2000, 30), ColorMapModel::affine, bounds);
   EXPECT_LT(worst_difference(found, map), 1.F);
   EXPECT_EQ(found.field.norm(), 0);
 }
 
 TEST(ColorMap, ChangesNothingWithoutPairsAndLittleForUnseenColorsWithFew) {
-  EXPECT_LT(worst_difference(fit_color_map({}, ColorMapModel::field, bounds), ColorMap{}), 1e-4F);
+  EXPECT_LT(worst_difference(ColorMapFit().fit({}, ColorMapModel::field, bounds), ColorMap{}),
+            1e-4F);
   // Three grey surfaces at one place say nothing of colours, nor of the field.
   std::vector<ColorPair> pairs;
   for (const float level : {80.F, 100.F, 120.F}) {
     pairs.push_back(
         {{300, 200}, Eigen::Array3f::Constant(level), Eigen::Array3f::Constant(1.1F * level)});
   }
-  const ColorMap found = fit_color_map(pairs, ColorMapModel::field, bounds);
+  const ColorMap found = ColorMapFit().fit(pairs, ColorMapModel::field, bounds);
   const Eigen::Array3f red(30, 30, 200);
   EXPECT_LT((found(red, 300, 200) - 1.1F * red).abs().maxCoeff(), 25);
   EXPECT_LT((found(Eigen::Array3f::Constant(100.F), 10, 10) - 110).abs().maxCoeff(), 20);

@@ -57,7 +57,10 @@ class MappedCorrection : public ColorCorrector {
       if (i == 0 || samples[i].source != samples[i - 1].source) sources_.push_back({i, i});
       sources_.back().end = i + 1;
     }
-    if (pairs_.size() < sources_.size()) pairs_.resize(sources_.size());
+    if (pairs_.size() < sources_.size()) {
+      pairs_.resize(sources_.size());
+      fits_.resize(sources_.size());
+    }
     oneapi::tbb::parallel_for(std::size_t{0}, sources_.size(), [&](std::size_t k) {
       const auto [begin, end] = sources_[k];
       pairs_[k].clear();
@@ -65,7 +68,7 @@ class MappedCorrection : public ColorCorrector {
       for (std::size_t i = begin; i < end; i += step) {
         add_pair(camera, occlusion, samples[i], pairs_[k]);
       }
-      maps_[samples[begin].source] = fit_color_map(pairs_[k], model_, camera.bounds());
+      maps_[samples[begin].source] = fits_[k].fit(pairs_[k], model_, camera.bounds());
     });
   }
 
@@ -115,7 +118,8 @@ class MappedCorrection : public ColorCorrector {
     std::size_t begin, end;
   };
   std::vector<Source> sources_;
-  std::vector<std::vector<ColorPair>> pairs_;                ///< of each source
+  std::vector<std::vector<ColorPair>> pairs_;  ///< of each source
+  std::vector<ColorMapFit> fits_;
   std::vector<ColorMap> maps_ = std::vector<ColorMap>(256);  ///< by Reconstruction::source
   SoftMembrane membrane_;
   std::vector<float> corrections_[2];  ///< of the row that each thread is at
