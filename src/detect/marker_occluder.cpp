@@ -68,28 +68,28 @@ class MarkerOccluder : public OccluderDetector {
 
   OccluderReport detect(const Observation& observation, OcclusionMasks& masks) override {
     // The colour camera first, then the RGB-D cameras' colour sensors.
-    std::vector<MarkerView> views = {
-        {&color_lens_, corners_in(observation.markers.color), RigidTransform{}}};
+    views_.clear();
+    views_.push_back({&color_lens_, corners_in(observation.markers.color), RigidTransform{}});
     for (std::size_t k = 0; k < rig_.rgbd.size(); ++k) {
       MarkerView view{&rgbd_color_lenses_[k], corners_in(observation.markers.rgbd[k]), {}};
       if (const auto& color_from_depth = observation.poses.color_from_depth[k]) {
         view.common_from_camera = *color_from_depth * rig_.rgbd[k].color_from_depth.inverse();
       }
-      views.push_back(view);
+      views_.push_back(view);
     }
-    const auto camera_from_marker = locate_marker(views, marker_.size_m);
+    locate_marker(views_, marker_.size_m, camera_from_marker_);
 
     OccluderReport report;
     report.name = name_;
     report.in_color =
-        camera_from_marker[0] && draw(*camera_from_marker[0], color_drawer_, masks.color);
+        camera_from_marker_[0] && draw(*camera_from_marker_[0], color_drawer_, masks.color);
     for (std::size_t k = 0; k < rig_.rgbd.size(); ++k) {
-      const auto& pose = camera_from_marker[k + 1];
+      const auto& pose = camera_from_marker_[k + 1];
       const bool draws = pose && observation.frame.rgbd[k].available();
       report.in_rgbd.push_back(draws && draw_in_rgbd(k, *pose, masks));
     }
-    report.deviation_px = deviation_px(views, camera_from_marker);
-    report.message = message(views, camera_from_marker);
+    report.deviation_px = deviation_px();
+    report.message = message();
     return report;
   }
 
@@ -102,18 +102,17 @@ class MarkerOccluder : public OccluderDetector {
 
   /// Of the shape's corners, in the picture where it is most uncertain. Where the marker is not
   /// seen, the shape is known by the other pictures, and by the way there.
-  double deviation_px(const std::vector<MarkerView>& views,
-                      const std::vector<std::optional<RigidTransform>>& camera_from_marker) const {
+  double deviation_px() const {
     double most = 0;
-    for (std::size_t i = 0; i < views.size(); ++i) {
-      if (!views[i].corners || !camera_from_marker[i]) continue;
+    for (std::size_t i = 0; i < views_.size(); ++i) {
+      if (!views_[i].corners || !camera_from_marker_[i]) continue;
       // Of four corners' eight coordinates the pose leaves two free to differ.
       const double error_px =
-          std::numbers::sqrt2 * marker_error_px(*camera_from_marker[i], marker_.size_m,
-                                                *views[i].lens, *views[i].corners);
-      most =
-          std::max(most, place_deviation_px(*camera_from_marker[i], marker_.size_m, *views[i].lens,
-                                            std::max(error_px, corner_noise_px), shape_corners_));
+          std::numbers::sqrt2 * marker_error_px(*camera_from_marker_[i], marker_.size_m,
+                                                *views_[i].lens, *views_[i].corners);
+      most = std::max(most,
+                      place_deviation_px(*camera_from_marker_[i], marker_.size_m, *views_[i].lens,
+                                         std::max(error_px, corner_noise_px), shape_corners_));
     }
     return most;
   }
@@ -137,15 +136,14 @@ class MarkerOccluder : public OccluderDetector {
   }
 
   /// What is missing. An object that is out of a camera's sight is not: its place is known.
-  std::string message(const std::vector<MarkerView>& views,
-                      const std::vector<std::optional<RigidTransform>>& poses) const {
+  std::string message() const {
     const std::string marker = name_ + ": marker " + std::to_string(marker_.id);
-    if (std::none_of(views.begin(), views.end(), [](const auto& view) { return view.corners; })) {
+    if (std::none_of(views_.begin(), views_.end(), [](const auto& view) { return view.corners; })) {
       return marker + " not visible in any camera";
     }
     std::string cameras;
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-      if (poses[i]) continue;
+    for (std::size_t i = 0; i < camera_from_marker_.size(); ++i) {
+      if (camera_from_marker_[i]) continue;
       cameras += (cameras.empty() ? "" : ", ") +
                  (i == 0 ? std::string("color") : color_sensor_name(rig_.rgbd[i - 1]));
     }
@@ -164,6 +162,8 @@ class MarkerOccluder : public OccluderDetector {
   SilhouetteDrawer color_drawer_;
   std::vector<SilhouetteDrawer> rgbd_color_drawers_, rgbd_depth_drawers_;
   std::vector<Eigen::Vector3d> vertices_in_camera_;
+  std::vector<MarkerView> views_;                                  ///< of this frame
+  std::vector<std::optional<RigidTransform>> camera_from_marker_;  ///< of each view
 };
 
 const bool registered =

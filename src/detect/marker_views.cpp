@@ -47,21 +47,21 @@ std::optional<RigidTransform> own_pose(const std::vector<MarkerView>& views, con
 
 }  // namespace
 
-std::vector<std::optional<RigidTransform>> locate_marker(const std::vector<MarkerView>& views,
-                                                         double size_m) {
-  std::vector<std::optional<RigidTransform>> poses(views.size());
+void locate_marker(const std::vector<MarkerView>& views, double size_m,
+                   std::vector<std::optional<RigidTransform>>& camera_from_marker) {
+  std::vector<std::optional<RigidTransform>>& poses = camera_from_marker;
+  poses.assign(views.size(), std::nullopt);
   std::optional<std::size_t> largest;
   for (std::size_t i = 0; i < views.size(); ++i) {
     poses[i] = own_pose(views, views[i], size_m);
     if (!poses[i] || !views[i].common_from_camera) continue;
     if (!largest || area(*views[i].corners) > area(*views[*largest].corners)) largest = i;
   }
-  if (!largest) return poses;
+  if (!largest) return;
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (poses[i] || !views[i].common_from_camera) continue;
     poses[i] = carry_over(*poses[*largest], views[*largest], views[i]);
   }
-  return poses;
 }
 
 }  // namespace diminish

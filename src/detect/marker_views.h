@@ -18,10 +18,10 @@ struct MarkerView {
   std::optional<RigidTransform> common_from_camera;
 };
 
-/// camera_from_marker of each view: from the view's own corners where there are any, of two poses
-/// that fit them about equally well the one that agrees with the other views; else from the view in
-/// which the marker is largest. Absent where neither is possible.
-std::vector<std::optional<RigidTransform>> locate_marker(const std::vector<MarkerView>& views,
-                                                         double size_m);
+/// Fills camera_from_marker of each view: from the view's own corners where there are any, of two
+/// poses that fit them about equally well the one that agrees with the other views; else from the
+/// view in which the marker is largest. Absent where neither is possible.
+void locate_marker(const std::vector<MarkerView>& views, double size_m,
+                   std::vector<std::optional<RigidTransform>>& camera_from_marker);
 
 }  // namespace diminish

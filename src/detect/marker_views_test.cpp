@@ -10,6 +10,13 @@
 namespace diminish {
 namespace {
 
+std::vector<std::optional<RigidTransform>> located(const std::vector<MarkerView>& views,
+                                                   double size_m) {
+  std::vector<std::optional<RigidTransform>> camera_from_marker;
+  locate_marker(views, size_m, camera_from_marker);
+  return camera_from_marker;
+}
+
 using Corners = std::array<Eigen::Vector2d, 4>;
 
 constexpr double size_m = 0.1;
@@ -47,17 +54,17 @@ TEST(MarkerViews, ACameraThatDoesNotSeeTheMarkerGetsThePoseFromTheOneThatSeesItL
   const std::vector<MarkerView> views = {{&lens, spoilt, RigidTransform{}},
                                          {&lens, see(first_from_marker), RigidTransform{}},
                                          {&lens, {}, second_from_first.inverse()}};
-  const auto poses = locate_marker(views, size_m);
+  const auto poses = located(views, size_m);
   ASSERT_TRUE(poses[2]);
   expect_near(*poses[2], second_from_first * first_from_marker, 0.002);
 }
 
 TEST(MarkerViews, WithoutAKnownWayThereIsNoPose) {
   const RigidTransform first_from_marker = facing(35, {0.1, 0, 1.5});
-  const auto poses = locate_marker({{&lens, see(first_from_marker), RigidTransform{}},
-                                    {&lens, {}, {}},
-                                    {&lens, see(first_from_marker), {}}},
-                                   size_m);
+  const auto poses = located({{&lens, see(first_from_marker), RigidTransform{}},
+                              {&lens, {}, {}},
+                              {&lens, see(first_from_marker), {}}},
+                             size_m);
   ASSERT_TRUE(poses[0]);
   EXPECT_FALSE(poses[1]);
   ASSERT_TRUE(poses[2]);
@@ -82,10 +89,9 @@ TEST(MarkerViews, AnAmbiguousPoseIsDecidedByTheOtherCamera) {
     if (alone->ambiguity < 0.4) continue;
     if (error_deg(alone->camera_from_marker) < error_deg(alone->alternative)) continue;
     ++wrong_alone;
-    const auto poses =
-        locate_marker({{&lens, in_first, RigidTransform{}},
-                       {&lens, see(second_from_marker), second_from_first.inverse()}},
-                      size_m);
+    const auto poses = located({{&lens, in_first, RigidTransform{}},
+                                {&lens, see(second_from_marker), second_from_first.inverse()}},
+                               size_m);
     ASSERT_TRUE(poses[0]);
     EXPECT_LT(error_deg(*poses[0]), error_deg(alone->camera_from_marker));
   }
