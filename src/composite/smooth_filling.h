@@ -2,10 +2,9 @@
 
 #include <Eigen/Core>
 #include <cstddef>
-#include <iterator>
+#include <cstdint>
 #include <vector>
 
-#include "composite/neighbours.h"
 #include "diminish/image.h"
 
 namespace diminish {
@@ -14,45 +13,59 @@ namespace diminish {
 /// next: nearly the solution of Laplace's equation, at a fraction of its cost (MembraneSolver).
 ///
 /// Cascadic multigrid (Bornemann & Deuflhard 1996): from the coarsest grid to the finest, each
-/// starts from what the coarser one found, and is relaxed a few times; there is no way back. Cells
-/// that hold a known pixel have its colour. Grids are lists of cells, so that ragged sets cost what
+/// starts from what the coarser one found, and is relaxed a few times; there is no way back. A
+/// coarse cell that holds a known pixel is known, and has the mean of their colours. Relaxation is
+/// in red-black order, by Chebyshev's factors (Golub & Varga 1961): half as many sweeps do. Which
+/// pixels a cell holds, and which cells are red, goes by the place in the picture, and does not
+/// change where the set grows. Work is done on runs of open cells, so that ragged sets cost what
 /// they hold and not what they span.
 ///
-/// Use: begin, open all pixels, connect, solve, for_each.
+/// Use: begin, set the kinds, connect, solve, for_each_run.
 class SmoothFilling {
  public:
-  /// Starts with no pixels, in a window of this size.
-  void begin(int width, int height);
-  /// Adds a pixel to fill. Row by row, each once.
-  void open(int x, int y) {
-    finest().add({x + 1, y + 1});
-    ++finest().open;
-  }
-  bool empty() const { return grids_.front().open == 0; }
-  /// is_known(x, y): whether that pixel, which is not open, lends its colour; asked of all pixels
-  /// beside open ones, outside the window, too. color(x, y): that colour, asked once a pixel.
-  /// Returns whether there is any known pixel.
-  template <class IsKnown, class GetColor>
-  bool connect(const IsKnown& is_known, const GetColor& color) {
-    Grid& grid = finest();
-    grid.find_neighbours([&](Place place) {
-      if (!is_known(place.x - 1, place.y - 1)) return 0;
-      const int number = grid.add(place);
-      const Eigen::Array3f channels = color(place.x - 1, place.y - 1);
-      grid.colors.back() = {channels[0], channels[1], channels[2], 1};
-      return number;
-    });
-    return grid.places.size() > grid.open + 1;
+  /// What a pixel is. A coarse cell is the greatest of what it holds.
+  using Kind = std::uint8_t;
+  static constexpr Kind absent = 0, open = 1, known = 2;
+
+  /// How often half the cells of a grid, first the red ones, are relaxed; and by which factors.
+  struct Relaxation {
+    int half_sweeps;
+    float spectral_radius;  ///< as large as Jacobi's iteration is taken to have
+
+    /// Of half sweep k: 1, then up to 2.
+    float factor(int k) const;
+  };
+  static constexpr Relaxation finest = {4, 0.95F};
+  static constexpr Relaxation coarser = {6, 0.99F};
+  static constexpr int most_half_sweeps = 6;
+
+  /// Starts with new pixels. box: holds all open ones; in the picture.
+  /// Returns the kinds of the box's pixels and of a rim of one pixel around it, all of which are to
+  /// be set. Open: none of the rim. Known: lends its colour if it is beside an open one.
+  Image<Kind>& begin(const Rect& box);
+  /// color(x, y), an Eigen::Array3f: that of a known pixel beside an open one; asked once of each.
+  /// Returns whether there is any.
+  template <class GetColor>
+  bool connect(const GetColor& color) {
+    Grid& grid = grids_.front();
+    grid.find_open();
+    grid.find_known();
+    for (const Place place : grid.known) {
+      const Eigen::Array3f channels = color(place.x, place.y);
+      grid.color_row(place.y)[place.x] = {channels[0], channels[1], channels[2], 1};
+    }
+    return !grid.known.empty();
   }
   /// All open pixels get a colour, those that hang together with no known one, too.
   /// There must be a known pixel.
   void solve();
-  /// Calls visit(x, y, color) for each open pixel; color: within the known colours.
+  /// Calls visit(y, first, last, colors) for each run of open pixels, columns [first, last) of row
+  /// y; colors[x]: the channels, and 1. They may overshoot the known colours a little.
   template <class Visit>
-  void for_each(const Visit& visit) const {
+  void for_each_run(const Visit& visit) const {
     const Grid& grid = grids_.front();
-    for (std::size_t i = 1; i <= grid.open; ++i) {
-      visit(grid.places[i].x - 1, grid.places[i].y - 1, grid.colors[i]);
+    for (int y = grid.box.y; y < grid.box.bottom(); ++y) {
+      grid.for_each_run(y, [&](Run run) { visit(y, run.first, run.last, grid.color_row(y)); });
     }
   }
 
@@ -62,57 +75,38 @@ class SmoothFilling {
   struct Place {
     int x, y;
   };
-  /// The left one last: relaxing forwards, it is the one that was just computed.
-  static constexpr PixelOffset beside[] = {{0, -1}, {0, 1}, {1, 0}, {-1, 0}};
-
-  struct Grid {
-    /// Each cell's number; 0: not in the grid. With a rim of 1 around the window.
-    Image<int> cells;
-    // By number; 0 is nothing, 1 to `open` are open, the others known.
-    std::vector<Place> places;
-    std::vector<Color> colors;
-    std::size_t open = 0;
-    struct Neighbours {
-      int at[4];
-      float inverse_count;
-    };
-    std::vector<Neighbours> neighbours;  ///< of the open cells
-
-    void begin(int width, int height);
-    /// With color 0. Returns its number.
-    int add(Place place) {
-      const auto number = static_cast<int>(places.size());
-      cells(place.x, place.y) = number;
-      places.push_back(place);
-      colors.emplace_back(0.F, 0.F, 0.F, 0.F);
-      return number;
-    }
-    const Color& color(int x, int y) const { return colors[static_cast<std::size_t>(cells(x, y))]; }
-    /// take_in(place): the number of a cell beside an open one that is not in the grid; it may add
-    /// the cell, or return 0.
-    template <class TakeIn>
-    void find_neighbours(const TakeIn& take_in) {
-      neighbours.resize(open + 1);
-      for (std::size_t i = 1; i <= open; ++i) {
-        const Place place = places[i];
-        Neighbours& own = neighbours[i];
-        int count = 0;
-        for (std::size_t k = 0; k < std::size(beside); ++k) {
-          const Place other{place.x + beside[k].x, place.y + beside[k].y};
-          own.at[k] = cells(other.x, other.y);
-          if (own.at[k] == 0) own.at[k] = take_in(other);
-          count += own.at[k] != 0 ? 1 : 0;
-        }
-        own.inverse_count = count > 0 ? 1 / static_cast<float>(count) : 0;
-      }
-    }
-    void relax(std::size_t cell);
+  /// Columns [first, last) of a row.
+  struct Run {
+    int first, last;
   };
 
-  static Place coarser(Place place) { return {(place.x + 1) / 2, (place.y + 1) / 2}; }
-  static void coarsen(const Grid& fine, Grid& coarse);
-  static void interpolate(const Grid& coarse, Grid& fine);
-  Grid& finest() { return grids_.front(); }
+  struct Grid {
+    Rect box;  ///< of the open cells; the images have a rim of 1 around it
+    Image<Kind> kinds;
+    Image<Color> colors;
+    std::vector<Run> runs;               ///< of open cells
+    std::vector<std::size_t> row_begin;  ///< in `runs`: of the box's rows, and the end
+    std::vector<Place> known;            ///< known cells
+    std::vector<Kind> row;
+
+    void begin(const Rect& open_box);
+    /// To be indexed by x.
+    Color* color_row(int y) { return colors.row(y - box.y + 1) - (box.x - 1); }
+    const Color* color_row(int y) const { return colors.row(y - box.y + 1) - (box.x - 1); }
+    void find_open();
+    void find_known();
+    template <class Visit>
+    void for_each_run(int y, const Visit& visit) const {
+      if (y < box.y || y >= box.bottom()) return;
+      const auto i = static_cast<std::size_t>(y - box.y);
+      for (std::size_t run = row_begin[i]; run < row_begin[i + 1]; ++run) visit(runs[run]);
+    }
+    /// To be the coarser grid.
+    void coarsen(const Grid& fine);
+    void interpolate_row(const Grid& coarse, int y);
+    void relax_row(int y, int parity, float factor);
+    void refine(const Grid& coarse, const Relaxation& relaxation);
+  };
 
   std::vector<Grid> grids_ = std::vector<Grid>(1);
 };

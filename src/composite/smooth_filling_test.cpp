@@ -15,19 +15,18 @@ Image<Eigen::Array3f> fill(int width, int height, const IsOpen& is_open, const C
   Image<Eigen::Array3f> picture(width, height, Eigen::Array3f::Zero());
   // Twice: what the first left behind must not matter.
   for (int run = 0; run < 2; ++run) {
-    filling.begin(width, height);
+    Image<SmoothFilling::Kind>& kinds = filling.begin(picture.bounds());
+    kinds.fill(SmoothFilling::absent);
     for (int y = 0; y < height; ++y) {
       for (int x = 0; x < width; ++x) {
-        if (is_open(x, y)) filling.open(x, y);
+        kinds(x + 1, y + 1) = is_open(x, y) ? SmoothFilling::open : SmoothFilling::known;
       }
     }
-    const auto is_known = [&](int x, int y) {
-      return x >= 0 && y >= 0 && x < width && y < height && !is_open(x, y);
-    };
-    EXPECT_TRUE(filling.connect(is_known, color));
+    EXPECT_TRUE(filling.connect(color));
     filling.solve();
-    filling.for_each(
-        [&](int x, int y, const Eigen::Array4f& channels) { picture(x, y) = channels.head<3>(); });
+    filling.for_each_run([&](int y, int first, int last, const Eigen::Array4f* colors) {
+      for (int x = first; x < last; ++x) picture(x, y) = colors[x].head<3>();
+    });
   }
   return picture;
 }
@@ -82,12 +81,11 @@ TEST(SmoothFilling, ReachesWhatHangsTogetherWithNothingKnown) {
 
 TEST(SmoothFilling, SaysThatNothingIsKnown) {
   SmoothFilling filling;
-  filling.begin(4, 4);
-  EXPECT_TRUE(filling.empty());
-  filling.open(1, 1);
-  EXPECT_FALSE(filling.empty());
-  EXPECT_FALSE(filling.connect([](int, int) { return false; },
-                               [](int, int) { return Eigen::Array3f(0, 0, 0); }));
+  Image<SmoothFilling::Kind>& kinds = filling.begin({0, 0, 4, 4});
+  kinds.fill(SmoothFilling::absent);
+  kinds(2, 2) = SmoothFilling::open;
+  kinds(0, 0) = SmoothFilling::known;  // not beside it
+  EXPECT_FALSE(filling.connect([](int, int) -> Eigen::Array3f { return {1, 2, 3}; }));
 }
 
 }  // namespace
