@@ -40,9 +40,19 @@ Counts sort_row(const std::uint8_t* mask, const std::uint8_t* source, int begin,
   return {static_cast<std::size_t>(mask_pixels), static_cast<std::size_t>(missing_pixels)};
 }
 
+/// Clears `missing`. objects: the last mask's bounding box, outside of which nothing of it is set;
+/// becomes this one's.
+void begin_missing(const Mask& occlusion, Mask& missing, Rect& objects) {
+  if (missing.width() == occlusion.width() && missing.height() == occlusion.height()) {
+    missing.fill(objects, 0);
+  } else {
+    missing.resize(occlusion.width(), occlusion.height(), 0);
+  }
+  objects = bounding_box(occlusion);
+}
+
 /// Copies the camera's picture and sorts the mask's pixels into seen and missing.
-/// objects: the last mask's bounding box, outside of which nothing of `missing` is set; becomes
-/// this one's.
+/// missing, objects: as begin_missing has them.
 void sort_pixels(const Image<Bgr>& camera, const OcclusionMasks& masks, DiminishedFrame& result,
                  Mask& missing, Rect& objects) {
   const int width = camera.width();
@@ -50,12 +60,7 @@ void sort_pixels(const Image<Bgr>& camera, const OcclusionMasks& masks, Diminish
   result.picture.resize(width, height);
   result.mask.resize(width, height);
   result.provenance.resize(width, height);
-  if (missing.width() == width && missing.height() == height) {
-    missing.fill(objects, 0);
-  } else {
-    missing.resize(width, height, 0);
-  }
-  objects = bounding_box(masks.color);
+  begin_missing(masks.color, missing, objects);
   const Rect drawn = intersect(objects, result.reconstruction.region);
   const Counts counts = sum_over_rows(height, [&](Rows rows) {
     Counts sum;
@@ -119,11 +124,34 @@ void Compositor::composite(const Image<Bgr>& camera, const OcclusionMasks& masks
     const ScopedTimer timer(milliseconds, Stage::color_correction);
     correct_colors(camera, masks.color, options.color_correct, result);
   }
-  const bool has_shadows = !result.reconstruction.light.empty();
-  if (has_shadows) {
+  if (!result.reconstruction.light.empty()) {
     const ScopedTimer timer(milliseconds, Stage::color_correction);
     shadow_lifting_.lift(result.reconstruction, result.picture);
   }
+  show(camera, masks, options, result);
+}
+
+void Compositor::complete(const Image<Bgr>& camera, const OcclusionMasks& masks,
+                          const Options& options, DiminishedFrame& result) {
+  {
+    const ScopedTimer timer(result.report.milliseconds, Stage::compositing);
+    begin_missing(masks.color, missing_, objects_);
+    for (int y = objects_.y; y < objects_.bottom(); ++y) {
+      const std::uint8_t* origin = result.provenance.row(y);
+      std::uint8_t* missing = missing_.row(y);
+      for (int x = objects_.x; x < objects_.right(); ++x) {
+        missing[x] = origin[x] == provenance::inpainted ? 255 : 0;
+      }
+    }
+  }
+  show(camera, masks, options, result);
+}
+
+/// Inpainting and what comes after it.
+void Compositor::show(const Image<Bgr>& camera, const OcclusionMasks& masks, const Options& options,
+                      DiminishedFrame& result) {
+  StageTimes& milliseconds = result.report.milliseconds;
+  const bool has_shadows = !result.reconstruction.light.empty();
   if (result.report.missing_pixels > 0) {
     const ScopedTimer timer(milliseconds, Stage::inpainting);
     if (!inpaint({missing_, masks.color, result.reconstruction}, options, result)) {
@@ -137,12 +165,8 @@ void Compositor::composite(const Image<Bgr>& camera, const OcclusionMasks& masks
   }
   if (result.report.mask_pixels > 0) {
     const ScopedTimer timer(milliseconds, Stage::compositing);
-    // Where the shadow outside is gone, too, the camera's picture is another.
-    if (!has_shadows || !options.remove_shadows) {
-      const int most_px = options.mask_margin_px / 2;
-      const int width_px = std::min(options.soft_rim_px, most_px);
-      soft_rim_.blend(camera, masks.color, objects_, width_px, result.picture);
-    }
+    const int width_px = soft_rim_width_px(options, has_shadows);
+    soft_rim_.blend(camera, masks.color, objects_, width_px, result.picture);
     view_mode(options.mode).show(camera, options, result);
   }
 }

@@ -23,10 +23,17 @@ class Compositor {
   void composite(const Image<Bgr>& camera, const OcclusionMasks& masks, const Options& options,
                  DiminishedFrame& result);
 
+  /// The rest, where all that `composite` does before inpainting is done: a GPU has filled picture,
+  /// mask, provenance and pixel counts.
+  void complete(const Image<Bgr>& camera, const OcclusionMasks& masks, const Options& options,
+                DiminishedFrame& result);
+
   /// Whether the reconstruction's `surface` is used.
   bool uses_surfaces(const Options& options);
 
  private:
+  void show(const Image<Bgr>& camera, const OcclusionMasks& masks, const Options& options,
+            DiminishedFrame& result);
   void correct_colors(const Image<Bgr>& camera, const Mask& occlusion, const std::string& name,
                       DiminishedFrame& result);
   bool inpaint(const Holes& holes, const Options& options, DiminishedFrame& result);

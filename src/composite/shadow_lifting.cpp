@@ -7,7 +7,7 @@
 namespace diminish {
 namespace {
 
-constexpr int fading_px = 12;
+constexpr int fading_px = ShadowLifting::fading_px;
 constexpr Bgr all_light{255, 255, 255};
 constexpr std::uint8_t one = 1;
 

@@ -10,6 +10,9 @@ namespace diminish {
 /// Takes the shadows away that the objects to remove cast (Reconstruction::light).
 class ShadowLifting {
  public:
+  /// How far inside the mask's rim the shadow comes back.
+  static constexpr int fading_px = 12;
+
   /// Lights up all of the region, inside and outside the mask.
   void lift(const Reconstruction& reconstruction, Image<Bgr>& picture) const;
   /// Gives what is outside the mask back to the camera. The shadow comes back over the last pixels

@@ -3,18 +3,6 @@
 #include <algorithm>
 
 namespace diminish {
-namespace {
-
-/// Differences of this many levels are of other surfaces, or shadows: they get no weight.
-constexpr float largest_difference = 15;
-/// What a cell full of differences weighs beside the gradient to one neighbour.
-constexpr float full_weight = 32;
-constexpr float fading = 0.2F;
-/// With this fading an error shrinks by a fifth or more with every sweep.
-constexpr int sweeps = 24;
-
-}  // namespace
-
 void SoftMembrane::begin(const Rect& region) {
   region_ = region;
   columns_ = region.width / cell + 2;

@@ -1,8 +1,18 @@
 #pragma once
 
+#include <algorithm>
+
 #include "diminish/image.h"
+#include "diminish/options.h"
 
 namespace diminish {
+
+/// The width that the options give it, pixels. has_shadows: where the shadow outside is gone, too,
+/// the camera's picture is another, and there is no rim.
+inline int soft_rim_width_px(const Options& options, bool has_shadows) {
+  if (has_shadows && options.remove_shadows) return 0;
+  return std::min(options.soft_rim_px, options.mask_margin_px / 2);
+}
 
 /// Lets a picture pass into the camera's within a mask's rim, so that it does not end in steps.
 class SoftRim {

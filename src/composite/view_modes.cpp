@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "composite/neighbours.h"
+#include "composite/view_mode_rules.h"
 #include "core/channels.h"
 #include "core/rows.h"
 #include "diminish/view_mode.h"
@@ -47,8 +48,6 @@ class Half : public ViewMode {
 class XRay : public ViewMode {
  public:
   void show(const Image<Bgr>& camera, const Options&, DiminishedFrame& result) const override {
-    constexpr float full = 60;  // levels of brightness from one pixel to the next but one
-    const Bgr edge_color{255, 255, 255};
     const auto brightness = [&](int x, int y) {
       const Bgr& color =
           camera(std::clamp(x, 0, camera.width() - 1), std::clamp(y, 0, camera.height() - 1));
@@ -57,8 +56,9 @@ class XRay : public ViewMode {
     replace_in_mask(result, [&](int x, int y) {
       const float across = brightness(x + 1, y) - brightness(x - 1, y);
       const float down = brightness(x, y + 1) - brightness(x, y - 1);
-      const float strength = std::min(1.F, std::hypot(across, down) / full);
-      return blend(result.picture(x, y), edge_color, strength < 0.2F ? 0.F : 0.8F * strength);
+      const float strength = std::min(1.F, std::hypot(across, down) / xray::full_difference);
+      return blend(result.picture(x, y), xray::line_color,
+                   strength < xray::least_strength ? 0.F : xray::opacity * strength);
     });
   }
 };
@@ -67,12 +67,10 @@ class XRay : public ViewMode {
 class Outline : public ViewMode {
  public:
   void show(const Image<Bgr>&, const Options&, DiminishedFrame& result) const override {
-    constexpr int width_px = 2;
-    const Bgr line_color{0, 220, 255};
     const auto is_beside_mask = [&](int x, int y) {
       const Rect bounds = result.mask.bounds();
       for (const auto& [dx, dy] : neighbour_offsets) {
-        for (int i = 1; i <= width_px; ++i) {
+        for (int i = 1; i <= outline::width_px; ++i) {
           const int px = x + i * dx;
           const int py = y + i * dy;
           if (bounds.contains(px, py) && result.mask(px, py) == 0) return true;
@@ -81,7 +79,7 @@ class Outline : public ViewMode {
       return false;
     };
     replace_in_mask(result, [&](int x, int y) {
-      return is_beside_mask(x, y) ? line_color : result.picture(x, y);
+      return is_beside_mask(x, y) ? outline::line_color : result.picture(x, y);
     });
   }
 };
@@ -90,13 +88,12 @@ class Outline : public ViewMode {
 class Provenance : public ViewMode {
  public:
   void show(const Image<Bgr>&, const Options&, DiminishedFrame& result) const override {
-    constexpr float tint = 0.35F;
-    constexpr int period_px = 8;
+    using namespace provenance_view;
     replace_in_mask(result, [&](int x, int y) -> Bgr {
       const Bgr& color = result.picture(x, y);
-      if (result.provenance(x, y) < provenance::inpainted) return blend(color, {0, 200, 0}, tint);
-      const bool is_line = (x + y) % period_px < 2;
-      return is_line ? Bgr{255, 0, 255} : blend(color, {255, 0, 255}, tint);
+      if (result.provenance(x, y) < provenance::inpainted) return blend(color, seen_color, tint);
+      const bool is_line = (x + y) % period_px < line_px;
+      return is_line ? invented_color : blend(color, invented_color, tint);
     });
   }
 };

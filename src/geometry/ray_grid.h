@@ -23,6 +23,9 @@ class RayGrid {
     }
   }
 
+  /// The rays themselves, of pixels (column * step, row * step).
+  const Image<Eigen::Vector2f>& nodes() const { return rays_; }
+
   /// At most `step` pixels of a row from (x, y) on, whose rays are first + i * slope.
   struct Segment {
     int count;

@@ -87,9 +87,9 @@ class MappedBuffer {
   std::byte* data_ = nullptr;
 };
 
-/// Copies `bytes` from the start of one buffer to the start of another.
-inline void copy(GLuint from, GLuint to, std::size_t bytes) {
-  glCopyNamedBufferSubData(from, to, 0, 0, static_cast<GLsizeiptr>(bytes));
+/// Copies `bytes` from the start of one buffer to another, from its byte `at` on.
+inline void copy(GLuint from, GLuint to, std::size_t bytes, std::size_t at = 0) {
+  glCopyNamedBufferSubData(from, to, 0, static_cast<GLintptr>(at), static_cast<GLsizeiptr>(bytes));
 }
 
 /// Waits until everything that was asked for so far is done. Throws Error after ten seconds.

@@ -65,6 +65,9 @@ static_assert(sizeof(CameraBlock) == 192);
 /// Ranges of buffers that shaders see as blocks begin at multiples of this: what any driver takes.
 constexpr std::size_t block_alignment = 256;
 
+/// As many RGB-D cameras as a frame may have.
+constexpr std::size_t most_cameras = 128;
+
 /// work.glsl's Work.
 struct WorkBlock {
   std::uint32_t small_groups[3], small_count;

@@ -13,7 +13,6 @@ namespace {
 
 /// As many groups of 64 as one dispatch may have.
 constexpr std::size_t most_depth_pixels_of_a_camera = 64 * 65535;
-constexpr std::size_t most_cameras = 253;
 
 /// The frame's block, and then the cameras'.
 constexpr std::size_t block_at(std::size_t index) {
@@ -32,7 +31,7 @@ std::size_t bytes_of(const Intrinsics& intrinsics) {
 
 }  // namespace
 
-FrameUpload::FrameUpload(const Rig& rig) {
+FrameUpload::FrameUpload(const Rig& rig, std::size_t most_added_bytes) {
   if (rig.rgbd.size() > most_cameras) {
     throw Error(fmt::format("gl: expected at most {} RGB-D cameras", most_cameras));
   }
@@ -63,7 +62,7 @@ FrameUpload::FrameUpload(const Rig& rig) {
   bytes += whole_words(static_cast<std::size_t>(rig.color.width / tile + 1) *
                        static_cast<std::size_t>(rig.color.height / tile + 1));
   // A pixel's last byte is read with the word after it.
-  bytes += 4;
+  bytes += 4 + most_added_bytes;
   mapped_.reserve(bytes);
   on_gpu_.reserve(bytes);
   word_texture_.create(on_gpu_, GL_R32UI, bytes / 4);
@@ -131,6 +130,12 @@ void FrameUpload::pack(const FrameSet& frame, const DepthImages& depths, const P
   std::memcpy(mapped_.data(), &frame_, sizeof(frame_));
 }
 
+std::byte* FrameUpload::add(std::size_t bytes, std::size_t& begin) {
+  begin = (bytes_ + block_alignment - 1) / block_alignment * block_alignment;
+  bytes_ = begin + whole_words(bytes);
+  return mapped_.data() + begin;
+}
+
 void FrameUpload::send() {
   copy(mapped_.name(), on_gpu_.name(), bytes_);
   word_texture_.bind(1);
@@ -138,9 +143,12 @@ void FrameUpload::send() {
 }
 
 void FrameUpload::bind_camera(int camera) const {
-  glBindBufferRange(GL_UNIFORM_BUFFER, 1, on_gpu_.name(),
-                    static_cast<GLintptr>(block_at(1 + static_cast<std::size_t>(camera))),
-                    sizeof(CameraBlock));
+  bind_block(1, block_at(1 + static_cast<std::size_t>(camera)), sizeof(CameraBlock));
+}
+
+void FrameUpload::bind_block(GLuint binding, std::size_t begin, std::size_t bytes) const {
+  glBindBufferRange(GL_UNIFORM_BUFFER, binding, on_gpu_.name(), static_cast<GLintptr>(begin),
+                    static_cast<GLsizeiptr>(bytes));
 }
 
 }  // namespace diminish::gl

@@ -9,20 +9,26 @@
 
 namespace diminish::gl {
 
-/// A frame's way to the GPU: the RGB-D images and masks as they are, and where the cameras are, in
-/// one piece of memory and one copy.
+/// A frame's way to the GPU: the RGB-D images and masks as they are, where the cameras are, and what
+/// is added to it, in one piece of memory and one copy.
 class FrameUpload {
  public:
-  /// Made while the context is current. Throws Error where a camera's images are too large.
-  explicit FrameUpload(const Rig& rig);
+  /// Made while the context is current. most_added_bytes: by all of a frame's calls of `add`.
+  /// Throws Error where a camera's images are too large.
+  FrameUpload(const Rig& rig, std::size_t most_added_bytes);
 
   /// Writes the frame into mapped memory; needs no context. The GPU must be done with the last.
   void pack(const FrameSet& frame, const DepthImages& depths, const Poses& poses,
             const OcclusionMasks& masks, const TiledRegion& region, const Options& options);
+  /// A place that is sent with the frame: where to write `bytes` to. begin: where the place begins
+  /// on the GPU, in bytes; a multiple of `block_alignment`.
+  std::byte* add(std::size_t bytes, std::size_t& begin);
   /// Copies it to the GPU's own memory and binds the frame and the images (frame.glsl).
   void send();
   /// Makes it the turn of one of the cameras that take part.
   void bind_camera(int camera) const;
+  /// Binds what was added as uniform block `binding`.
+  void bind_block(GLuint binding, std::size_t begin, std::size_t bytes) const;
 
   /// The cameras that take part.
   int cameras() const { return static_cast<int>(blocks_.size()); }

@@ -84,6 +84,10 @@ class ShaderObject {
 
 }  // namespace
 
+bool has_shader_file(const std::string& name) {
+  return shader_files().count(name) != 0;
+}
+
 std::string shader_prologue() {
   return fmt::format(
       "#version 450 core\n"

@@ -47,6 +47,9 @@ inline Program compute_program(std::vector<std::string> files, std::string defin
   return Program({{GL_COMPUTE_SHADER, std::move(files), std::move(defines)}});
 }
 
+/// Whether src/gl/shaders has a file of this name.
+bool has_shader_file(const std::string& name);
+
 /// What every shader begins with: the version, and the constants of sdct.h.
 std::string shader_prologue();
 

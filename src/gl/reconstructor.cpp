@@ -1,8 +1,11 @@
 #include "gl/reconstructor.h"
 
 #include <algorithm>
-#include <array>
+#include <optional>
 
+#include "core/rows.h"
+#include "gl/frame_compositor.h"
+#include "gl/result_pixel.h"
 #include "reconstruct/clear_outside.h"
 
 namespace diminish::gl {
@@ -15,22 +18,40 @@ std::vector<std::string> files(const Rasterizer& rasterizer, const char* last) {
   return names;
 }
 
-std::size_t pixels_of(const Rect& region) {
-  return static_cast<std::size_t>(region.width) * static_cast<std::size_t>(region.height);
+/// Gives the reconstruction its region, and as much memory as will be filled.
+void begin(const Rig& rig, const FrameInputs& inputs, Reconstruction& reconstruction) {
+  reconstruction.surface.resize(0, 0);
+  reconstruction.light.resize(0, 0);
+  if (FrameCompositor::gives_reconstruction(inputs)) {
+    return clear_outside(rig.color, inputs.region, reconstruction);
+  }
+  reconstruction.region = inputs.region;
+  reconstruction.color.resize(0, 0);
+  reconstruction.depth_m.resize(0, 0);
+  reconstruction.source.resize(0, 0);
 }
 
-/// A pixel as color.comp leaves it.
-struct ResultPixel {
-  std::uint8_t b, g, r;
-  std::uint8_t place;  ///< among the cameras that take part, from 1 on; 0: nothing
-  float depth_m;
-};
+/// Where nothing is removed.
+void show_camera(const FrameInputs& inputs, DiminishedFrame& result) {
+  const Image<Bgr>& camera = inputs.frame.color;
+  const Mask& mask = inputs.masks.color;
+  result.picture.resize(camera.width(), camera.height());
+  result.mask.resize(camera.width(), camera.height());
+  result.provenance.resize(camera.width(), camera.height());
+  for_rows(camera.height(), [&](Rows rows) {
+    for (int y = rows.first; y < rows.last; ++y) {
+      std::copy_n(camera.row(y), camera.width(), result.picture.row(y));
+      std::copy_n(mask.row(y), camera.width(), result.mask.row(y));
+      std::fill_n(result.provenance.row(y), camera.width(), provenance::camera);
+    }
+  });
+}
 
 }  // namespace
 
 struct GlReconstructor::Resources {
   Resources(const Context& context, const Rig& rig, const MakeRasterizer& make_rasterizer)
-      : upload(rig),
+      : upload(rig, FrameCompositor::most_added_bytes(rig)),
         rasterizer(make_rasterizer(rig, upload)),
         count(compute_program(files(*rasterizer, "count.comp"))),
         order(compute_program({"frame.glsl", "work.glsl", "order.comp"})),
@@ -48,11 +69,12 @@ struct GlReconstructor::Resources {
   Program count, order, merge, color;
   Buffer work, result;
   MappedBuffer downloaded{MappedBuffer::Use::download};
+  std::optional<FrameCompositor> compositor;  ///< from the first frame on that is composed
   PassTimer timer;
 };
 
 GlReconstructor::GlReconstructor(const Rig& rig, const MakeRasterizer& make_rasterizer)
-    : color_(rig.color), device_(context_.driver().name) {
+    : rig_(rig), device_(context_.driver().name) {
   const Current current(context_);
   resources_ = std::make_unique<Resources>(context_, rig, make_rasterizer);
   context_.check("making programs and buffers");
@@ -67,7 +89,7 @@ void GlReconstructor::reconstruct(const FrameSet& frame, const DepthImages& dept
                                   const TiledRegion& region, const Options& options,
                                   Reconstruction& reconstruction) {
   passes_.clear();
-  clear_outside(color_, region, reconstruction);
+  clear_outside(rig_.color, region, reconstruction);
   resources_->upload.pack(frame, depths, poses, masks, region, options);
   if (region.empty() || resources_->upload.cameras() == 0) {
     reconstruction.color.fill(region, {});
@@ -75,30 +97,54 @@ void GlReconstructor::reconstruct(const FrameSet& frame, const DepthImages& dept
     reconstruction.source.fill(region, 0);
     return;
   }
+  Resources& r = *resources_;
   {
     const Current current(context_);
     draw(region);
+    r.timer.measure("download", [&] {
+      glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+      copy(r.result.name(), r.downloaded.name(), pixels_of(region) * sizeof(ResultPixel));
+      glMemoryBarrier(GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT);
+    });
     wait_until_done();
     context_.check("reconstruction");
-    resources_->timer.read(passes_);
+    r.timer.read(passes_);
   }
-  std::array<std::uint8_t, 256> sources{};
-  for (int k = 0; k < resources_->upload.cameras(); ++k) {
-    sources[static_cast<std::size_t>(k + 1)] =
-        static_cast<std::uint8_t>(resources_->upload.camera(k).source);
+  unpack(reinterpret_cast<const ResultPixel*>(r.downloaded.data()), r.upload, reconstruction);
+}
+
+Reach GlReconstructor::reach(const Options& options) const {
+  return FrameCompositor::reach(options);
+}
+
+void GlReconstructor::compose(const FrameInputs& inputs, DiminishedFrame& result) {
+  passes_.clear();
+  Resources& r = *resources_;
+  const Rect& region = inputs.region;
+  begin(rig_, inputs, result.reconstruction);
+  if (region.empty()) return show_camera(inputs, result);
+  if (!r.compositor) {
+    const Current current(context_);
+    r.compositor.emplace(rig_);
+    context_.check("making the compositor's programs and buffers");
   }
-  const auto* pixel = reinterpret_cast<const ResultPixel*>(resources_->downloaded.data());
-  for (int y = region.y; y < region.bottom(); ++y) {
-    Bgra* const color = reconstruction.color.row(y) + region.x;
-    float* const depth_m = reconstruction.depth_m.row(y) + region.x;
-    std::uint8_t* const source = reconstruction.source.row(y) + region.x;
-    for (int x = 0; x < region.width; ++x, ++pixel) {
-      const auto alpha = static_cast<std::uint8_t>(pixel->place != 0 ? 255 : 0);
-      color[x] = {pixel->b, pixel->g, pixel->r, alpha};
-      depth_m[x] = pixel->depth_m;
-      source[x] = sources[pixel->place];
-    }
+  r.upload.pack(inputs.frame, inputs.depths, inputs.poses, inputs.masks, region, inputs.options);
+  r.compositor->pack(inputs, r.upload);
+  {
+    const Current current(context_);
+    draw(region);
+    r.compositor->run(inputs, r.upload, r.result, r.timer);
+    glFlush();
   }
+  // While the GPU works.
+  show_camera(inputs, result);
+  {
+    const Current current(context_);
+    wait_until_done();
+    context_.check("composing a frame");
+    r.timer.read(passes_);
+  }
+  r.compositor->read(inputs, r.upload, result);
 }
 
 void GlReconstructor::draw(const Rect& region) {
@@ -150,11 +196,7 @@ void GlReconstructor::draw(const Rect& region) {
       r.upload.bind_camera(k);
       dispatch();
     }
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  });
-  r.timer.measure("download", [&] {
-    copy(r.result.name(), r.downloaded.name(), pixels_of(region) * sizeof(ResultPixel));
-    glMemoryBarrier(GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   });
 }
 

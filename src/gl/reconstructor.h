@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "diminish/reconstructor.h"
+#include "composite/composing_reconstructor.h"
 #include "gl/buffer.h"
 #include "gl/context.h"
 #include "gl/frame_upload.h"
@@ -35,8 +35,9 @@ class Rasterizer {
   virtual void bind_seen() const = 0;
 };
 
-/// The frame around a Rasterizer: one upload, the cameras merged by layers.h's rule, one download.
-class GlReconstructor : public Reconstructor {
+/// The frame around a Rasterizer: one upload, the cameras merged by layers.h's rule, where it is asked
+/// for the way to the picture (FrameCompositor), one download.
+class GlReconstructor : public ComposingReconstructor {
  public:
   using MakeRasterizer =
       std::function<std::unique_ptr<Rasterizer>(const Rig& rig, const FrameUpload& upload)>;
@@ -48,6 +49,8 @@ class GlReconstructor : public Reconstructor {
   void reconstruct(const FrameSet& frame, const DepthImages& depths, const Poses& poses,
                    const OcclusionMasks& masks, const TiledRegion& region, const Options& options,
                    Reconstruction& reconstruction) override;
+  Reach reach(const Options& options) const override;
+  void compose(const FrameInputs& inputs, DiminishedFrame& result) override;
   const std::string& device() const override { return device_; }
   const std::vector<GpuPass>& gpu_passes() const override { return passes_; }
 
@@ -56,7 +59,7 @@ class GlReconstructor : public Reconstructor {
 
   void draw(const Rect& region);
 
-  Intrinsics color_;
+  Rig rig_;
   Context context_;
   std::string device_;
   std::vector<GpuPass> passes_;

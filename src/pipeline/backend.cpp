@@ -10,7 +10,13 @@
 namespace diminish {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
 constexpr const char* on_processor = "cpu";
+
+double milliseconds_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
 
 bool gpu_is_there() {
 #ifdef DIMINISH_HAS_GL
@@ -30,35 +36,70 @@ void Backend::choose(const std::string& name) {
   name_ = meant;
 }
 
+Reconstructor& Backend::chosen() {
+  if (!chosen_) chosen_ = Registry<Reconstructor>::get(name_)(rig_);
+  return *chosen_;
+}
+
 Reconstructor& Backend::processor() {
   if (!processor_) processor_ = Registry<Reconstructor>::get(on_processor)(rig_);
   return *processor_;
+}
+
+/// The next frame begins anew.
+void Backend::give_up(const Error& error, Reconstruction& reconstruction) {
+  chosen_.reset();
+  // In whatever state it is: the next to draw begins anew.
+  reconstruction.color.resize(0, 0);
+  message_ = std::string(error.what()) + "; drawn by the processor instead";
+}
+
+Reach Backend::reach(const Options& options) {
+  try {
+    const auto* composing = dynamic_cast<const ComposingReconstructor*>(&chosen());
+    if (composing) return composing->reach(options);
+  } catch (const Error&) {
+    // Drawing will fail in the same way, and say so.
+  }
+  return Reach::reconstruction;
+}
+
+Reach Backend::compose(const FrameInputs& inputs, DiminishedFrame& result) {
+  const Clock::time_point start = Clock::now();
+  DrawingReport& report = result.report.drawing;
+  try {
+    auto& composing = dynamic_cast<ComposingReconstructor&>(chosen());
+    composing.compose(inputs, result);
+    report.device = composing.device();
+    report.passes = composing.gpu_passes();
+    report.milliseconds = milliseconds_since(start);
+    return composing.reach(inputs.options);
+  } catch (const Error& error) {
+    give_up(error, result.reconstruction);
+    return Reach::reconstruction;
+  }
 }
 
 void Backend::reconstruct(const FrameSet& frame, const DepthImages& depths, const Poses& poses,
                           const OcclusionMasks& masks, const TiledRegion& region,
                           const Options& options, Reconstruction& reconstruction,
                           DrawingReport& report) {
-  using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
-  message_.clear();
   const auto draw_by = [&](Reconstructor& reconstructor) {
     reconstructor.reconstruct(frame, depths, poses, masks, region, options, reconstruction);
     report.device = reconstructor.device();
     report.passes = reconstructor.gpu_passes();
   };
-  try {
-    if (!chosen_) chosen_ = Registry<Reconstructor>::get(name_)(rig_);
-    draw_by(*chosen_);
-  } catch (const Error& error) {
-    if (name_ == on_processor) throw;
-    chosen_.reset();
-    // In whatever state it is: the next to draw begins anew.
-    reconstruction.color.resize(0, 0);
-    message_ = std::string(error.what()) + "; drawn by the processor instead";
-    draw_by(processor());
+  if (message_.empty()) {
+    try {
+      draw_by(chosen());
+    } catch (const Error& error) {
+      if (name_ == on_processor) throw;
+      give_up(error, reconstruction);
+    }
   }
-  report.milliseconds = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+  if (!message_.empty()) draw_by(processor());
+  report.milliseconds = milliseconds_since(start);
 }
 
 }  // namespace diminish

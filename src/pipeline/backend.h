@@ -3,8 +3,8 @@
 #include <memory>
 #include <string>
 
-#include "diminish/diminished_frame.h"
-#include "diminish/reconstructor.h"
+#include "composite/composing_reconstructor.h"
+#include "diminish/error.h"
 
 namespace diminish {
 
@@ -17,15 +17,25 @@ class Backend {
   /// name: of a registered Reconstructor, or "auto". Throws Error where it cannot work here.
   void choose(const std::string& name);
 
+  /// Forgets what failed in the last frame.
+  void begin_frame() { message_.clear(); }
+  /// How far `compose` goes by the chosen backend, where it does not fail.
+  Reach reach(const Options& options);
+  /// Goes so far; fills `result.report.drawing`, too. Where it fails the frame is the processor's
+  /// from the beginning: returns Reach::reconstruction, and nothing is drawn yet.
+  Reach compose(const FrameInputs& inputs, DiminishedFrame& result);
+
   /// Reconstructor::reconstruct by the chosen backend. Fills `report`.
   void reconstruct(const FrameSet& frame, const DepthImages& depths, const Poses& poses,
                    const OcclusionMasks& masks, const TiledRegion& region, const Options& options,
                    Reconstruction& reconstruction, DrawingReport& report);
-  /// Why the last frame was not drawn by the chosen backend; empty where it was.
+  /// Why the frame was not drawn by the chosen backend; empty where it was.
   const std::string& message() const { return message_; }
 
  private:
+  Reconstructor& chosen();
   Reconstructor& processor();
+  void give_up(const Error& error, Reconstruction& reconstruction);
 
   Rig rig_;
   std::string name_;

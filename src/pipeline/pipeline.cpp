@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "composite/color_maps.h"
 #include "composite/compositor.h"
 #include "core/stopwatch.h"
 #include "detect/occlusion_masks.h"
@@ -94,14 +95,17 @@ struct Pipeline::Implementation {
     });
   }
 
-  void reconstruct(const FrameSet& frame, const Rect& objects, FrameReport& report,
-                   Reconstruction& reconstruction) {
-    Poses& poses = report.poses;
+  /// What is behind the objects; how far that went towards the picture.
+  Reach reconstruct(const FrameSet& frame, const Rect& objects, DiminishedFrame& result) {
+    Poses& poses = result.report.poses;
+    Reconstruction& reconstruction = result.reconstruction;
     const Rect whole = rig.color.bounds();
     region.set(options.whole_view ? whole
                                   : intersect(grow(objects, options.surroundings_px), whole));
     sampler.sample(frame, poses, masks, options.remove_shadows ? whole : region, reconstruction);
     const bool finds_surfaces = compositor.uses_surfaces(options);
+    backend.begin_frame();
+    const bool composes = backend.reach(options) != Reach::reconstruction;
     cast_shadows.clear();
     oneapi::tbb::parallel_invoke(
         [&] {
@@ -109,6 +113,7 @@ struct Pipeline::Implementation {
             pose_refinement.refine(frame, masks.color, reconstruction, poses);
           }
           if (finds_surfaces) find_background(objects, reconstruction);
+          if (composes) fit_color_maps(frame.color, reconstruction);
         },
         [&] { clean_depths(frame); });
     if (options.remove_shadows) {
@@ -116,8 +121,16 @@ struct Pipeline::Implementation {
     } else if (!options.whole_view) {
       region.keep_near(masks.color, options.surroundings_px);
     }
+    if (composes) {
+      const Reach reach =
+          backend.compose({frame, depths, poses, masks, region, options,
+                           finds_surfaces ? &background_planes.planes() : nullptr,
+                           cast_shadows.shadows(), color_maps.by_source(), wants_reconstruction},
+                          result);
+      if (reach != Reach::reconstruction) return reach;
+    }
     backend.reconstruct(frame, depths, poses, masks, region, options, reconstruction,
-                        report.drawing);
+                        result.report.drawing);
     if (finds_surfaces) {
       background_planes.label(reconstruction);
     } else {
@@ -128,6 +141,7 @@ struct Pipeline::Implementation {
     } else {
       reconstruction.light.resize(0, 0);
     }
+    return Reach::reconstruction;
   }
 
   void find_background(const Rect& objects, const Reconstruction& reconstruction) {
@@ -135,6 +149,14 @@ struct Pipeline::Implementation {
     if (options.lift_shadows || options.remove_shadows) {
       cast_shadows.find(background_planes.planes(), reconstruction.samples,
                         reconstruction.object_points_m);
+    }
+  }
+
+  void fit_color_maps(const Image<Bgr>& camera, const Reconstruction& reconstruction) {
+    if (const MappedMethod* const method = find_mapped_method(options.color_correct)) {
+      color_maps.fit(camera, masks.color, reconstruction.samples, method->model);
+    } else {
+      color_maps.clear();
     }
   }
 
@@ -172,8 +194,10 @@ struct Pipeline::Implementation {
   PoseRefinement pose_refinement;
   BackgroundPlanes background_planes;
   CastShadows cast_shadows;
+  ColorMaps color_maps;
   Compositor compositor;
   OcclusionMasks masks;
+  bool wants_reconstruction = true;
 };
 
 Pipeline::Pipeline(const Rig& rig, const Scene& scene, const Options& options)
@@ -188,6 +212,9 @@ void Pipeline::set_options(const Options& options) {
   check(options, implementation_->scene);
   implementation_->backend.choose(options.backend);
   implementation_->options = options;
+}
+void Pipeline::want_reconstruction(bool wanted) {
+  implementation_->wants_reconstruction = wanted;
 }
 const Options& Pipeline::options() const {
   return implementation_->options;
@@ -211,13 +238,18 @@ void Pipeline::process(const FrameSet& frame, DiminishedFrame& result) {
     self.occluders.detect({frame, report.markers, report.poses, self.options}, self.masks,
                           report.occluders);
   }
+  Reach reach = Reach::reconstruction;
   {  // 3.3 Reconstruction of what is behind them
     const ScopedTimer timer(report.milliseconds, Stage::reconstruction);
-    self.reconstruct(frame, bounding_box(self.masks.color), report, result.reconstruction);
+    reach = self.reconstruct(frame, bounding_box(self.masks.color), result);
   }
   if (!self.backend.message().empty()) report.messages.push_back(self.backend.message());
   // 3.4 Compositing, colour correction, inpainting
-  self.compositor.composite(frame.color, self.masks, self.options, result);
+  if (reach == Reach::reconstruction) {
+    self.compositor.composite(frame.color, self.masks, self.options, result);
+  } else if (reach == Reach::seen) {
+    self.compositor.complete(frame.color, self.masks, self.options, result);
+  }
 
   for (const std::string& message : report.poses.messages) report.messages.push_back(message);
   for (const OccluderReport& occluder : report.occluders) {

@@ -7,21 +7,16 @@
 #include <cstdint>
 
 #include "core/rows.h"
-#include "reconstruct/depth_noise.h"
 #include "reconstruct/surface_rows.h"
 
 namespace diminish {
 namespace {
 
-constexpr int most_planes = 3;
 constexpr int hypotheses = 160;
 constexpr std::size_t fewest_points = 60;
 /// Shares of the points around the objects.
 constexpr double smallest_support = 0.12;
 constexpr double most_behind = 0.04;
-
-/// How far a measurement may be from the plane it is on.
-constexpr DepthNoise tolerance{0.012F, 0.006F};
 
 /// Small, and the same everywhere.
 class Random {

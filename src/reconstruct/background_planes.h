@@ -7,6 +7,7 @@
 #include "diminish/intrinsics.h"
 #include "diminish/reconstruction.h"
 #include "geometry/ray_grid.h"
+#include "reconstruct/depth_noise.h"
 
 namespace diminish {
 
@@ -67,6 +68,10 @@ class PlanePoints {
 /// there: it goes on behind whatever stands in front of it.
 class BackgroundPlanes {
  public:
+  static constexpr std::size_t most_planes = 3;
+  /// How far a measurement may be from the plane it is on.
+  static constexpr DepthNoise tolerance{0.012F, 0.006F};
+
   explicit BackgroundPlanes(const Intrinsics& color) : rays_(color) {}
 
   /// objects: where they are in the colour camera's picture. Deterministic.

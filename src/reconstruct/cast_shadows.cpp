@@ -14,8 +14,8 @@
 namespace diminish {
 namespace {
 
-constexpr float cell_m = 0.02F;
-constexpr int grid_cells = 128;
+constexpr float cell_m = CastShadows::cell_m;
+constexpr int grid_cells = CastShadows::grid_cells;
 /// What is this near a plane may be the plane.
 constexpr float least_height_m = 0.02F;
 constexpr std::size_t fewest_lit = 150;
@@ -252,27 +252,25 @@ Eigen::Array3f CastShadows::dark_at(const Shadow& cast, const Eigen::Vector2f& r
          ((1 - v) * ((1 - u) * upper[0] + u * upper[1]) + v * ((1 - u) * lower[0] + u * lower[1]));
 }
 
-/// Light changes little from pixel to pixel: it is looked up at every 16th.
 void CastShadows::shade_row(const Shadow& cast, int y, Reconstruction& reconstruction) const {
-  constexpr int node = 16;
-  constexpr float invisible = 1.F / 256;
   const Rect& region = reconstruction.region;
   const std::uint8_t* surface = reconstruction.surface.row(y);
   surface_rows::Shading shading;
   shading.label = cast.label;
   shading.plane = cast.ground.plane;
+  shading.fading_height = fading_height;
   for (int begin = region.x; begin < region.right();) {
     const RayGrid::Segment rays = rays_.segment(begin, y, region.right());
     shading.slope = rays.slope;
-    for (int first = 0; first < rays.count; first += node) {
+    for (int first = 0; first < rays.count; first += node_px) {
       const int x = begin + first;
-      const int count = std::min(node, rays.count - first);
+      const int count = std::min(node_px, rays.count - first);
       if (std::find(surface + x, surface + x + count, cast.label) == surface + x + count) continue;
       shading.ray = rays.first + static_cast<float>(first) * rays.slope;
       shading.dark = dark_at(cast, shading.ray);
-      const Eigen::Array3f right = dark_at(cast, shading.ray + float{node} * rays.slope);
+      const Eigen::Array3f right = dark_at(cast, shading.ray + float{node_px} * rays.slope);
       if (std::max(shading.dark.maxCoeff(), right.maxCoeff()) < invisible) continue;
-      shading.dark_slope = (right - shading.dark) / node;
+      shading.dark_slope = (right - shading.dark) / node_px;
       surface_rows::shade(shading, reconstruction.depth_m.row(y) + x, surface + x, count,
                           reconstruction.light.row(y) + x);
     }

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "diminish/image.h"
@@ -20,24 +21,6 @@ namespace diminish {
 /// see them, cannot have caused stays: other things' shadows, texture.
 class CastShadows {
  public:
-  explicit CastShadows(const Intrinsics& color);
-
-  /// samples, object_points_m: in the colour camera's frame. Cost: one to three milliseconds.
-  void find(const std::vector<BackgroundPlane>& planes, const std::vector<SceneSample>& samples,
-            const std::vector<Eigen::Vector3f>& object_points_m);
-  void clear() { shadow_count_ = 0; }
-  /// Whether there are any.
-  bool any() const { return shadow_count_ > 0; }
-  /// Where they are in the colour camera's picture.
-  Rect bounds() const;
-  /// Fills `reconstruction.light`: shadows end where something stands on their plane.
-  void shade(Reconstruction& reconstruction) const;
-
- private:
-  static constexpr std::size_t bits_a_word = 64;
-  /// One for each direction.
-  using DirectionBits = std::array<std::uint64_t, 2>;
-
   /// A plane with coordinates on it, in metres from the point below the objects' middle.
   struct Ground {
     BackgroundPlane plane;
@@ -48,6 +31,42 @@ class CastShadows {
     Eigen::Vector2f coordinates(const Eigen::Vector3f& point_m) const;
     Eigen::Vector3f point_m(const Eigen::Vector2f& place) const;
   };
+  /// What is taken from a plane's light, by cells around the ground's origin, whose middles are at
+  /// whole numbers.
+  struct Shadow {
+    Ground ground;
+    std::uint8_t label = 0;       ///< the plane's, as in Reconstruction::surface
+    Image<Eigen::Array3f> light;  ///< the share that is left, by cell
+  };
+  static constexpr float cell_m = 0.02F;
+  static constexpr int grid_cells = 128;
+  /// Light changes little from pixel to pixel: it is looked up at every so many.
+  static constexpr int node_px = 16;
+  /// Where less is taken there is no shadow.
+  static constexpr float invisible = 1.F / 256;
+  /// What stands on a plane is labelled as the plane up to some height: shadows fade between this
+  /// and twice this times what a depth may be off by.
+  static constexpr float fading_height = 0.6F;
+
+  explicit CastShadows(const Intrinsics& color);
+
+  /// samples, object_points_m: in the colour camera's frame. Cost: one to three milliseconds.
+  void find(const std::vector<BackgroundPlane>& planes, const std::vector<SceneSample>& samples,
+            const std::vector<Eigen::Vector3f>& object_points_m);
+  void clear() { shadow_count_ = 0; }
+  /// Whether there are any.
+  bool any() const { return shadow_count_ > 0; }
+  std::span<const Shadow> shadows() const { return {shadows_.data(), shadow_count_}; }
+  /// Where they are in the colour camera's picture.
+  Rect bounds() const;
+  /// Fills `reconstruction.light`: shadows end where something stands on their plane.
+  void shade(Reconstruction& reconstruction) const;
+
+ private:
+  static constexpr std::size_t bits_a_word = 64;
+  /// One for each direction.
+  using DirectionBits = std::array<std::uint64_t, 2>;
+
   struct Blocker {
     Eigen::Vector2f place;
     float height_m;
@@ -56,12 +75,6 @@ class CastShadows {
     Eigen::Vector2f place;
     Eigen::Array3f levels;
   };
-  struct Shadow {
-    Ground ground;
-    std::uint8_t label = 0;
-    Image<Eigen::Array3f> light;  ///< the share that is left, by cell
-  };
-
   void choose_blockers(const Ground& ground, const std::vector<BackgroundPlane>& planes,
                        const std::vector<Eigen::Vector3f>& object_points_m);
   void choose_lit(const Ground& ground, const std::vector<SceneSample>& samples);

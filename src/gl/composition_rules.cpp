@@ -1,0 +1,76 @@
+#include "gl/composition_rules.h"
+
+#include <fmt/format.h>
+
+#include "composite/color_map.h"
+#include "composite/shadow_lifting.h"
+#include "composite/soft_membrane.h"
+#include "composite/view_mode_rules.h"
+#include "diminish/diminished_frame.h"
+#include "gl/frame_block.h"
+#include "reconstruct/background_planes.h"
+#include "reconstruct/cast_shadows.h"
+#include "reconstruct/depth_noise.h"
+
+namespace diminish::gl {
+namespace {
+
+std::string line(const char* name, const std::string& value) {
+  return fmt::format("#define {} {}\n", name, value);
+}
+std::string define(const char* name, int value) {
+  return line(name, fmt::format("{}", value));
+}
+std::string define(const char* name, std::size_t value) {
+  return define(name, static_cast<int>(value));
+}
+std::string define(const char* name, std::uint8_t value) {
+  return line(name, fmt::format("{}u", value));
+}
+std::string define(const char* name, float value) {
+  return line(name, fmt::format("{:.9e}", value));
+}
+std::string define(const char* name, const DepthNoise& noise) {
+  return line(name, fmt::format("vec2({:.9e}, {:.9e})", noise.constant_m, noise.by_square));
+}
+std::string define(const char* name, const Bgr& color) {
+  return line(name, fmt::format("vec3({}, {}, {})", color.b, color.g, color.r));
+}
+
+}  // namespace
+
+std::string composition_rules() {
+  using Membrane = SoftMembrane;
+  constexpr int samples = Membrane::cell / Membrane::step;
+  return define("MOST_PLANES", BackgroundPlanes::most_planes) +
+         define("MOST_CAMERAS", most_cameras) + define("RAY_STEP", RayGrid::step) +
+         define("PLANE_NOISE", BackgroundPlanes::tolerance) + define("DEPTH_NOISE", DepthNoise{}) +
+         define("SURFACE_UNKNOWN", surface_label::unknown) +
+         define("SURFACE_FIRST_PLANE", surface_label::first_plane) +
+         define("SURFACE_FOREGROUND", surface_label::foreground) +
+         define("GRID_CELLS", CastShadows::grid_cells) + define("CELL_M", CastShadows::cell_m) +
+         define("LIGHT_NODE_PX", CastShadows::node_px) +
+         define("INVISIBLE_SHADOW", CastShadows::invisible) +
+         define("SHADOW_FADING_HEIGHT", CastShadows::fading_height) +
+         define("SHADOW_FADING_PX", ShadowLifting::fading_px) +
+         define("LEAST_FIELD", ColorMap::least_field) +
+         define("GREATEST_FIELD", ColorMap::greatest_field) + define("NODE_PX", Membrane::cell) +
+         define("SAMPLE_STEP", Membrane::step) +
+         define("SAMPLE_WEIGHT", Membrane::full_weight / (samples * samples)) +
+         define("LARGEST_DIFFERENCE", Membrane::largest_difference) +
+         define("MEMBRANE_FADING", Membrane::fading) + define("MEMBRANE_SWEEPS", Membrane::sweeps) +
+         define("PROVENANCE_CAMERA", provenance::camera) +
+         define("PROVENANCE_INPAINTED", provenance::inpainted) +
+         define("XRAY_FULL_DIFFERENCE", xray::full_difference) +
+         define("XRAY_LEAST_STRENGTH", xray::least_strength) +
+         define("XRAY_OPACITY", xray::opacity) + define("XRAY_LINE_COLOR", xray::line_color) +
+         define("OUTLINE_WIDTH_PX", outline::width_px) +
+         define("OUTLINE_LINE_COLOR", outline::line_color) +
+         define("PROVENANCE_TINT", provenance_view::tint) +
+         define("PROVENANCE_SEEN_COLOR", provenance_view::seen_color) +
+         define("PROVENANCE_INVENTED_COLOR", provenance_view::invented_color) +
+         define("PROVENANCE_PERIOD_PX", provenance_view::period_px) +
+         define("PROVENANCE_LINE_PX", provenance_view::line_px);
+}
+
+}  // namespace diminish::gl

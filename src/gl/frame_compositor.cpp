@@ -1,0 +1,280 @@
+#include "gl/frame_compositor.h"
+
+#include <cstring>
+
+#include "composite/color_maps.h"
+#include "composite/soft_membrane.h"
+#include "composite/soft_rim.h"
+#include "core/rows.h"
+#include "gl/composition_rules.h"
+#include "reconstruct/clear_outside.h"
+
+namespace diminish::gl {
+namespace {
+
+Program pass(std::vector<std::string> files) {
+  files.insert(files.begin(), {"frame.glsl", "composition.glsl"});
+  return compute_program(std::move(files), composition_rules());
+}
+
+std::string mode_file(const std::string& mode) {
+  return "mode_" + mode + ".glsl";
+}
+
+constexpr std::size_t cells_of_a_shadow =
+    std::size_t{CastShadows::grid_cells} * CastShadows::grid_cells;
+using Light = Eigen::Array3f;
+static_assert(sizeof(Light) == 3 * sizeof(float));
+
+/// The camera's pixels, and the objects' mask in the highest byte.
+void pack_picture(const Image<Bgr>& camera, const Mask& mask, const Rect& region, std::byte* to) {
+  auto* const words = reinterpret_cast<std::uint32_t*>(to);
+  for_rows(region.height, [&](Rows rows) {
+    for (int y = rows.first; y < rows.last; ++y) {
+      const Bgr* colors = camera.row(region.y + y) + region.x;
+      const std::uint8_t* removed = mask.row(region.y + y) + region.x;
+      std::uint32_t* row = words + static_cast<std::ptrdiff_t>(y) * region.width;
+      for (int x = 0; x < region.width; ++x) {
+        const std::uint32_t is_removed = removed[x] != 0 ? 0xFF000000U : 0U;
+        row[x] = colors[x].b | static_cast<std::uint32_t>(colors[x].g) << 8 |
+                 static_cast<std::uint32_t>(colors[x].r) << 16 | is_removed;
+      }
+    }
+  });
+}
+
+/// Where the parts of what is downloaded begin.
+struct Download {
+  std::size_t counts, result, surface, end;
+
+  explicit Download(const Rect& region) {
+    const std::size_t pixels = pixels_of(region);
+    counts = pixels * sizeof(std::uint32_t);
+    result = (counts + 8 + 15) / 16 * 16;
+    surface = result + pixels * sizeof(ResultPixel);
+    end = surface + pixels * sizeof(std::uint32_t);
+  }
+};
+
+}  // namespace
+
+Reach FrameCompositor::reach(const Options& options) {
+  const bool maps_colors =
+      options.color_correct == "none" || find_mapped_method(options.color_correct) != nullptr;
+  if (!maps_colors) return Reach::reconstruction;
+  const bool inpaints = options.inpaint == "none";
+  return inpaints && has_shader_file(mode_file(options.mode)) ? Reach::picture : Reach::seen;
+}
+
+bool FrameCompositor::gives_reconstruction(const FrameInputs& inputs) {
+  return inputs.wants_reconstruction || reach(inputs.options) != Reach::picture;
+}
+
+std::size_t FrameCompositor::most_added_bytes(const Rig& rig) {
+  return pixels_of(rig.color.bounds()) * sizeof(std::uint32_t) +
+         BackgroundPlanes::most_planes * cells_of_a_shadow * sizeof(Light) +
+         sizeof(CompositionBlock) + 3 * block_alignment;
+}
+
+FrameCompositor::FrameCompositor(const Rig& rig)
+    : label_(pass({"rays.glsl", "label.comp"})),
+      light_(pass({"rays.glsl", "light.comp"})),
+      sort_(pass({"sort.comp"})),
+      membrane_sums_(pass({"membrane_nodes.glsl", "color_map.glsl", "membrane_sums.comp"})),
+      membrane_solve_(pass({"membrane_nodes.glsl", "membrane_solve.comp"})),
+      map_colors_(pass({"membrane_nodes.glsl", "color_map.glsl", "map_colors.comp"})),
+      lift_(pass({"lift.comp"})),
+      row_distances_(pass({"row_distances.comp"})),
+      restore_(pass({"restore.comp"})),
+      rim_(pass({"rim.comp"})) {
+  const Rect whole = rig.color.bounds();
+  for (Buffer* buffer : {&picture_, &state_, &surface_, &distances_}) {
+    buffer->reserve(pixels_of(whole) * sizeof(std::uint32_t));
+  }
+  constexpr int cell = SoftMembrane::cell;
+  const Rect nodes{0, 0, whole.width / cell + 2, whole.height / cell + 2};
+  nodes_.reserve(2 * pixels_of(nodes) * 4 * sizeof(float));
+  counts_.reserve(sizeof(Counts));
+  downloaded_.reserve(Download(whole).end);
+
+  const RayGrid rays(rig.color);
+  block_.ray_columns = rays.nodes().width();
+  const std::size_t bytes = rays.nodes().size() * sizeof(Eigen::Vector2f);
+  MappedBuffer staging(MappedBuffer::Use::upload);
+  staging.reserve(bytes);
+  std::memcpy(staging.data(), rays.nodes().data(), bytes);
+  ray_nodes_.reserve(bytes);
+  ray_texture_.create(ray_nodes_, GL_RG32F, rays.nodes().size());
+  copy(staging.name(), ray_nodes_.name(), bytes);
+  wait_until_done();
+}
+
+void FrameCompositor::pack(const FrameInputs& inputs, FrameUpload& upload) {
+  const Options& options = inputs.options;
+  region_ = inputs.region;
+  std::size_t begin = 0;
+  std::byte* const picture = upload.add(pixels_of(region_) * sizeof(std::uint32_t), begin);
+  block_.camera_at = static_cast<std::uint32_t>(begin / 4);
+  pack_picture(inputs.frame.color, inputs.masks.color, region_, picture);
+
+  block_.plane_count = 0;
+  for (std::size_t k = 0; inputs.planes && k < inputs.planes->size(); ++k) {
+    block_.planes[block_.plane_count++] = PlaneBlock((*inputs.planes)[k]);
+  }
+  constexpr std::size_t light_bytes = cells_of_a_shadow * sizeof(Light);
+  std::byte* const light = upload.add(inputs.shadows.size() * light_bytes, begin);
+  block_.light_at = static_cast<std::uint32_t>(begin / 4);
+  block_.shadow_count = 0;
+  for (const CastShadows::Shadow& shadow : inputs.shadows) {
+    std::memcpy(light + block_.shadow_count * light_bytes, shadow.light.data(), light_bytes);
+    block_.shadows[block_.shadow_count++] = ShadowBlock(shadow);
+  }
+
+  const MappedMethod* const method = find_mapped_method(options.color_correct);
+  const bool has_membrane = method && method->with_membrane;
+  block_.node_columns = has_membrane ? region_.width / SoftMembrane::cell + 2 : 0;
+  block_.node_rows = has_membrane ? region_.height / SoftMembrane::cell + 2 : 0;
+  for (int k = 0; k < upload.cameras(); ++k) {
+    const std::uint32_t source = upload.camera(k).source;
+    block_.maps[k] = ColorMapBlock(inputs.color_maps[source], source);
+  }
+
+  const bool to_the_end = reach(options) == Reach::picture;
+  const bool leaves_unknown = to_the_end && options.inpaint == "none";
+  block_.missing_code = leaves_unknown ? provenance::unknown : provenance::inpainted;
+  const int rim_px = to_the_end ? soft_rim_width_px(options, !inputs.shadows.empty()) : 0;
+  block_.rim_px = static_cast<std::uint32_t>(rim_px);
+  block_.opacity = static_cast<float>(1 - options.transparency);
+  std::byte* const block = upload.add(sizeof(block_), block_begin_);
+  std::memcpy(block, &block_, sizeof(block_));
+}
+
+void FrameCompositor::run_pass(const Program& program) const {
+  program.use();
+  glDispatchCompute(static_cast<GLuint>((region_.width + 63) / 64),
+                    static_cast<GLuint>(region_.height), 1);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+void FrameCompositor::run(const FrameInputs& inputs, const FrameUpload& upload,
+                          const Buffer& reconstruction, PassTimer& timer) {
+  upload.bind_block(2, block_begin_, sizeof(block_));
+  const Buffer* const buffers[] = {&picture_, &state_, &surface_, &distances_, &counts_, &nodes_};
+  for (GLuint i = 0; i < std::size(buffers); ++i) buffers[i]->bind(i);
+  reconstruction.bind(7);
+  ray_texture_.bind(6);
+  timer.measure("label", [&] { run_pass(label_); });
+  if (!inputs.shadows.empty()) timer.measure("light", [&] { run_pass(light_); });
+  timer.measure("sort", [&] {
+    const GLuint zero = 0;
+    glClearNamedBufferData(counts_.name(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &zero);
+    run_pass(sort_);
+  });
+  correct_colors(timer);
+  if (!inputs.shadows.empty()) timer.measure("lift", [&] { run_pass(lift_); });
+  const bool to_the_end = reach(inputs.options) == Reach::picture;
+  if (to_the_end) finish(inputs, timer);
+  const Program& show_mode = show(to_the_end ? inputs.options.mode : "remove");
+  timer.measure("show", [&] { run_pass(show_mode); });
+  timer.measure("download", [&] { download(inputs, reconstruction); });
+}
+
+void FrameCompositor::correct_colors(PassTimer& timer) const {
+  const int nodes = block_.node_columns * block_.node_rows;
+  if (nodes > 0) {
+    timer.measure("membrane", [&] {
+      membrane_sums_.use();
+      glDispatchCompute(static_cast<GLuint>((nodes + 63) / 64), 1, 1);
+      glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+      membrane_solve_.use();
+      glDispatchCompute(1, 1, 1);
+      glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    });
+  }
+  timer.measure("map", [&] { run_pass(map_colors_); });
+}
+
+/// What comes after the pixels that cameras see.
+void FrameCompositor::finish(const FrameInputs& inputs, PassTimer& timer) const {
+  if (!inputs.shadows.empty() && !inputs.options.remove_shadows) {
+    timer.measure("restore", [&] {
+      run_pass(row_distances_);
+      run_pass(restore_);
+    });
+  }
+  if (block_.rim_px > 0) {
+    timer.measure("rim", [&] {
+      for (int erosion = 0; erosion < static_cast<int>(block_.rim_px); ++erosion) {
+        rim_.set("erosion", erosion);
+        run_pass(rim_);
+      }
+    });
+  }
+}
+
+const Program& FrameCompositor::show(const std::string& mode) {
+  const auto found = shows_.find(mode);
+  if (found != shows_.end()) return found->second;
+  return shows_.emplace(mode, pass({mode_file(mode), "show.comp"})).first->second;
+}
+
+void FrameCompositor::download(const FrameInputs& inputs, const Buffer& reconstruction) {
+  const std::size_t pixels = pixels_of(region_);
+  const Download at(region_);
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  copy(picture_.name(), downloaded_.name(), pixels * sizeof(std::uint32_t));
+  copy(counts_.name(), downloaded_.name(), sizeof(Counts), at.counts);
+  if (gives_reconstruction(inputs)) {
+    copy(reconstruction.name(), downloaded_.name(), pixels * sizeof(ResultPixel), at.result);
+    copy(surface_.name(), downloaded_.name(), pixels * sizeof(std::uint32_t), at.surface);
+  }
+  glMemoryBarrier(GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT);
+}
+
+void FrameCompositor::read(const FrameInputs& inputs, const FrameUpload& upload,
+                           DiminishedFrame& result) const {
+  const Download at(region_);
+  const std::byte* const from = downloaded_.data();
+  Counts counts{};
+  std::memcpy(&counts, from + at.counts, sizeof(counts));
+  result.report.mask_pixels = counts.mask;
+  result.report.missing_pixels = counts.missing;
+  result.report.valid_pixels = counts.mask - counts.missing;
+  const auto* const words = reinterpret_cast<const std::uint32_t*>(from);
+  for_rows(region_.height, [&](Rows rows) {
+    for (int y = rows.first; y < rows.last; ++y) {
+      const std::uint32_t* row = words + static_cast<std::ptrdiff_t>(y) * region_.width;
+      Bgr* colors = result.picture.row(region_.y + y) + region_.x;
+      std::uint8_t* origin = result.provenance.row(region_.y + y) + region_.x;
+      for (int x = 0; x < region_.width; ++x) {
+        colors[x] = {static_cast<std::uint8_t>(row[x]), static_cast<std::uint8_t>(row[x] >> 8),
+                     static_cast<std::uint8_t>(row[x] >> 16)};
+        origin[x] = static_cast<std::uint8_t>(row[x] >> 24);
+      }
+    }
+  });
+
+  Reconstruction& reconstruction = result.reconstruction;
+  const bool gives = gives_reconstruction(inputs);
+  const Rect size = gives ? result.picture.bounds() : Rect{};
+  if (gives) {
+    unpack(reinterpret_cast<const ResultPixel*>(from + at.result), upload, reconstruction);
+  }
+  const Rect planes = inputs.planes ? size : Rect{};
+  const Rect shaded = inputs.shadows.empty() ? Rect{} : size;
+  reconstruction.surface.resize(planes.width, planes.height);
+  reconstruction.light.resize(shaded.width, shaded.height);
+  const auto* surface = reinterpret_cast<const std::uint32_t*>(from + at.surface);
+  for (int y = region_.y; !planes.empty() && y < region_.bottom(); ++y) {
+    for (int x = region_.x; x < region_.right(); ++x, ++surface) {
+      const std::uint32_t word = *surface;
+      reconstruction.surface(x, y) = static_cast<std::uint8_t>(word);
+      if (shaded.empty()) continue;
+      reconstruction.light(x, y) = {static_cast<std::uint8_t>(word >> 8),
+                                    static_cast<std::uint8_t>(word >> 16),
+                                    static_cast<std::uint8_t>(word >> 24)};
+    }
+  }
+}
+
+}  // namespace diminish::gl

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "composite/composing_reconstructor.h"
+#include "gl/buffer.h"
+#include "gl/composition_block.h"
+#include "gl/frame_upload.h"
+#include "gl/pass_timer.h"
+#include "gl/program.h"
+#include "gl/result_pixel.h"
+
+namespace diminish::gl {
+
+/// Takes a frame from the reconstruction to the picture on the GPU: what the Compositor does, and
+/// before it the labels of surfaces and the light on them, each a compute pass over the region.
+/// Made, used (but for what is said) and deleted while the context is current.
+class FrameCompositor {
+ public:
+  /// What can stay on the GPU. Everything that is processor-only is so by this rule.
+  static Reach reach(const Options& options);
+  /// Whether the reconstruction is filled, too.
+  static bool gives_reconstruction(const FrameInputs& inputs);
+  /// What `pack` adds to an upload at most.
+  static std::size_t most_added_bytes(const Rig& rig);
+
+  explicit FrameCompositor(const Rig& rig);
+
+  /// Adds the frame to the upload, which has packed it; needs no context.
+  void pack(const FrameInputs& inputs, FrameUpload& upload);
+  /// After the upload was sent. reconstruction: ResultPixels of the region, in the upload's order
+  /// of cameras. What was asked for is on its way to the processor afterwards.
+  void run(const FrameInputs& inputs, const FrameUpload& upload, const Buffer& reconstruction,
+           PassTimer& timer);
+  /// Fills what `run` has made, when it is done; needs no context. Outside the region result's
+  /// images are the caller's.
+  void read(const FrameInputs& inputs, const FrameUpload& upload, DiminishedFrame& result) const;
+
+ private:
+  struct Counts {
+    std::uint32_t mask, missing;
+  };
+
+  void run_pass(const Program& program) const;
+  void correct_colors(PassTimer& timer) const;
+  void finish(const FrameInputs& inputs, PassTimer& timer) const;
+  void download(const FrameInputs& inputs, const Buffer& reconstruction);
+  const Program& show(const std::string& mode);
+
+  CompositionBlock block_{};
+  std::size_t block_begin_ = 0;
+  Rect region_;
+
+  Program label_, light_, sort_, membrane_sums_, membrane_solve_, map_colors_, lift_,
+      row_distances_, restore_, rim_;
+  std::map<std::string, Program> shows_;  ///< by view mode
+  Buffer picture_, state_, surface_, distances_, counts_, nodes_;
+  Buffer ray_nodes_;
+  BufferTexture ray_texture_;
+  MappedBuffer downloaded_{MappedBuffer::Use::download};
+};
+
+}  // namespace diminish::gl

@@ -1,0 +1,25 @@
+// Writes the mapped colours, with the membrane's correction, where an object is removed and something
+// is seen. One pixel of the region each.
+
+layout(local_size_x = 64) in;
+
+// SoftMembrane::row.
+vec3 correction(ivec2 place) {
+  if (nodes_size.x == 0) return vec3(0);
+  ivec2 node = place / NODE_PX;
+  vec2 f = vec2(place % NODE_PX) / float(NODE_PX);
+  int upper = node_count() + node.y * nodes_size.x + node.x;
+  int lower = upper + nodes_size.x;
+  return mix(mix(nodes[upper].xyz, nodes[lower].xyz, f.y),
+             mix(nodes[upper + 1].xyz, nodes[lower + 1].xyz, f.y), f.x);
+}
+
+void main() {
+  ivec2 place = ivec2(gl_GlobalInvocationID.xy);
+  if (place.x >= region.z) return;
+  int index = index_of(place);
+  uint seen = result[index].x;
+  if (seen <= color_bits || !is_object(index)) return;
+  picture[index] = word_of_channels(
+      mapped((seen >> 24) - 1u, levels_of(seen), region.xy + place) + correction(place));
+}
