@@ -36,7 +36,7 @@ struct Figures {
   double throughput_fps = 0;
   std::string device;                                         ///< the GPU; empty: the processor
   std::vector<std::pair<std::string, double>> gpu_passes_ms;  ///< medians
-  double drawing_ms = 0, processor_drawing_ms = 0;            ///< medians, by turns
+  double frame_ms = 0, processor_frame_ms = 0;                ///< medians, by turns
   Distribution allocated_bytes, allocations;                  ///< a frame
   std::size_t peak_memory_bytes = 0;
 };
@@ -55,7 +55,7 @@ struct BenchCommand {
   std::vector<FrameSet> load(const Recording& input, Figures& figures) const;
   void measure_latency(const Recording& input, const std::vector<FrameSet>& frames,
                        Figures& figures) const;
-  void measure_drawing(const Recording& input, const std::vector<FrameSet>& frames,
+  void measure_backend(const Recording& input, const std::vector<FrameSet>& frames,
                        Figures& figures) const;
   void measure_throughput(const Recording& input, std::vector<FrameSet> frames,
                           Figures& figures) const;
@@ -88,6 +88,7 @@ std::vector<FrameSet> BenchCommand::load(const Recording& input, Figures& figure
 void BenchCommand::measure_latency(const Recording& input, const std::vector<FrameSet>& loaded,
                                    Figures& figures) const {
   Pipeline pipeline(input.rig, input.scene, options);
+  pipeline.want_reconstruction(false);
   DiminishedFrame result;
   for (const FrameSet& frame : loaded) pipeline.process(frame, result);  // memory grows to its size
 
@@ -119,12 +120,13 @@ void BenchCommand::measure_latency(const Recording& input, const std::vector<Fra
 
 /// The chosen backend beside the processor's: by turns, so that a machine whose speed drifts slows
 /// both.
-void BenchCommand::measure_drawing(const Recording& input, const std::vector<FrameSet>& loaded,
+void BenchCommand::measure_backend(const Recording& input, const std::vector<FrameSet>& loaded,
                                    Figures& figures) const {
   Options by_processor = options;
   by_processor.backend = "cpu";
   Pipeline chosen(input.rig, input.scene, options);
   Pipeline processor(input.rig, input.scene, by_processor);
+  chosen.want_reconstruction(false);
   DiminishedFrame result;
   std::vector<double> chosen_ms;
   std::vector<double> processor_ms;
@@ -133,12 +135,15 @@ void BenchCommand::measure_drawing(const Recording& input, const std::vector<Fra
   const Clock::time_point start = Clock::now();
   for (std::size_t i = 0; i < fewest_frames || seconds_since(start) < seconds; ++i) {
     const FrameSet& frame = loaded[i % loaded.size()];
+    const Clock::time_point processor_start = Clock::now();
     processor.process(frame, result);
-    if (i > 0) processor_ms.push_back(result.report.drawing.milliseconds);
+    const Clock::time_point chosen_start = Clock::now();
     chosen.process(frame, result);
     const DrawingReport& drawing = result.report.drawing;
     if (i == 0) continue;  // memory grows to its size
-    chosen_ms.push_back(drawing.milliseconds);
+    chosen_ms.push_back(1000 * seconds_since(chosen_start));
+    processor_ms.push_back(
+        std::chrono::duration<double, std::milli>(chosen_start - processor_start).count());
     figures.device = drawing.device;
     passes.resize(drawing.passes.size());
     for (std::size_t k = 0; k < passes.size(); ++k) {
@@ -146,8 +151,8 @@ void BenchCommand::measure_drawing(const Recording& input, const std::vector<Fra
       passes[k].second.push_back(drawing.passes[k].milliseconds);
     }
   }
-  figures.drawing_ms = distribution_of(std::move(chosen_ms)).p50;
-  figures.processor_drawing_ms = distribution_of(std::move(processor_ms)).p50;
+  figures.frame_ms = distribution_of(std::move(chosen_ms)).p50;
+  figures.processor_frame_ms = distribution_of(std::move(processor_ms)).p50;
   for (auto& [name, times] : passes) {
     figures.gpu_passes_ms.emplace_back(name, distribution_of(std::move(times)).p50);
   }
@@ -161,6 +166,7 @@ void BenchCommand::measure_throughput(const Recording& input, std::vector<FrameS
   NoSink sink;
   RunnerOptions runner;
   runner.threads = threads;
+  runner.reconstructions = false;
   Clock::time_point start;
   std::size_t timed = 0;
   // The first frames make each thread's memory.
@@ -188,10 +194,10 @@ void print(const Figures& figures, int threads) {
   fmt::print("One at a time: p50 {:.2f}, p95 {:.2f}, p99 {:.2f} ms; {:.1f} frames/s\n", total.p50,
              total.p95, total.p99, 1000 / total.average);
   fmt::print("Pipelined, {} threads: {:.1f} frames/s\n", threads, figures.throughput_fps);
-  if (figures.drawing_ms > 0) {
-    fmt::print("Drawing on {}: p50 {:.2f} ms; by the processor's backend {:.2f} ms, ratio {:.2f}\n",
-               figures.device.empty() ? "the processor" : figures.device, figures.drawing_ms,
-               figures.processor_drawing_ms, figures.processor_drawing_ms / figures.drawing_ms);
+  if (figures.frame_ms > 0) {
+    fmt::print("Frame on {}: p50 {:.2f} ms; by the processor's backend {:.2f} ms, ratio {:.2f}\n",
+               figures.device.empty() ? "the processor" : figures.device, figures.frame_ms,
+               figures.processor_frame_ms, figures.processor_frame_ms / figures.frame_ms);
   }
   double gpu_ms = 0;
   for (const auto& [name, ms] : figures.gpu_passes_ms) {
@@ -236,11 +242,11 @@ void write_json(const BenchCommand& command, const Figures& figures) {
   for (std::size_t stage = 0; stage < stage_count; ++stage) {
     json["stages"][stage_names[stage]] = to_json(figures.times_ms[stage]);
   }
-  if (figures.drawing_ms > 0) {
-    json["drawing"] = {{"device", figures.device},
-                       {"p50_ms", figures.drawing_ms},
-                       {"cpu_p50_ms", figures.processor_drawing_ms}};
-    for (const auto& [name, ms] : figures.gpu_passes_ms) json["drawing"]["gpu_ms"][name] = ms;
+  if (figures.frame_ms > 0) {
+    json["backend"] = {{"device", figures.device},
+                       {"frame_p50_ms", figures.frame_ms},
+                       {"cpu_frame_p50_ms", figures.processor_frame_ms}};
+    for (const auto& [name, ms] : figures.gpu_passes_ms) json["backend"]["gpu_ms"][name] = ms;
   }
   json["peak_memory_bytes"] = figures.peak_memory_bytes;
   if (allocations_are_counted()) {
@@ -255,7 +261,7 @@ int BenchCommand::execute() const {
   Figures figures;
   std::vector<FrameSet> loaded = load(input, figures);
   measure_latency(input, loaded, figures);
-  if (options.backend != "cpu") measure_drawing(input, loaded, figures);
+  if (options.backend != "cpu") measure_backend(input, loaded, figures);
   measure_throughput(input, std::move(loaded), figures);
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);

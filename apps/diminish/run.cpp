@@ -57,6 +57,7 @@ int RunCommand::execute() const {
   std::signal(SIGTERM, [](int) { stop_requested = true; });
   RunnerOptions runner;
   runner.threads = threads;
+  runner.reconstructions = !preview;
   runner.stop = &stop_requested;
   runner.progress = [total = source->frame_count()](std::size_t done) {
     show_progress(done, total);

@@ -14,6 +14,8 @@ namespace diminish {
 struct RunnerOptions {
   /// Frames in work at a time, each by one thread. The output does not depend on it.
   int threads = 1;
+  /// Whether the sink looks at DiminishedFrame::reconstruction (Pipeline::want_reconstruction).
+  bool reconstructions = true;
   /// Set to true from anywhere (a signal handler) to end the run after the frames in work.
   const std::atomic<bool>* stop = nullptr;
   /// Called after each frame, in order.

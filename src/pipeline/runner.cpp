@@ -34,6 +34,7 @@ std::size_t run(FrameSource& source, const Rig& rig, const Scene& scene, const O
   tbb::concurrent_bounded_queue<Slot*> free_slots;
   for (int i = 0; i < threads; ++i) {
     slots.push_back(std::make_unique<Slot>(Pipeline(rig, scene, options)));
+    slots.back()->pipeline.want_reconstruction(runner_options.reconstructions);
     free_slots.push(slots.back().get());
   }
 

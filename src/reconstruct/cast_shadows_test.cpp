@@ -2,83 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
-
-#include "analytic_scene.h"
+#include "lit_wall.h"
 
 namespace diminish {
 namespace {
 
-using testing::AnalyticScene;
-
-/// The wall under two lamps and the sky, the box in front being the object to remove.
-class Lamps : public ::testing::Test {
- protected:
-  Lamps() {
-    plane = {(color_from_world.rotation * Eigen::Vector3d::UnitZ()).cast<float>(), 0};
-    plane.distance_m = plane.normal.dot(color_from_world.translation.cast<float>());
-    for (double x = -0.9; x < 0.9; x += 0.04) {
-      for (double y = -0.7; y < 0.7; y += 0.04) add_sample({x, y, 0});
-    }
-    const Eigen::Vector3d size = scene.box_max - scene.box_min;
-    for (double u = 0; u <= 1; u += 0.1) {
-      for (double v = 0; v <= 1; v += 0.1) {
-        // The faces that cameras in front of it may see.
-        for (const Eigen::Vector3d& at :
-             {Eigen::Vector3d(u, v, 1), Eigen::Vector3d(0, u, v), Eigen::Vector3d(1, u, v),
-              Eigen::Vector3d(u, 1, v), Eigen::Vector3d(u, 0, v)}) {
-          const Eigen::Vector3d point = scene.box_min + size.cwiseProduct(at);
-          box_points.push_back((color_from_world * point).cast<float>());
-        }
-      }
-    }
-  }
-
-  /// By ray casting.
-  double light_at(const Eigen::Vector3d& point) const {
-    double light = 1;
-    for (const auto& [place, share] : lamps) {
-      // A square metre of nine points.
-      for (const double u : {-0.4, 0.0, 0.4}) {
-        for (const double v : {-0.4, 0.0, 0.4}) {
-          const Eigen::Vector3d towards = place + Eigen::Vector3d(u, v, 0) - point;
-          if (scene.cast(point, towards).on_box) light -= share / 9;
-        }
-      }
-    }
-    return light;
-  }
-  void add_sample(const Eigen::Vector3d& point) {
-    SceneSample sample;
-    sample.point_m = (color_from_world * point).cast<float>();
-    sample.source = 1;
-    const double level =
-        150 * (1 + 0.2 * point.x() - 0.1 * point.y()) * light_at(point) + noise(random);
-    const auto to_level = [](double value) {
-      return static_cast<std::uint8_t>(std::clamp(value, 0.0, 255.0));
-    };
-    sample.color = {to_level(0.8 * level), to_level(level), to_level(0.9 * level)};
-    samples.push_back(sample);
-  }
-  /// Where the colour camera looks through the box at the wall.
-  Reconstruction wall() const {
-    Reconstruction result;
-    result.region = rig.color.bounds();
-    result.surface.resize(rig.color.width, rig.color.height, surface_label::first_plane);
-    result.depth_m.resize(rig.color.width, rig.color.height, 0.F);
-    return result;
-  }
-
-  const Rig rig = testing::small_rig();
-  const RigidTransform color_from_world = testing::look_at({0.2, 0.5, 1.6}, {0, 0, 0});
-  AnalyticScene scene;
-  std::pair<Eigen::Vector3d, double> lamps[2] = {{{1, 1.4, 2}, 0.4}, {{-1.2, 0.6, 2.2}, 0.25}};
-  BackgroundPlane plane;
-  std::vector<SceneSample> samples;
-  std::vector<Eigen::Vector3f> box_points;
-  std::mt19937 random{9};
-  std::normal_distribution<double> noise{0, 4};
-};
+class Lamps : public ::testing::Test, protected testing::LitWall {};
 
 TEST_F(Lamps, ShadowsAreThoseOfTheRayCaster) {
   CastShadows shadows(rig.color);
@@ -86,13 +15,13 @@ TEST_F(Lamps, ShadowsAreThoseOfTheRayCaster) {
   ASSERT_TRUE(shadows.any());
   Reconstruction reconstruction = wall();
   shadows.shade(reconstruction);
-  AnalyticScene empty = scene;
+  testing::AnalyticScene empty = scene;
   empty.has_box = false;
   double error = 0;
   double error_without = 0;
   int count = 0;
   const Rect bounds = shadows.bounds();
-  empty.render(Lens(rig.color), color_from_world, [&](int x, int y, const AnalyticScene::Hit& hit) {
+  empty.render(Lens(rig.color), color_from_world, [&](int x, int y, const testing::AnalyticScene::Hit& hit) {
     const double truth = light_at(hit.point);
     error += std::abs(reconstruction.light(x, y).g / 255.0 - truth);
     error_without += 1 - truth;
