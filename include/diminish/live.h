@@ -49,7 +49,7 @@ struct CameraStatus {
 /// What a live session produced, with what it was made from.
 struct LiveFrame {
   FrameSet input;
-  DiminishedFrame result;
+  DiminishedFrame result;  ///< without its reconstruction (Pipeline::want_reconstruction)
   std::size_t number = 0;  ///< counts from 1
   double latency_ms = 0;   ///< from the colour image's timestamp to here
   double published_s = 0;  ///< on the monotonic clock

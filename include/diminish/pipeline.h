@@ -25,8 +25,8 @@ class Pipeline {
   void set_options(const Options& options);
   const Options& options() const;
 
-  /// Whether `result.reconstruction` is looked at: at first it is. Where a GPU does the whole frame,
-  /// its images then stay there, and are empty in the result.
+  /// Whether `result.reconstruction` is looked at: at first it is. Where a GPU does the whole
+  /// frame, its images then stay there, and are empty in the result.
   void want_reconstruction(bool wanted);
 
   /// `result`'s memory is used again. Never throws for what a camera delivered: that is reported.

@@ -16,7 +16,8 @@ struct PlaneBlock {
 
   PlaneBlock() = default;
   explicit PlaneBlock(const BackgroundPlane& plane)
-      : normal{plane.normal.x(), plane.normal.y(), plane.normal.z()}, distance_m(plane.distance_m) {}
+      : normal{plane.normal.x(), plane.normal.y(), plane.normal.z()},
+        distance_m(plane.distance_m) {}
 };
 
 struct ShadowBlock {

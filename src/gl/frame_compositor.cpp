@@ -149,6 +149,16 @@ void FrameCompositor::pack(const FrameInputs& inputs, FrameUpload& upload) {
   std::memcpy(block, &block_, sizeof(block_));
 }
 
+/// Frame, blocks and buffers, as composition.glsl names them.
+void FrameCompositor::bind(const FrameUpload& upload, const Buffer& reconstruction) const {
+  upload.bind();
+  upload.bind_block(2, block_begin_, sizeof(block_));
+  const Buffer* const buffers[] = {&picture_, &state_, &surface_, &distances_, &counts_, &nodes_};
+  for (GLuint i = 0; i < std::size(buffers); ++i) buffers[i]->bind(i);
+  reconstruction.bind(7);
+  ray_texture_.bind(6);
+}
+
 void FrameCompositor::run_pass(const Program& program) const {
   program.use();
   glDispatchCompute(static_cast<GLuint>((region_.width + 63) / 64),
@@ -158,11 +168,7 @@ void FrameCompositor::run_pass(const Program& program) const {
 
 void FrameCompositor::run(const FrameInputs& inputs, const FrameUpload& upload,
                           const Buffer& reconstruction, PassTimer& timer) {
-  upload.bind_block(2, block_begin_, sizeof(block_));
-  const Buffer* const buffers[] = {&picture_, &state_, &surface_, &distances_, &counts_, &nodes_};
-  for (GLuint i = 0; i < std::size(buffers); ++i) buffers[i]->bind(i);
-  reconstruction.bind(7);
-  ray_texture_.bind(6);
+  bind(upload, reconstruction);
   timer.measure("label", [&] { run_pass(label_); });
   if (!inputs.shadows.empty()) timer.measure("light", [&] { run_pass(light_); });
   timer.measure("sort", [&] {

@@ -42,6 +42,7 @@ class FrameCompositor {
     std::uint32_t mask, missing;
   };
 
+  void bind(const FrameUpload& upload, const Buffer& reconstruction) const;
   void run_pass(const Program& program) const;
   void correct_colors(PassTimer& timer) const;
   void finish(const FrameInputs& inputs, PassTimer& timer) const;

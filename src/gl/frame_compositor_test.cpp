@@ -22,7 +22,8 @@ namespace {
 /// their own, and a ragged object.
 class Composition : public ::testing::Test, protected testing::LitWall {
  protected:
-  Composition() : frame({}, {{-0.45, 0.3, 0.9}, {0.4, 0.2, 1}}), planes(rig.color), shadows(rig.color) {
+  Composition()
+      : frame({}, {{-0.45, 0.3, 0.9}, {0.4, 0.2, 1}}), planes(rig.color), shadows(rig.color) {
     planes.find({100, 80, 100, 90}, at_pixels(samples));
     shadows.find(planes.planes(), samples, box_points);
     masks = testing::empty_masks(frame.rig);
@@ -107,9 +108,10 @@ class Composition : public ::testing::Test, protected testing::LitWall {
       maps.clear();
     }
     const auto cast = with_shadows ? shadows.shadows() : std::span<const CastShadows::Shadow>();
-    const FrameInputs inputs{frame.frame, depths,          frame.poses, masks,
-                             region,      options,         &planes.planes(), cast,
-                             maps.by_source(), true};
+    const FrameInputs inputs{
+        frame.frame, depths,  frame.poses,      masks, bounding_box(masks.color),
+        region,      options, &planes.planes(), cast,  maps.by_source(),
+        true};
     const Image<Bgr>& camera = frame.frame.color;
     result.picture = camera;
     result.provenance.resize(camera.width(), camera.height(), provenance::camera);

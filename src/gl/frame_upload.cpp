@@ -138,8 +138,12 @@ std::byte* FrameUpload::add(std::size_t bytes, std::size_t& begin) {
 
 void FrameUpload::send() {
   copy(mapped_.name(), on_gpu_.name(), bytes_);
+  bind();
+}
+
+void FrameUpload::bind() const {
   word_texture_.bind(1);
-  glBindBufferRange(GL_UNIFORM_BUFFER, 0, on_gpu_.name(), 0, sizeof(FrameBlock));
+  bind_block(0, 0, sizeof(FrameBlock));
 }
 
 void FrameUpload::bind_camera(int camera) const {

@@ -9,8 +9,8 @@
 
 namespace diminish::gl {
 
-/// A frame's way to the GPU: the RGB-D images and masks as they are, where the cameras are, and what
-/// is added to it, in one piece of memory and one copy.
+/// A frame's way to the GPU: the RGB-D images and masks as they are, where the cameras are, and
+/// what is added to it, in one piece of memory and one copy.
 class FrameUpload {
  public:
   /// Made while the context is current. most_added_bytes: by all of a frame's calls of `add`.
@@ -23,8 +23,10 @@ class FrameUpload {
   /// A place that is sent with the frame: where to write `bytes` to. begin: where the place begins
   /// on the GPU, in bytes; a multiple of `block_alignment`.
   std::byte* add(std::size_t bytes, std::size_t& begin);
-  /// Copies it to the GPU's own memory and binds the frame and the images (frame.glsl).
+  /// Copies it to the GPU's own memory, and binds it.
   void send();
+  /// Binds the frame and the images (frame.glsl).
+  void bind() const;
   /// Makes it the turn of one of the cameras that take part.
   void bind_camera(int camera) const;
   /// Binds what was added as uniform block `binding`.

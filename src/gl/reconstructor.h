@@ -35,8 +35,8 @@ class Rasterizer {
   virtual void bind_seen() const = 0;
 };
 
-/// The frame around a Rasterizer: one upload, the cameras merged by layers.h's rule, where it is asked
-/// for the way to the picture (FrameCompositor), one download.
+/// The frame around a Rasterizer: one upload, the cameras merged by layers.h's rule, where it is
+/// asked for the way to the picture (FrameCompositor), one download.
 class GlReconstructor : public ComposingReconstructor {
  public:
   using MakeRasterizer =

@@ -60,6 +60,7 @@ struct LiveSession::Implementation {
         pipeline(rig, scene, options),
         assembler{make_inboxes(), rgbd_inboxes()} {  // braces: from left to right
     check_cameras(rig, cameras);
+    pipeline.want_reconstruction(false);
     last_good_options = options;
     const double epoch_s = monotonic_now_s();
     for (const LiveCamera& camera : cameras) {

@@ -85,7 +85,8 @@ void expect_the_processors_frames(const std::string& backend, const std::vector<
     EXPECT_EQ(result.picture, expected.picture) << i;
     EXPECT_EQ(result.provenance, expected.provenance) << i;
     EXPECT_EQ(result.report.mask_pixels, expected.report.mask_pixels) << i;
-    EXPECT_EQ(result.report.messages.size(), expected.report.messages.size() + (failures[i] ? 1 : 0));
+    EXPECT_EQ(result.report.messages.size(),
+              expected.report.messages.size() + (failures[i] ? 1 : 0));
     if (failures[i]) {
       EXPECT_THAT(
           result.report.messages,
@@ -139,14 +140,16 @@ class WholeFrames : public ::testing::TestWithParam<const char*> {
  protected:
   std::filesystem::path folder = std::filesystem::path(DIMINISH_RECORDINGS_DIR) / GetParam();
   Recording recording = load_recording(folder);
+  Pipeline by_processor{recording.rig, recording.scene, {}};
+  Pipeline by_gpu{recording.rig, recording.scene, {}};
   FrameSet frame;
   DiminishedFrame expected, result;
 
   void process_both(const Options& options) {
     Options on_gpu = options;
     on_gpu.backend = "gl";
-    Pipeline by_processor(recording.rig, recording.scene, options);
-    Pipeline by_gpu(recording.rig, recording.scene, on_gpu);
+    by_processor.set_options(options);
+    by_gpu.set_options(on_gpu);
     by_processor.process(frame, expected);
     by_gpu.process(frame, result);
   }
@@ -188,14 +191,9 @@ INSTANTIATE_TEST_SUITE_P(Recordings, WholeFrames,
 
 // What users see: the pictures of both backends, and what they score.
 TEST_P(WholeFrames, OfTheGpuAreThoseOfTheProcessor) {
-  Options options;
-  Pipeline by_processor(recording.rig, recording.scene, options);
-  options.backend = "gl";
-  Pipeline by_gpu(recording.rig, recording.scene, options);
-  const auto source = open_recording(recording, options);
+  const auto source = open_recording(recording, {});
   while (source->next(frame)) {
-    by_processor.process(frame, expected);
-    by_gpu.process(frame, result);
+    process_both({});
     expect_alike(frame.name);
     expect_camera_outside(frame.name);
     const Image<Bgr> truth = read_color_image(folder / "truth/background" / (frame.name + ".jpg"));
@@ -223,8 +221,8 @@ TEST_P(WholeFrames, OfTheGpuAreThoseOfTheProcessorInEveryMode) {
 
 TEST_P(WholeFrames, OfTheGpuAreThoseOfTheProcessorWithOtherOptions) {
   ASSERT_TRUE(open_recording(recording, {})->next(frame));
-  for (const char* what : {"remove_shadows", "with shadows", "whole_view", "harmonic", "none",
-                           "surroundings_px"}) {
+  for (const char* what :
+       {"remove_shadows", "with shadows", "whole_view", "harmonic", "none", "surroundings_px"}) {
     const std::string name = what;
     Options options;
     options.inpaint = name == "harmonic" ? "harmonic_reference" : "none";

@@ -123,7 +123,7 @@ struct Pipeline::Implementation {
     }
     if (composes) {
       const Reach reach =
-          backend.compose({frame, depths, poses, masks, region, options,
+          backend.compose({frame, depths, poses, masks, objects, region, options,
                            finds_surfaces ? &background_planes.planes() : nullptr,
                            cast_shadows.shadows(), color_maps.by_source(), wants_reconstruction},
                           result);

@@ -21,15 +21,16 @@ TEST_F(Lamps, ShadowsAreThoseOfTheRayCaster) {
   double error_without = 0;
   int count = 0;
   const Rect bounds = shadows.bounds();
-  empty.render(Lens(rig.color), color_from_world, [&](int x, int y, const testing::AnalyticScene::Hit& hit) {
-    const double truth = light_at(hit.point);
-    error += std::abs(reconstruction.light(x, y).g / 255.0 - truth);
-    error_without += 1 - truth;
-    ++count;
-    if (truth < 0.9) {
-      EXPECT_TRUE(bounds.contains(x, y)) << x << ' ' << y;
-    }
-  });
+  empty.render(Lens(rig.color), color_from_world,
+               [&](int x, int y, const testing::AnalyticScene::Hit& hit) {
+                 const double truth = light_at(hit.point);
+                 error += std::abs(reconstruction.light(x, y).g / 255.0 - truth);
+                 error_without += 1 - truth;
+                 ++count;
+                 if (truth < 0.9) {
+                   EXPECT_TRUE(bounds.contains(x, y)) << x << ' ' << y;
+                 }
+               });
   ASSERT_GT(error_without / count, 0.015);
   // Directions are 13 to 22 degrees apart, and the cells 2 cm.
   EXPECT_LT(error, 0.45 * error_without) << error / count;

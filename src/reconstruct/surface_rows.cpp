@@ -62,8 +62,7 @@ void Shade(const Shading& shading, const float* depth_m, const std::uint8_t* sur
         along, hn::Mul(hn::Set(d, normal.y()), Linear(d, shading.ray.y(), shading.slope.y(), at)));
     along = hn::Mul(hn::Add(along, hn::Set(d, normal.z())), z);
     const auto height_m = hn::Abs(hn::Sub(along, hn::Set(d, shading.plane.distance_m)));
-    // Between one and two times this.
-    const auto fading_m = hn::Mul(hn::Set(d, 0.6F), NoiseAt(d, DepthNoise(), z));
+    const auto fading_m = hn::Mul(hn::Set(d, shading.fading_height), NoiseAt(d, DepthNoise(), z));
     auto left = hn::Sub(hn::Set(d, 2.F), hn::Div(height_m, fading_m));
     left = hn::Min(hn::Max(left, zero), one);
     left = hn::IfThenElse(hn::Gt(z, zero), left, one);

@@ -29,9 +29,10 @@ struct Shading {
   BackgroundPlane plane;
   Eigen::Vector2f ray, slope;
   Eigen::Array3f dark, dark_slope;
+  /// Shadows fade between this and twice this above the plane, times the noise.
+  float fading_height;
 };
-/// Writes the light that is left on those of `count` pixels that have the plane's label. What
-/// stands on a plane has its label up to some height: with it the shadow fades.
+/// Writes the light that is left on those of `count` pixels that have the plane's label.
 void shade(const Shading& shading, const float* depth_m, const std::uint8_t* surface, int count,
            Bgr* light);
 

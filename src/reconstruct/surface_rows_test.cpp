@@ -61,6 +61,7 @@ TEST_F(OnRandomRow, ShadowsFadeWithTheHeightAboveTheirPlane) {
   shading.ray = {-0.1F, 0.2F};
   shading.slope = {0.002F, 0.0001F};
   shading.dark = {0.6F, 0.3F, 0.1F};
+  shading.fading_height = 0.6F;
   shading.dark_slope = {-0.01F, 0.005F, 0.002F};
   std::vector<std::uint8_t> labels(depth_m.size());
   for (int i = 0; i < count; ++i) {
