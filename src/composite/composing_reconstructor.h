@@ -26,7 +26,8 @@ struct FrameInputs {
   const Poses& poses;
   const OcclusionMasks& masks;
   Rect objects;  ///< the objects' mask's bounding box
-  Rect region;   ///< holds it, and at least a pixel more on each side that is not the picture's
+  const TiledRegion&
+      region;  ///< holds it, and at least a pixel more on each side that is not the picture's
   const Options& options;
   const std::vector<BackgroundPlane>* planes;  ///< null: not looked for
   std::span<const CastShadows::Shadow> shadows;

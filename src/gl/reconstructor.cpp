@@ -120,7 +120,7 @@ Reach GlReconstructor::reach(const Options& options) const {
 void GlReconstructor::compose(const FrameInputs& inputs, DiminishedFrame& result) {
   passes_.clear();
   Resources& r = *resources_;
-  const Rect& region = inputs.region;
+  const TiledRegion& region = inputs.region;
   begin(rig_, inputs, result.reconstruction);
   if (region.empty()) return show_camera(inputs, result);
   if (!r.compositor) {
