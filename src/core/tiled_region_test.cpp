@@ -74,8 +74,12 @@ TEST(TiledRegion, TouchesAndGapsFollowFromItsPixels) {
       for (int x = inside.x; x < inside.right(); ++x) any = any || region.keeps(x, y);
     }
     // Whole tiles are looked at.
-    if (any) EXPECT_TRUE(region.touches(part));
-    if (!region.touches(part)) EXPECT_FALSE(any);
+    if (any) {
+      EXPECT_TRUE(region.touches(part));
+    }
+    if (!region.touches(part)) {
+      EXPECT_FALSE(any);
+    }
   }
 }
 

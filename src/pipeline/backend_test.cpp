@@ -61,7 +61,7 @@ class Helpless : public ComposingReconstructor {
     fail(result.reconstruction);
   }
   void reconstruct(const FrameSet&, const DepthImages&, const Poses&, const OcclusionMasks&,
-                   const Rect&, const Options&, Reconstruction& reconstruction) override {
+                   const TiledRegion&, const Options&, Reconstruction& reconstruction) override {
     fail(reconstruction);
   }
 };
