@@ -73,8 +73,7 @@ bool PlaneColors::around(int x, int y, std::uint8_t label, Eigen::Array3f& mean)
   // Unsigned: what overflows on the way does not matter.
   const Sum sum = lower[part.right()].sums[plane] - lower[part.x].sums[plane] -
                   upper[part.right()].sums[plane] + upper[part.x].sums[plane];
-  constexpr std::uint32_t fewest = 24 / (step * step);
-  if (sum[3] < fewest) return false;
+  if (sum[3] < std::uint32_t{fewest}) return false;
   const Eigen::Array4f total = sum.cast<float>();
   mean = total.head<3>() / total[3];
   return true;

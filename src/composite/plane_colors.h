@@ -15,6 +15,11 @@ class PlaneColors {
  public:
   /// Further ones are not known.
   static constexpr int planes = 4;
+  static constexpr int cell = 4;   ///< pixels
+  static constexpr int step = 2;   ///< of the pixels, every other row and column says enough
+  static constexpr int gap = 2;    ///< cells around an object that are left out
+  static constexpr int reach = 5;  ///< cells
+  static constexpr int fewest = 24 / (step * step);  ///< pixels that make a mean
 
   /// occlusion: the objects' mask in `picture`.
   void collect(const Mask& occlusion, const Reconstruction& reconstruction,
@@ -24,11 +29,6 @@ class PlaneColors {
   bool around(int x, int y, std::uint8_t label, Eigen::Array3f& mean) const;
 
  private:
-  static constexpr int cell = 4;   ///< pixels
-  static constexpr int step = 2;   ///< of the pixels, every other row and column says enough
-  static constexpr int gap = 2;    ///< cells around an object that are left out
-  static constexpr int reach = 5;  ///< cells
-
   /// Blue, green, red, and how many.
   using Sum = Eigen::Array<std::uint32_t, 4, 1>;
   struct Cell {

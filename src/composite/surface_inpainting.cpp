@@ -7,6 +7,7 @@
 
 #include "composite/plane_colors.h"
 #include "composite/smooth_filling.h"
+#include "composite/surface_rules.h"
 #include "core/channels.h"
 #include "detect/connected_regions.h"
 #include "diminish/inpainter.h"
@@ -51,10 +52,7 @@ class SurfaceInpainting : public Inpainter {
 
  private:
   using Label = std::uint8_t;
-  static constexpr std::size_t label_count = surface_label::first_plane + PlaneColors::planes;
-  /// Of a hole's rim on measured surfaces, at least so much must lie on the hole's plane; else the
-  /// hole is rather one in what stands in front of it.
-  static constexpr int plane_rim_percent = 60;
+  static constexpr std::size_t label_count = surface_rules::labels;
 
   /// Row y of the picture, to be indexed by the picture's x.
   state::Code* state_row(int y) { return states_.row(y - window_.y) - window_.x; }
@@ -120,7 +118,7 @@ class SurfaceInpainting : public Inpainter {
     int plane = 0, foreground = 0;
   };
   static bool is_on_plane(const Rim& rim) {
-    return 100 * rim.plane >= plane_rim_percent * (rim.plane + rim.foreground);
+    return 100 * rim.plane >= surface_rules::plane_rim_percent * (rim.plane + rim.foreground);
   }
 
   void count_rims(Label label) {
@@ -172,12 +170,11 @@ class SurfaceInpainting : public Inpainter {
 
   /// The colour that a known pixel hands on.
   Eigen::Array3f color_of(int x, int y, const Holes& holes, const Image<Bgr>& picture) const {
-    constexpr float shadow = 0.85F;
     const Eigen::Array3f own = to_channels(picture(x, y));
     Eigen::Array3f around;
     const Label label = state_row(y)[x];
     if (holes.occlusion(x, y) != 0 || !plane_colors_.around(x, y, label, around)) return own;
-    return own.sum() < shadow * around.sum() ? around : own;
+    return own.sum() < surface_rules::shadow * around.sum() ? around : own;
   }
 
   /// Fills the open pixels with this label. Returns false if nothing is known beside them.

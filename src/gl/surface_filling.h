@@ -1,0 +1,61 @@
+#pragma once
+
+#include <vector>
+
+#include "diminish/image.h"
+#include "gl/buffer.h"
+#include "gl/pass_timer.h"
+#include "gl/program.h"
+
+namespace diminish::gl {
+
+/// The inpainting method `surfaces` on the GPU, from buffer to buffer: nothing is read back, nobody
+/// waits. Made, used and deleted while a context is current. Its pictures are within a level or two
+/// of the processor's (src/composite/surface_inpainting.cpp), and the same in every run.
+class SurfaceFilling {
+ public:
+  /// An unsigned integer a pixel, row by row.
+  struct Buffers {
+    const Buffer& picture;     ///< all pixels: b, g, r from the lowest byte on; the fourth is lost
+    const Buffer& provenance;  ///< all pixels; in the lowest byte, the others are ignored
+    const Buffer& surface;     ///< the region's pixels: Reconstruction::surface, likewise
+  };
+
+  /// Throws Error where the driver does not take the shaders.
+  SurfaceFilling();
+
+  /// Gives each pixel whose provenance is `inpainted` a colour. If nothing is known to fill from,
+  /// the pixels become black and their provenance `unknown`. What was written to the buffers by
+  /// shaders must have been made visible to shaders (glMemoryBarrier); what this writes is. width:
+  /// the picture's. region: where surfaces are known, in the picture; may be empty. window: in the
+  /// picture; holds the pixels to fill and a pixel more on each side, as far as there are any.
+  /// Allocates where the window or region is larger than any before. Throws Error where the
+  /// driver's buffers cannot be that large.
+  void fill(const Buffers& buffers, int width, const Rect& region, const Rect& window,
+            PassTimer& timer);
+
+ private:
+  struct Grid {
+    Rect rect;
+    int first;  ///< where its cells begin
+  };
+  /// A pass over a grid's cells, or a group for each label.
+  struct Step {
+    const Program* program;
+    std::size_t fine, coarse;  ///< grids
+    GLuint across, down;       ///< work groups
+    bool by_label;
+  };
+
+  void lay_out(const Rect& window);
+  void find_holes(const Rect& region, const Rect& window) const;
+  void solve(bool is_rest) const;
+  void send_rest_sizes() const;
+
+  Program states_, plane_colors_, unite_, rims_, gather_, coarsen_, coarsest_, refine_, finest_;
+  Buffer pixels_, parts_, plane_sums_, cells_, work_;
+  std::vector<Grid> grids_;  ///< to the first of those that one work group solves
+  std::vector<Step> steps_;
+};
+
+}  // namespace diminish::gl
