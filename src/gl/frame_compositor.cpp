@@ -62,7 +62,7 @@ Reach FrameCompositor::reach(const Options& options) {
   const bool maps_colors =
       options.color_correct == "none" || find_mapped_method(options.color_correct) != nullptr;
   if (!maps_colors) return Reach::reconstruction;
-  const bool inpaints = options.inpaint == "none";
+  const bool inpaints = options.inpaint == "surfaces" || options.inpaint == "none";
   return inpaints && has_shader_file(mode_file(options.mode)) ? Reach::picture : Reach::seen;
 }
 
@@ -179,7 +179,7 @@ void FrameCompositor::run(const FrameInputs& inputs, const FrameUpload& upload,
   correct_colors(timer);
   if (!inputs.shadows.empty()) timer.measure("lift", [&] { run_pass(lift_); });
   const bool to_the_end = reach(inputs.options) == Reach::picture;
-  if (to_the_end) finish(inputs, timer);
+  if (to_the_end) finish(inputs, upload, reconstruction, timer);
   const Program& show_mode = show(to_the_end ? inputs.options.mode : "remove");
   timer.measure("show", [&] { run_pass(show_mode); });
   timer.measure("download", [&] { download(inputs, reconstruction); });
@@ -201,7 +201,13 @@ void FrameCompositor::correct_colors(PassTimer& timer) const {
 }
 
 /// What comes after the pixels that cameras see.
-void FrameCompositor::finish(const FrameInputs& inputs, PassTimer& timer) const {
+void FrameCompositor::finish(const FrameInputs& inputs, const FrameUpload& upload,
+                             const Buffer& reconstruction, PassTimer& timer) {
+  if (inputs.options.inpaint == "surfaces") {
+    const Rect window = intersect(grow(inputs.objects, 1), region_);
+    filling_.fill({picture_, state_, surface_}, region_, region_, window, timer);
+    bind(upload, reconstruction);
+  }
   if (!inputs.shadows.empty() && !inputs.options.remove_shadows) {
     timer.measure("restore", [&] {
       run_pass(row_distances_);

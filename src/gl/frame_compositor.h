@@ -10,6 +10,7 @@
 #include "gl/pass_timer.h"
 #include "gl/program.h"
 #include "gl/result_pixel.h"
+#include "gl/surface_filling.h"
 
 namespace diminish::gl {
 
@@ -45,7 +46,8 @@ class FrameCompositor {
   void bind(const FrameUpload& upload, const Buffer& reconstruction) const;
   void run_pass(const Program& program) const;
   void correct_colors(PassTimer& timer) const;
-  void finish(const FrameInputs& inputs, PassTimer& timer) const;
+  void finish(const FrameInputs& inputs, const FrameUpload& upload, const Buffer& reconstruction,
+              PassTimer& timer);
   void download(const FrameInputs& inputs, const Buffer& reconstruction);
   const Program& show(const std::string& mode);
 
@@ -56,6 +58,7 @@ class FrameCompositor {
   Program label_, light_, sort_, membrane_sums_, membrane_solve_, map_colors_, lift_,
       row_distances_, restore_, rim_;
   std::map<std::string, Program> shows_;  ///< by view mode
+  SurfaceFilling filling_;
   Buffer picture_, state_, surface_, distances_, counts_, nodes_;
   Buffer ray_nodes_;
   BufferTexture ray_texture_;

@@ -20,7 +20,7 @@ constexpr int most_steps = 32;
 
 // Locations of fill.glsl's uniforms.
 enum Location : GLint {
-  picture_width,
+  stored_rect,
   region_rect,
   window_rect,
   fine_rect,
@@ -145,8 +145,8 @@ void SurfaceFilling::lay_out(const Rect& window) {
   add(finest_, 0, 0, tile, false);
 }
 
-void SurfaceFilling::fill(const Buffers& buffers, int width, const Rect& region, const Rect& window,
-                          PassTimer& timer) {
+void SurfaceFilling::fill(const Buffers& buffers, const Rect& stored, const Rect& region,
+                          const Rect& window, PassTimer& timer) {
   if (window.empty()) return;
   lay_out(window);
   const Rect cells = cells_of(region);
@@ -159,7 +159,7 @@ void SurfaceFilling::fill(const Buffers& buffers, int width, const Rect& region,
   for (const Program* program : {&states_, &plane_colors_, &unite_, &rims_, &gather_, &coarsen_,
                                  &coarsest_, &refine_, &finest_}) {
     program->use();
-    glUniform1i(picture_width, width);
+    set(stored_rect, stored);
     set(region_rect, region);
     set(window_rect, window);
   }

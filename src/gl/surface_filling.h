@@ -16,8 +16,8 @@ class SurfaceFilling {
  public:
   /// An unsigned integer a pixel, row by row.
   struct Buffers {
-    const Buffer& picture;     ///< all pixels: b, g, r from the lowest byte on; the fourth is lost
-    const Buffer& provenance;  ///< all pixels; in the lowest byte, the others are ignored
+    const Buffer& picture;     ///< b, g, r from the lowest byte on; the fourth is lost
+    const Buffer& provenance;  ///< in the lowest byte; the others are ignored
     const Buffer& surface;     ///< the region's pixels: Reconstruction::surface, likewise
   };
 
@@ -26,12 +26,13 @@ class SurfaceFilling {
 
   /// Gives each pixel whose provenance is `inpainted` a colour. If nothing is known to fill from,
   /// the pixels become black and their provenance `unknown`. What was written to the buffers by
-  /// shaders must have been made visible to shaders (glMemoryBarrier); what this writes is. width:
-  /// the picture's. region: where surfaces are known, in the picture; may be empty. window: in the
-  /// picture; holds the pixels to fill and a pixel more on each side, as far as there are any.
+  /// shaders must have been made visible to shaders (glMemoryBarrier); what this writes is.
+  /// stored: the part of the picture that the buffers of colours and provenance hold. region: where
+  /// surfaces are known, in the picture; may be empty. window: in the picture; holds the pixels to
+  /// fill and a pixel more on each side, as far as there are any.
   /// Allocates where the window or region is larger than any before. Throws Error where the
   /// driver's buffers cannot be that large.
-  void fill(const Buffers& buffers, int width, const Rect& region, const Rect& window,
+  void fill(const Buffers& buffers, const Rect& stored, const Rect& region, const Rect& window,
             PassTimer& timer);
 
  private:

@@ -77,7 +77,7 @@ class Gpu {
     upload(values, r.surface);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     r.timer.begin_frame();
-    r.filling.fill({r.picture, r.provenance, r.surface}, whole.width, region, window, r.timer);
+    r.filling.fill({r.picture, r.provenance, r.surface}, whole, region, window, r.timer);
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     values.resize(task.picture.size());
     download(r.picture, values);

@@ -1,9 +1,9 @@
 // Filling by surfaces (src/composite/surface_inpainting.cpp), for all labels at once: what its
 // passes share. Places are the picture's; those of a grid l the picture's / 2^l.
 
-// b, g, r and a byte that is free; of all pixels.
+// b, g, r and a byte that is free.
 layout(std430, binding = 0) buffer Picture { uint picture[]; };
-// In the low 8 bits; of all pixels.
+// In the low 8 bits.
 layout(std430, binding = 1) buffer Provenance { uint provenance[]; };
 // In the low 8 bits; of the region's pixels.
 layout(std430, binding = 2) buffer Surface { uint surface[]; };
@@ -27,8 +27,9 @@ layout(std430, binding = 7) buffer Work {
   uint rest_groups[];
 };
 
-layout(location = 0) uniform int picture_width;
-layout(location = 1) uniform ivec4 region;  // x, y, width, height
+// The parts of the picture that the buffers hold: x, y, width, height.
+layout(location = 0) uniform ivec4 stored;
+layout(location = 1) uniform ivec4 region;
 layout(location = 2) uniform ivec4 window;
 // The grids that a pass is about, and where their cells begin.
 layout(location = 3) uniform ivec4 fine;
@@ -59,7 +60,7 @@ int index_in(ivec4 rect, ivec2 place) {
   return (place.y - rect.y) * rect.z + place.x - rect.x;
 }
 
-uint picture_index(ivec2 place) { return uint(place.y * picture_width + place.x); }
+uint picture_index(ivec2 place) { return uint(index_in(stored, place)); }
 
 uint state_at(ivec2 place) {
   return holds(window, place) ? pixels[index_in(window, place)] >> 24 : OUTSIDE;
