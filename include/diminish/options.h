@@ -25,6 +25,7 @@ struct Options {
   double discontinuity_threshold_m = 0.05;
   double discontinuity_reach_m = 2;
   double depth_agreement_m = 0.03;
+  std::string merge_cameras = "blend";
   int surroundings_px = 16;
   bool whole_view = false;
   std::string color_correct = "field_membrane";
@@ -106,6 +107,9 @@ void for_each_option(AnyOptions& options, Visit&& visit) {
   visit(OptionInfo{"depth_agreement_m", "metres",
                    "Surfaces of two RGB-D cameras closer than this are one surface", 0, 100},
         options.depth_agreement_m);
+  visit(OptionInfo{"merge_cameras", "method",
+                   "How what several RGB-D cameras see of one surface becomes one picture"},
+        options.merge_cameras);
   visit(OptionInfo{"surroundings_px", "pixels",
                    "How far around the mask the scene is reconstructed", 1, 10000},
         options.surroundings_px);

@@ -28,6 +28,15 @@ inline constexpr std::uint8_t first_plane = 1;   ///< and further ones: on a pla
 inline constexpr std::uint8_t foreground = 255;  ///< measured, in front of the planes
 }  // namespace surface_label
 
+/// What a second RGB-D camera shows of the surfaces that Reconstruction::color shows: to be mixed
+/// in once the colours of both were brought to the colour camera's. Known in
+/// Reconstruction::region.
+struct SecondView {
+  Image<Bgra> color;           ///< alpha 255 where `share` is not 0, else all 0
+  Image<std::uint8_t> source;  ///< 1 + the RGB-D camera's index; 0 where `share` is 0
+  Image<std::uint8_t> share;   ///< its weight beside the first camera's, in 1/255; at most half
+};
+
 /// The scene behind the objects as the RGB-D cameras see it, drawn from the colour camera's
 /// viewpoint. All images have the colour camera's size.
 struct Reconstruction {
@@ -35,6 +44,7 @@ struct Reconstruction {
   Image<Bgra> color;           ///< alpha 255 where a triangle was drawn, else all 0
   Image<float> depth_m;        ///< z in the colour camera's frame; 0 where alpha is 0
   Image<std::uint8_t> source;  ///< 0 where alpha is 0, else 1 + the RGB-D camera's index
+  SecondView second;           ///< empty where one RGB-D camera drew, or cameras are not blended
   /// In `region`: see surface_label. Where nothing was drawn, the plane that would be seen there.
   /// Empty where planes were not looked for.
   Image<std::uint8_t> surface;

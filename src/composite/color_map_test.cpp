@@ -106,11 +106,26 @@ struct Picture {
       occlusion.data()[i] = random() % 4 == 0 ? 0 : 255;
     }
   }
+
+  /// Some pixels are seen by the other camera, too.
+  void add_second_view() {
+    std::mt19937 random(4);
+    SecondView& second = reconstruction.second;
+    second.color.resize(83, 40, {});
+    second.source.resize(83, 40, 0);
+    second.share.resize(83, 40, 0);
+    for (std::size_t i = 0; i < picture.size(); ++i) {
+      if (reconstruction.source.data()[i] == 0 || random() % 2 == 0) continue;
+      const auto level = [&] { return static_cast<std::uint8_t>(random()); };
+      second.color.data()[i] = {level(), level(), level(), 255};
+      second.source.data()[i] = static_cast<std::uint8_t>(3 - reconstruction.source.data()[i]);
+      second.share.data()[i] = static_cast<std::uint8_t>(1 + random() % 128);
+    }
+  }
 };
 
 // The vectorised rows against the map's own formula.
-TEST(MapColors, DoesWhatTheMapSays) {
-  Picture p;
+void expect_mapped(const Picture& p) {
   const Rect& region = p.reconstruction.region;
   std::vector<ColorMap> maps(256);
   maps[1] = some_map();
@@ -130,19 +145,40 @@ TEST(MapColors, DoesWhatTheMapSays) {
         continue;
       }
       ++changed;
-      const Bgra& c = p.reconstruction.color(x, y);
-      Eigen::Array3f expected =
-          maps[source](Eigen::Array3f(c.b, c.g, c.r), static_cast<float>(x), static_cast<float>(y));
+      const auto map = [&](std::uint8_t by, const Bgra& c) -> Eigen::Array3f {
+        return maps[by](Eigen::Array3f(c.b, c.g, c.r), static_cast<float>(x),
+                        static_cast<float>(y));
+      };
+      Eigen::Array3f expected = map(source, p.reconstruction.color(x, y));
+      const SecondView& second = p.reconstruction.second;
+      const float share = second.share.empty() ? 0 : second.share(x, y) / 255.F;
+      Eigen::Array3f other = expected;
+      if (share > 0) other = map(second.source(x, y), second.color(x, y));
       for (int k = 0; k < 3; ++k) {
-        expected[k] += correction[static_cast<std::size_t>(k * region.width + x - region.x)];
+        const float added = correction[static_cast<std::size_t>(k * region.width + x - region.x)];
+        expected[k] += added;
+        other[k] += added;
       }
       expected = expected.max(0.F).min(255.F);
-      EXPECT_NEAR(mapped(x, y).b, expected[0], 0.51);
-      EXPECT_NEAR(mapped(x, y).g, expected[1], 0.51);
-      EXPECT_NEAR(mapped(x, y).r, expected[2], 0.51);
+      expected += share * (other.max(0.F).min(255.F) - expected);
+      // A mixture is of levels, and rounded once more.
+      const float rounding = share > 0 ? 1.01F : 0.51F;
+      EXPECT_NEAR(mapped(x, y).b, expected[0], rounding);
+      EXPECT_NEAR(mapped(x, y).g, expected[1], rounding);
+      EXPECT_NEAR(mapped(x, y).r, expected[2], rounding);
     }
   }
   EXPECT_GT(changed, 1000);
+}
+
+TEST(MapColors, DoesWhatTheMapSays) {
+  expect_mapped(Picture());
+}
+
+TEST(MapColors, MixesTwoCamerasOnceEachIsMapped) {
+  Picture p;
+  p.add_second_view();
+  expect_mapped(p);
 }
 
 /// A scene in which the RGB-D camera sees everything darker and bluer than the colour camera.

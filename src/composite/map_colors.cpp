@@ -19,6 +19,7 @@ struct MappedRow {
   const std::uint8_t* occlusion;
   const float* correction;  ///< three channels, `channel_step` apart
   std::ptrdiff_t channel_step;
+  const std::uint8_t* shares;  ///< of the colour in the picture, in 1/255; null: all of it
   Bgr* picture;
   int x, y, count;
 };
@@ -72,7 +73,14 @@ HWY_INLINE void MapPixels(const ColorMap& map, const MappedRow& row, int i,
     sum = hn::MulAdd(Set(map.matrix(c, 1)), green, sum);
     sum = hn::MulAdd(Set(map.matrix(c, 2)), red, sum);
     sum = hn::MulAdd(field, sum, hn::LoadU(Floats(), row.correction + c * row.channel_step + i));
-    result[c] = hn::IfThenElse(chosen, hn::DemoteTo(bytes, hn::NearestInt(sum)), old[c]);
+    auto level = hn::DemoteTo(bytes, hn::NearestInt(sum));
+    if (row.shares) {
+      const Vector share = hn::Mul(ToFloats(hn::LoadU(bytes, row.shares + i)), Set(1 / 255.F));
+      const Vector before = ToFloats(old[c]);
+      const Vector mixed = hn::MulAdd(share, hn::Sub(ToFloats(level), before), before);
+      level = hn::DemoteTo(bytes, hn::NearestInt(mixed));
+    }
+    result[c] = hn::IfThenElse(chosen, level, old[c]);
   }
   hn::StoreInterleaved3(result[0], result[1], result[2], bytes, pixels);
 }
@@ -106,8 +114,33 @@ namespace {
 
 HWY_EXPORT(MapRow);
 
-void map_row(const std::vector<ColorMap>& maps, const MappedRow& row) {
+/// `row.count` may be anything.
+void map_row(const std::vector<ColorMap>& maps, MappedRow row) {
+  constexpr int block = 16;
+  const int rest = row.count % block;
+  row.count -= rest;
   HWY_DYNAMIC_DISPATCH(MapRow)(maps.data(), row);
+  if (rest == 0) return;
+  // The last pixels of a row, where there may be none to read beyond.
+  const int whole = row.count;
+  Bgra colors[block] = {};
+  std::uint8_t sources[block] = {};
+  std::uint8_t mask[block] = {};
+  std::uint8_t shares[block] = {};
+  float corrections[3 * block] = {};
+  Bgr pixels[block] = {};
+  std::copy_n(row.colors + whole, rest, colors);
+  std::copy_n(row.sources + whole, rest, sources);
+  std::copy_n(row.occlusion + whole, rest, mask);
+  if (row.shares) std::copy_n(row.shares + whole, rest, shares);
+  for (int c = 0; c < 3; ++c) {
+    std::copy_n(row.correction + c * row.channel_step + whole, rest, corrections + c * block);
+  }
+  std::copy_n(row.picture + whole, rest, pixels);
+  HWY_DYNAMIC_DISPATCH(MapRow)
+  (maps.data(), {colors, sources, mask, corrections, block, row.shares ? shares : nullptr, pixels,
+                 row.x + whole, row.y, block});
+  std::copy_n(pixels, rest, row.picture + whole);
 }
 
 }  // namespace
@@ -115,35 +148,23 @@ void map_row(const std::vector<ColorMap>& maps, const MappedRow& row) {
 void map_colors(const std::vector<ColorMap>& maps, const Reconstruction& reconstruction,
                 const Mask& occlusion, int y, const float* correction, Image<Bgr>& picture) {
   const Rect& region = reconstruction.region;
-  constexpr int block = 16;
-  const int whole = region.width / block * block;
   MappedRow row{reconstruction.color.row(y) + region.x,
                 reconstruction.source.row(y) + region.x,
                 occlusion.row(y) + region.x,
                 correction,
                 region.width,
+                nullptr,
                 picture.row(y) + region.x,
                 region.x,
                 y,
-                whole};
+                region.width};
   map_row(maps, row);
-  const int rest = region.width - whole;
-  if (rest == 0) return;
-  // The last pixels of a row, where there may be none to read beyond.
-  Bgra colors[block] = {};
-  std::uint8_t sources[block] = {};
-  std::uint8_t mask[block] = {};
-  float corrections[3 * block] = {};
-  Bgr pixels[block] = {};
-  std::copy_n(row.colors + whole, rest, colors);
-  std::copy_n(row.sources + whole, rest, sources);
-  std::copy_n(row.occlusion + whole, rest, mask);
-  for (int c = 0; c < 3; ++c) {
-    std::copy_n(correction + c * region.width + whole, rest, corrections + c * block);
-  }
-  std::copy_n(row.picture + whole, rest, pixels);
-  map_row(maps, {colors, sources, mask, corrections, block, pixels, region.x + whole, y, block});
-  std::copy_n(pixels, rest, row.picture + whole);
+  const SecondView& second = reconstruction.second;
+  if (second.share.empty()) return;
+  row.colors = second.color.row(y) + region.x;
+  row.sources = second.source.row(y) + region.x;
+  row.shares = second.share.row(y) + region.x;
+  map_row(maps, row);
 }
 
 }  // namespace diminish

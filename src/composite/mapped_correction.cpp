@@ -42,13 +42,21 @@ class MappedCorrection : public ColorCorrector {
       for (int x = region.x; x < region.right(); x += step) {
         const std::uint8_t source = reconstruction.source(x, y);
         if (occlusion(x, y) != 0 || source == 0) continue;
-        const Bgra& color = reconstruction.color(x, y);
-        const Eigen::Array3f mapped = maps[source](to_channels({color.b, color.g, color.r}),
-                                                   static_cast<float>(x), static_cast<float>(y));
+        Eigen::Array3f mapped = map(source, reconstruction.color(x, y), x, y);
+        const SecondView& second = reconstruction.second;
+        if (!second.share.empty() && second.share(x, y) != 0) {
+          const Eigen::Array3f other = map(second.source(x, y), second.color(x, y), x, y);
+          mapped += (other - mapped) * (static_cast<float>(second.share(x, y)) / 255);
+        }
         membrane_.add(x, y, to_channels(camera(x, y)) - mapped);
       }
     }
     membrane_.solve();
+  }
+
+  Eigen::Array3f map(std::uint8_t source, const Bgra& color, int x, int y) const {
+    return maps_.by_source()[source](to_channels({color.b, color.g, color.r}),
+                                     static_cast<float>(x), static_cast<float>(y));
   }
 
   MappedMethod method_;

@@ -79,6 +79,7 @@ std::vector<std::string> method_names(const std::string& option) {
   if (option == "color_correct") return Registry<ColorCorrector>::names();
   if (option == "inpaint") return Registry<Inpainter>::names();
   if (option == "mode") return Registry<ViewMode>::names();
+  if (option == "merge_cameras") return {"blend", "choose"};
   if (option == "backend") {
     std::vector<std::string> names = Registry<Reconstructor>::names();
     names.insert(names.begin(), "auto");

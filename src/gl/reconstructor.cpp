@@ -90,6 +90,7 @@ void GlReconstructor::reconstruct(const FrameSet& frame, const DepthImages& dept
                                   Reconstruction& reconstruction) {
   passes_.clear();
   clear_outside(rig_.color, region, reconstruction);
+  resize_second(false, rig_.color, reconstruction.second);
   resources_->upload.pack(frame, depths, poses, masks, region, options);
   if (region.empty() || resources_->upload.cameras() == 0) {
     reconstruction.color.fill(region, {});

@@ -62,6 +62,7 @@ INSTANTIATE_TEST_SUITE_P(Recordings, GlOnRecordings,
 // Whole views and parts, with masks and without, one camera and several.
 TEST_P(GlOnRecordings, DrawsWhatThePlainVersionDraws) {
   testing::FirstFrame first(GetParam().recording);
+  first.options.merge_cameras = "choose";
   const auto on_gpu = Registry<Reconstructor>::get(GetParam().backend)(first.rig());
   const auto plain = Registry<Reconstructor>::get("reference")(first.rig());
   Reconstruction a;

@@ -35,4 +35,13 @@ inline void clear_outside(const Intrinsics& color, const TiledRegion& region,
   reconstruction.region = region;
 }
 
+/// Makes room for a second camera's view where there is to be one. Its pixels are to be written.
+inline void resize_second(bool blended, const Intrinsics& color, SecondView& second) {
+  const int width = blended ? color.width : 0;
+  const int height = blended ? color.height : 0;
+  second.color.resize(width, height);
+  second.source.resize(width, height);
+  second.share.resize(width, height);
+}
+
 }  // namespace diminish

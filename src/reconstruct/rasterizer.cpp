@@ -44,6 +44,7 @@ Rect pixels_of_bounding_box(const MeshVertex& a, const MeshVertex& b, const Mesh
 void Layer::clear(int width, int height, const Rect& region) {
   color.resize(width, height);
   depth_m.resize(width, height);
+  texture.resize(width, height);
   color.fill(region, {});
   depth_m.fill(region, 0.F);
 }
@@ -92,6 +93,7 @@ void draw_triangle(const MeshVertex& a, const MeshVertex& b, const MeshVertex& c
       const float u = (weight_a * a.u + weight_b * b.u + weight_c * c.u) * z;
       const float v = (weight_a * a.v + weight_b * b.v + weight_c * c.v) * z;
       const Bgr color = sample_bilinear(texture, u, v);
+      layer.texture(column, row) = {u, v};
       layer.color(column, row) = {color.b, color.g, color.r, 255};
     }
   }

@@ -12,6 +12,8 @@ namespace diminish {
 struct Layer {
   Image<Bgra> color;     ///< alpha 255 where a triangle was drawn
   Image<float> depth_m;  ///< z in the colour camera's frame; 0 where nothing was drawn
+  /// Where `color` was looked up in the RGB-D camera's colour image; unspecified where nothing was.
+  Image<Eigen::Vector2f> texture;
 
   /// Makes `region` empty; the rest is unspecified.
   void clear(int width, int height, const Rect& region);

@@ -1,6 +1,7 @@
 #include <vector>
 
 #include "diminish/reconstructor.h"
+#include "reconstruct/clear_outside.h"
 #include "reconstruct/depth_mesh.h"
 #include "reconstruct/layers.h"
 #include "reconstruct/rasterizer.h"
@@ -38,7 +39,19 @@ class ReferenceReconstructor : public Reconstructor {
       }
       drawn_[k] = &layers_[k];
     }
-    merge_layers(drawn_, static_cast<float>(options.depth_agreement_m), reconstruction);
+    const auto agreement_m = static_cast<float>(options.depth_agreement_m);
+    blended_.clear();
+    for (std::size_t k = 0; k < meshes_.size() && options.merge_cameras == "blend"; ++k) {
+      if (!drawn_[k] || count_drawn(*drawn_[k], region) == 0) continue;
+      blended_.push_back(
+          {&layers_[k], CameraPlace(*poses.color_from_depth[k]), static_cast<std::uint8_t>(1 + k)});
+    }
+    resize_second(blended_.size() > 1, color_, reconstruction.second);
+    if (blended_.size() > 1) {
+      blend_layers(blended_, color_, agreement_m, reconstruction);
+    } else {
+      merge_layers(drawn_, agreement_m, reconstruction);
+    }
   }
 
  private:
@@ -54,6 +67,7 @@ class ReferenceReconstructor : public Reconstructor {
   Image<MeshVertex> vertices_;
   std::vector<Layer> layers_;
   std::vector<const Layer*> drawn_;
+  std::vector<BlendedLayer> blended_;
 };
 
 const bool registered = Registry<Reconstructor>::add(

@@ -211,5 +211,21 @@ TEST_P(AnyReconstructor, GoesOnWithoutACameraThatHasNoImagesOrNoPose) {
   EXPECT_EQ(sources(), std::pair(false, false));
 }
 
+// The same bytes as without it.
+TEST_P(AnyReconstructor, ACameraThatSeesNothingOfTheRegionChangesNothing) {
+  const AnalyticScene scene;
+  AnalyticFrame frame(scene, {rgbd_eye, {0.5, 0.3, 0.9}});
+  const OcclusionMasks masks = empty_masks(frame.rig);
+  frame.frame.rgbd[1].depth.fill(0);
+  const Reconstruction with = reconstruct(frame, masks);
+  frame.frame.rgbd[1].missing = "rgbd1: unplugged";
+  const Reconstruction without = reconstruct(frame, masks);
+  EXPECT_EQ(with.color, without.color);
+  EXPECT_EQ(with.depth_m, without.depth_m);
+  EXPECT_EQ(with.source, without.source);
+  EXPECT_TRUE(with.second.share.empty());
+  EXPECT_TRUE(without.second.share.empty());
+}
+
 }  // namespace
 }  // namespace diminish

@@ -6,6 +6,7 @@
 #include "core/rows.h"
 #include "diminish/error.h"
 #include "diminish/reconstructor.h"
+#include "reconstruct/camera_blender.h"
 #include "reconstruct/cell_rasterizer.h"
 #include "reconstruct/clear_outside.h"
 #include "reconstruct/sdct.h"
@@ -137,10 +138,17 @@ class VectorizedReconstructor : public Reconstructor {
     });
     if (drawn_.size() > 1) sort_by_coverage(region);
     const auto agreement_m = static_cast<float>(options.depth_agreement_m);
+    const bool blended = drawn_.size() > 1 && options.merge_cameras == "blend";
+    resize_second(blended, color_, reconstruction.second);
+    if (blended) begin_blending(poses, region, agreement_m);
     for_rows(region.height, [&](Rows rows) {
-      std::vector<SurfaceRow>& surfaces = surfaces_[rows.first == 0 ? 0 : 1];
+      Thread& thread = threads_[rows.first == 0 ? 0 : 1];
       for (int y = region.y + rows.first; y < region.y + rows.last; ++y) {
-        color_row(frame, y, agreement_m, surfaces, reconstruction);
+        if (blended) {
+          blend_row(frame, y, thread, reconstruction);
+        } else {
+          color_row(frame, y, agreement_m, thread.surfaces, reconstruction);
+        }
       }
     });
   }
@@ -151,7 +159,15 @@ class VectorizedReconstructor : public Reconstructor {
     int pixels;
   };
 
-  /// The camera that sees most of the region first, as merge_layers does.
+  /// What one thread needs for a row.
+  struct Thread {
+    std::vector<SurfaceRow> surfaces;
+    std::vector<float> second_depth_m;
+    CameraBlender::Scratch blending;
+  };
+
+  /// The camera that sees most of the region first, as merge_layers does; those that see nothing of
+  /// it are left out.
   void sort_by_coverage(const Rect& region) {
     for (Drawn& drawn : drawn_) {
       drawn.pixels = sum_over_rows(region.height, [&](Rows rows) {
@@ -164,6 +180,43 @@ class VectorizedReconstructor : public Reconstructor {
     }
     std::stable_sort(drawn_.begin(), drawn_.end(),
                      [](const Drawn& a, const Drawn& b) { return a.pixels > b.pixels; });
+    while (drawn_.size() > 1 && drawn_.back().pixels == 0) drawn_.pop_back();
+  }
+
+  void begin_blending(const Poses& poses, const Rect& region, float agreement_m) {
+    blended_.resize(drawn_.size());
+    for (std::size_t i = 0; i < drawn_.size(); ++i) {
+      const std::size_t k = drawn_[i].camera;
+      CameraBlender::Surface& surface = blended_[i];
+      surface.source = static_cast<std::uint8_t>(1 + k);
+      surface.place = CameraPlace(*poses.color_from_depth[k]);
+      surface.rows.clear();
+      for (int y = region.y; y < region.bottom(); ++y) {
+        surface.rows.push_back(&meshes_[k].surface(y));
+      }
+    }
+    blender_.begin(blended_, region, color_, agreement_m);
+  }
+
+  void blend_row(const FrameSet& frame, int y, Thread& thread,
+                 Reconstruction& reconstruction) const {
+    const Rect& region = reconstruction.region;
+    SecondView& second = reconstruction.second;
+    thread.second_depth_m.resize(static_cast<std::size_t>(region.width));
+    const TwoSources chosen{reconstruction.source.row(y) + region.x,
+                            reconstruction.depth_m.row(y) + region.x,
+                            second.source.row(y) + region.x, thread.second_depth_m.data(),
+                            second.share.row(y) + region.x};
+    Bgra* const colors = reconstruction.color.row(y) + region.x;
+    Bgra* const second_colors = second.color.row(y) + region.x;
+    std::fill_n(colors, region.width, Bgra{});
+    std::fill_n(second_colors, region.width, Bgra{});
+    for (const BlendedRow& row : blender_.choose(y, chosen, thread.blending)) {
+      const Image<Bgr>& texture = frame.rgbd[row.source - 1U].color;
+      look_up_colors(row, texture, region.width, chosen.source, chosen.depth_m, colors);
+      look_up_colors(row, texture, region.width, chosen.second_source, chosen.second_depth_m,
+                     second_colors);
+    }
   }
 
   void color_row(const FrameSet& frame, int y, float agreement_m, std::vector<SurfaceRow>& surfaces,
@@ -187,7 +240,9 @@ class VectorizedReconstructor : public Reconstructor {
   Intrinsics color_;
   std::vector<CameraMesh> meshes_;
   std::vector<Drawn> drawn_;
-  std::vector<SurfaceRow> surfaces_[2];  ///< of the row that each thread is at
+  std::vector<CameraBlender::Surface> blended_;
+  CameraBlender blender_;
+  Thread threads_[2];
 };
 
 const bool registered = Registry<Reconstructor>::add(
