@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "core/rows.h"
 #include "reconstruct/depth_noise.h"
@@ -94,15 +95,17 @@ bool CameraBlender::is_sliver(const Surface& surface, int x, int y, float tolera
   const int right = std::min(region_.width - 1, x + reach);
   const int top = std::max(0, y - reach);
   const int bottom = std::min(region_.height - 1, y + reach);
+  const float enough =
+      blending::least_part * static_cast<float>((right - left + 1) * (bottom - top + 1));
   int same = 0;
   for (int v = top; v <= bottom; ++v) {
     const float* const inverse_z = row_of(v);
     for (int u = left; u <= right; ++u) {
       same += inverse_z[u] > least && inverse_z[u] < most ? 1 : 0;
     }
+    if (static_cast<float>(same) >= enough) return false;
   }
-  return static_cast<float>(same) <
-         blending::least_part * static_cast<float>((right - left + 1) * (bottom - top + 1));
+  return true;
 }
 
 void CameraBlender::measure_cells(int cell_row, Scratch& scratch) {
@@ -112,16 +115,15 @@ void CameraBlender::measure_cells(int cell_row, Scratch& scratch) {
   scratch.covered.resize(cameras);
   for (std::size_t k = 0; k < cameras; ++k) scratch.covered[k] = scratch.bytes.data() + k * width;
   const Rect first = grid_.cell(0, cell_row);
-  for (int y = first.y; y < first.bottom(); ++y) {
+  for (int y = first.y; y < first.bottom(); y += ConfidenceGrid::row_step) {
     gather(y, scratch.rows);
     mark_uncovered(scratch.rows, agreement_m_, region_.width, scratch.covered);
   }
-  // Of each camera: the cell's first and last row.
   const auto place = [](const SurfaceRow& row, int x) {
     const float z = 1 / row.inverse_z[x];
     return Eigen::Vector2f(row.u_over_z[x] * z, row.v_over_z[x] * z);
   };
-  const int bottom = first.bottom() - 1;
+  const int bottom = ConfidenceGrid::last_row(first);
   for (std::size_t k = 0; k < cameras; ++k) {
     const Surface& surface = (*surfaces_)[k];
     const auto row_at = [&](int y) {
@@ -132,7 +134,7 @@ void CameraBlender::measure_cells(int cell_row, Scratch& scratch) {
     for (int column = 0; column < grid_.columns(); ++column) {
       const Rect cell = grid_.cell(column, cell_row);
       const std::uint8_t* const covered = scratch.covered[k] + cell.x;
-      if (std::find(covered, covered + cell.width, 0) != covered + cell.width) {
+      if (std::memchr(covered, 0, static_cast<std::size_t>(cell.width))) {
         grid_.set(k, column, cell_row, 0, 0);
         continue;
       }

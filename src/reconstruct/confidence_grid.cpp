@@ -113,8 +113,9 @@ void ConfidenceGrid::trust(Camera& camera, const CameraPlace& place) const {
 void ConfidenceGrid::row(std::size_t which, int y, std::vector<float>& nodes,
                          float* confidence) const {
   const Image<float>& grid = cameras_[which].confidence;
+  constexpr float half_cell = (cell_px - 1) / 2.F;
   const float place =
-      std::clamp((static_cast<float>(y) - 1.5F) / cell_px, 0.F, static_cast<float>(rows_ - 1));
+      std::clamp((static_cast<float>(y) - half_cell) / cell_px, 0.F, static_cast<float>(rows_ - 1));
   const int upper = static_cast<int>(place);
   const float* above = grid.row(upper);
   const float* below = grid.row(std::min(upper + 1, rows_ - 1));
@@ -123,18 +124,14 @@ void ConfidenceGrid::row(std::size_t which, int y, std::vector<float>& nodes,
   for (int i = 0; i < columns_; ++i) {
     nodes[static_cast<std::size_t>(i)] = above[i] + part * (below[i] - above[i]);
   }
-  // Nodes are the cells' centres: between two pixels.
-  static_assert(cell_px == 4);
-  const int first = std::min(2, region_.width);
-  std::fill_n(confidence, first, nodes.front());
-  int x = first;
+  // Nodes are the cells' centres, each between two pixels.
+  int x = std::min(cell_px / 2, region_.width);
+  std::fill_n(confidence, x, nodes.front());
   for (std::size_t i = 1; i < nodes.size(); ++i, x += cell_px) {
-    const float left = nodes[i - 1];
-    const float step = nodes[i] - left;
-    confidence[x] = left + 0.125F * step;
-    confidence[x + 1] = left + 0.375F * step;
-    confidence[x + 2] = left + 0.625F * step;
-    confidence[x + 3] = left + 0.875F * step;
+    const float step = (nodes[i] - nodes[i - 1]) / cell_px;
+    for (int j = 0; j < cell_px; ++j) {
+      confidence[x + j] = nodes[i - 1] + (static_cast<float>(j) + 0.5F) * step;
+    }
   }
   std::fill(confidence + x, confidence + region_.width, nodes.back());
 }

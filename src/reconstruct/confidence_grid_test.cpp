@@ -50,10 +50,10 @@ TEST(ConfidenceGrid, IsTheResolutionOverTheAngleBetweenTheLinesOfSight) {
 
 // Nothing jumps: from a pixel to the next, and where the camera's surface ends.
 TEST(ConfidenceGrid, FadesToNothingBeforeTheSurfaceEnds) {
-  constexpr int last_column = 19;
+  constexpr int last_column = 13;
   constexpr int edge = (last_column + 1) * ConfidenceGrid::cell_px;
   const auto covers = [](int column, int row) {
-    return column <= last_column && !(column == 5 && row == 12) ? 1.F : 0.F;
+    return column <= last_column && !(column == 3 && row == 8) ? 1.F : 0.F;
   };
   const Image<float> found = confidence(camera_at({0.5, 0, 0}), covers);
   const float full = found(edge - 1 - ConfidenceGrid::fading_px, 5);
@@ -72,7 +72,7 @@ TEST(ConfidenceGrid, FadesToNothingBeforeTheSurfaceEnds) {
     }
   }
   // The hole of one cell, too.
-  EXPECT_EQ(found(5 * ConfidenceGrid::cell_px + 1, 12 * ConfidenceGrid::cell_px + 2), 0);
+  EXPECT_EQ(found(3 * ConfidenceGrid::cell_px + 3, 8 * ConfidenceGrid::cell_px + 4), 0);
 }
 
 TEST(ConfidenceGrid, TakesRegionsSmallerThanACell) {
