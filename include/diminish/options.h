@@ -128,7 +128,9 @@ void for_each_option(AnyOptions& options, Visit&& visit) {
   visit(OptionInfo{"transparency", "",
                    "Of the object, in the mode half: 0 shows it as it is, 1 not at all", 0, 1},
         options.transparency);
-  visit(OptionInfo{"backend", "method", "What draws the reconstruction"}, options.backend);
+  visit(OptionInfo{"backend", "method",
+                   "What makes the pixels: the reconstruction and, on a GPU, the rest"},
+        options.backend);
 }
 
 /// Throws Error that names the option and what was given, if a value is out of range or names no

@@ -35,7 +35,6 @@ class MappedCorrection : public ColorCorrector {
   /// What is left after mapping where the reconstruction reaches beyond the mask.
   void fit_membrane(const Image<Bgr>& camera, const Mask& occlusion,
                     const Reconstruction& reconstruction) {
-    const std::vector<ColorMap>& maps = maps_.by_source();
     const Rect& region = reconstruction.region;
     constexpr int step = SoftMembrane::step;
     for (int y = region.y; y < region.bottom(); y += step) {

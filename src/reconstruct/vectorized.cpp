@@ -46,7 +46,7 @@ class CameraMesh {
     SurfaceBuffer& upper = parts_[0].surface;
     SurfaceBuffer& lower = parts_[1].surface;
     if (upper.touches(y) && lower.touches(y)) keep_nearest(lower, y, upper);
-    SurfaceBuffer& merged = parts_[upper.touches(y) ? 0 : 1].surface;
+    SurfaceBuffer& merged = surface(y);
     region.for_each_gap(y, [&](int first, int last) {
       float* row = merged.inverse_z.data() + merged.row(y) - region.x;
       std::fill(row + first, row + last, 0.F);
@@ -54,6 +54,7 @@ class CameraMesh {
   }
 
   /// The merged surface of a row.
+  SurfaceBuffer& surface(int y) { return parts_[parts_[0].surface.touches(y) ? 0 : 1].surface; }
   const SurfaceBuffer& surface(int y) const {
     return parts_[parts_[0].surface.touches(y) ? 0 : 1].surface;
   }
