@@ -29,8 +29,8 @@ class Reconstructor {
   virtual ~Reconstructor() = default;
 
   /// depths: of each RGB-D camera, what is to be drawn of its depth image. masks: grown already.
-  /// region: the part to draw, inside the colour image. RGB-D cameras without images or without a
-  /// pose in this frame take no part.
+  /// region: the part to draw, inside the colour image; tiles that do not belong to it come out
+  /// empty. RGB-D cameras without images or without a pose in this frame take no part.
   virtual void reconstruct(const FrameSet& frame, const DepthImages& depths, const Poses& poses,
                            const OcclusionMasks& masks, const TiledRegion& region,
                            const Options& options, Reconstruction& reconstruction) = 0;

@@ -9,8 +9,8 @@
 namespace diminish {
 
 /// Writes to row y of `picture`, wherever an object is to be removed and the reconstruction has a
-/// colour, that colour mapped, plus `correction`; where a second camera sees the same surface, mixed
-/// with that camera's colour, mapped by its own map.
+/// colour, that colour mapped, plus `correction`; where a second camera sees the same surface,
+/// mixed with that camera's colour, mapped by its own map.
 /// maps: by Reconstruction::source. correction: as from SoftMembrane::row.
 void map_colors(const std::vector<ColorMap>& maps, const Reconstruction& reconstruction,
                 const Mask& occlusion, int y, const float* correction, Image<Bgr>& picture);

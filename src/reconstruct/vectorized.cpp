@@ -133,8 +133,8 @@ class VectorizedReconstructor : public Reconstructor {
         });
     for_rows(region.height, [&](Rows rows) {
       for (const Drawn& drawn : drawn_) {
-        for (int y = rows.first; y < rows.last; ++y)
-          meshes_[drawn.camera].merge(region, region.y + y);
+        CameraMesh& mesh = meshes_[drawn.camera];
+        for (int y = rows.first; y < rows.last; ++y) mesh.merge(region, region.y + y);
       }
     });
     if (drawn_.size() > 1) sort_by_coverage(region);
