@@ -51,29 +51,25 @@ struct Surface {
   }
 };
 
-/// agreement_tolerance_m (camera_place.h).
-template <class D>
-HWY_INLINE hn::Vec<D> Tolerance(D d, float agreement_m, hn::Vec<D> noise_a, hn::Vec<D> noise_b) {
-  return hn::Max(hn::Set(d, agreement_m), hn::Add(noise_a, noise_b));
-}
-
-/// The nearest surface.
+/// The nearest surface; see agreement_tolerance_m (camera_place.h).
 template <class D>
 struct Front {
   hn::Vec<D> z, noise;
+  hn::Mask<D> several;  ///< there are further ones
 
   HWY_INLINE Front(D d, const std::vector<BlendedRow>& rows, int i)
-      : z(hn::Set(d, beyond_m)), noise(hn::Zero(d)) {
+      : z(hn::Set(d, beyond_m)), noise(hn::Zero(d)), several(hn::Lt(z, z)) {
     for (const BlendedRow& row : rows) {
       const Surface<D> surface(d, row, i);
+      several = hn::Or(several, hn::And(surface.there, hn::Lt(z, hn::Set(d, beyond_m))));
       const auto nearer = hn::Lt(surface.z, z);
       z = hn::IfThenElse(nearer, surface.z, z);
       noise = hn::IfThenElse(nearer, surface.noise, noise);
     }
   }
   HWY_INLINE hn::Mask<D> IsSeenBy(D d, const Surface<D>& surface, float agreement_m) const {
-    return hn::And(surface.there,
-                   hn::Le(hn::Sub(surface.z, z), Tolerance(d, agreement_m, surface.noise, noise)));
+    const auto tolerance = hn::Max(hn::Set(d, agreement_m), hn::Add(surface.noise, noise));
+    return hn::And(surface.there, hn::Le(hn::Sub(surface.z, z), tolerance));
   }
 };
 
@@ -83,64 +79,71 @@ HWY_INLINE void StoreBytes(D, hn::Vec<hn::RebindToSigned<D>> values, std::uint8_
   hn::StoreU(hn::DemoteTo(d8, values), d8, to);
 }
 
-void FindLone(const std::vector<BlendedRow>& rows, float agreement_m, int width,
+template <class DI>
+HWY_INLINE hn::Mask<DI> HasOneBitAtMost(DI di, hn::Vec<DI> bits) {
+  return hn::Eq(hn::And(bits, hn::Sub(bits, hn::Set(di, 1))), hn::Zero(di));
+}
+
+void FindSeen(const std::vector<BlendedRow>& rows, float agreement_m, int width, std::uint8_t* seen,
               std::uint8_t* lone) {
   ForEachVector(width, [&](auto d, int i) HWY_ATTR {
-    using D = decltype(d);
-    const hn::RebindToSigned<D> di;
-    auto nearest = hn::Set(d, beyond_m);
-    auto next = nearest;
-    auto nearest_noise = hn::Zero(d);
-    auto next_noise = nearest_noise;
-    for (const BlendedRow& row : rows) {
-      const Surface<D> surface(d, row, i);
-      const auto nearer = hn::Lt(surface.z, nearest);
-      const auto is_next = hn::Or(nearer, hn::Lt(surface.z, next));
-      next = hn::IfThenElse(is_next, hn::IfThenElse(nearer, nearest, surface.z), next);
-      next_noise =
-          hn::IfThenElse(is_next, hn::IfThenElse(nearer, nearest_noise, surface.noise), next_noise);
-      nearest = hn::IfThenElse(nearer, surface.z, nearest);
-      nearest_noise = hn::IfThenElse(nearer, surface.noise, nearest_noise);
-    }
-    const auto tolerance = Tolerance(d, agreement_m, nearest_noise, next_noise);
-    const auto apart =
-        hn::And(hn::Lt(next, hn::Set(d, beyond_m)), hn::Gt(hn::Sub(next, nearest), tolerance));
-    StoreBytes(d, hn::IfThenElseZero(hn::RebindMask(di, apart), hn::Set(di, 255)), lone + i);
-  });
-}
-
-void MarkUncovered(const std::vector<BlendedRow>& rows, float agreement_m, int width,
-                   const std::vector<std::uint8_t*>& covered) {
-  ForEachVector(width, [&](auto d, int i) HWY_ATTR {
-    using D = decltype(d);
-    const hn::RebindToSigned<D> di;
-    const hn::Rebind<std::uint8_t, D> d8;
-    const Front<D> front(d, rows, i);
+    const hn::RebindToSigned<decltype(d)> di;
+    const Front<decltype(d)> front(d, rows, i);
+    auto bits = hn::Zero(di);
     for (std::size_t k = 0; k < rows.size(); ++k) {
-      const auto seen = front.IsSeenBy(d, Surface<D>(d, rows[k], i), agreement_m);
-      if (hn::AllTrue(d, seen)) continue;
-      const auto old = hn::PromoteTo(di, hn::LoadU(d8, covered[k] + i));
-      StoreBytes(d, hn::IfThenElseZero(hn::RebindMask(di, seen), old), covered[k] + i);
+      const auto is_seen = front.IsSeenBy(d, Surface<decltype(d)>(d, rows[k], i), agreement_m);
+      bits = hn::Or(bits, hn::IfThenElseZero(hn::RebindMask(di, is_seen), hn::Set(di, 1 << k)));
     }
+    StoreBytes(d, bits, seen + i);
+    const auto is_lone = hn::And(hn::RebindMask(di, front.several), HasOneBitAtMost(di, bits));
+    StoreBytes(d, hn::IfThenElseZero(is_lone, hn::Set(di, 255)), lone + i);
   });
 }
 
-void ChooseTwo(const std::vector<BlendedRow>& rows, float agreement_m, int width,
+/// The pixels that at most one camera sees.
+template <class D>
+HWY_INLINE void StoreOnlySource(D d, const std::vector<BlendedRow>& rows, int i,
+                                hn::Vec<hn::RebindToSigned<D>> bits, const TwoSources& out) {
+  const hn::RebindToSigned<D> di;
+  auto z = hn::Zero(d);
+  auto source = hn::Zero(di);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const auto is_seen = hn::Ne(hn::And(bits, hn::Set(di, 1 << k)), hn::Zero(di));
+    source = hn::IfThenElse(is_seen, hn::Set(di, rows[k].source), source);
+    z = hn::IfThenElse(hn::RebindMask(d, is_seen), hn::LoadU(d, rows[k].inverse_z + i), z);
+  }
+  const auto is_any = hn::Gt(z, hn::Zero(d));
+  hn::StoreU(hn::IfThenElseZero(is_any, hn::Div(hn::Set(d, 1.F), z)), d, out.depth_m + i);
+  hn::StoreU(hn::Zero(d), d, out.second_depth_m + i);
+  StoreBytes(d, source, out.source + i);
+  StoreBytes(d, hn::Zero(di), out.second_source + i);
+  StoreBytes(d, hn::Zero(di), out.share + i);
+}
+
+void ChooseTwo(const std::vector<BlendedRow>& rows, int width, const std::uint8_t* seen,
                const TwoSources& out) {
   ForEachVector(width, [&](auto d, int i) HWY_ATTR {
     using D = decltype(d);
     const hn::RebindToSigned<D> di;
-    const Front<D> front(d, rows, i);
+    const hn::Rebind<std::uint8_t, D> d8;
+    const auto bits = hn::PromoteTo(di, hn::LoadU(d8, seen + i));
+    if (hn::AllTrue(di, HasOneBitAtMost(di, bits))) {
+      StoreOnlySource(d, rows, i, bits, out);
+      return;
+    }
     const auto zero = hn::Zero(d);
     auto first = zero, second = zero, third = zero;
     auto first_z = zero, second_z = zero;
     auto first_source = hn::Zero(di), second_source = hn::Zero(di);
-    for (const BlendedRow& row : rows) {
-      const Surface<D> surface(d, row, i);
-      const auto seen = front.IsSeenBy(d, surface, agreement_m);
-      if (hn::AllFalse(d, seen)) continue;
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      const BlendedRow& row = rows[k];
+      const auto is_seen =
+          hn::RebindMask(d, hn::Ne(hn::And(bits, hn::Set(di, 1 << k)), hn::Zero(di)));
+      const auto z =
+          hn::IfThenElseZero(is_seen, hn::Div(hn::Set(d, 1.F), hn::LoadU(d, row.inverse_z + i)));
       const auto weight = hn::IfThenElseZero(
-          seen, hn::Add(hn::LoadU(d, row.confidence + i), hn::Set(d, blending::least_confidence)));
+          is_seen,
+          hn::Add(hn::LoadU(d, row.confidence + i), hn::Set(d, blending::least_confidence)));
       const auto is_first = hn::Gt(weight, first);
       const auto is_second = hn::Or(is_first, hn::Gt(weight, second));
       const auto moves_first = hn::RebindMask(di, is_first);
@@ -148,11 +151,11 @@ void ChooseTwo(const std::vector<BlendedRow>& rows, float agreement_m, int width
       const auto source = hn::Set(di, row.source);
       third = hn::IfThenElse(is_second, second, hn::Max(third, weight));
       second = hn::IfThenElse(is_second, hn::IfThenElse(is_first, first, weight), second);
-      second_z = hn::IfThenElse(is_second, hn::IfThenElse(is_first, first_z, surface.z), second_z);
+      second_z = hn::IfThenElse(is_second, hn::IfThenElse(is_first, first_z, z), second_z);
       second_source = hn::IfThenElse(
           moves_second, hn::IfThenElse(moves_first, first_source, source), second_source);
       first = hn::IfThenElse(is_first, weight, first);
-      first_z = hn::IfThenElse(is_first, surface.z, first_z);
+      first_z = hn::IfThenElse(is_first, z, first_z);
       first_source = hn::IfThenElse(moves_first, source, first_source);
     }
     const auto beyond_third = hn::Sub(second, third);
@@ -177,23 +180,17 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace diminish {
 
-HWY_EXPORT(FindLone);
-HWY_EXPORT(MarkUncovered);
+HWY_EXPORT(FindSeen);
 HWY_EXPORT(ChooseTwo);
 
-void find_lone(const std::vector<BlendedRow>& rows, float agreement_m, int width,
-               std::uint8_t* lone) {
-  HWY_DYNAMIC_DISPATCH(FindLone)(rows, agreement_m, width, lone);
+void find_seen(const std::vector<BlendedRow>& rows, float agreement_m, int width,
+               std::uint8_t* seen, std::uint8_t* lone) {
+  HWY_DYNAMIC_DISPATCH(FindSeen)(rows, agreement_m, width, seen, lone);
 }
 
-void mark_uncovered(const std::vector<BlendedRow>& rows, float agreement_m, int width,
-                    const std::vector<std::uint8_t*>& covered) {
-  HWY_DYNAMIC_DISPATCH(MarkUncovered)(rows, agreement_m, width, covered);
-}
-
-void choose_two(const std::vector<BlendedRow>& rows, float agreement_m, int width,
+void choose_two(const std::vector<BlendedRow>& rows, int width, const std::uint8_t* seen,
                 const TwoSources& out) {
-  HWY_DYNAMIC_DISPATCH(ChooseTwo)(rows, agreement_m, width, out);
+  HWY_DYNAMIC_DISPATCH(ChooseTwo)(rows, width, seen, out);
 }
 
 }  // namespace diminish

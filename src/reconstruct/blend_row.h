@@ -26,19 +26,13 @@ struct TwoSources {
   std::uint8_t* share;
 };
 
-/// Rules 1 to 3 of blend_layers (layers.h) in vectors of pixels. All three take the rows of the
-/// cameras in the order of their turn.
+/// Which cameras see the nearest surface: bit k of `seen` is the k-th row's. lone: 255 where one
+/// camera alone does while another looks past it, else 0. (Rule 1 of layers.h.)
+void find_seen(const std::vector<BlendedRow>& rows, float agreement_m, int width,
+               std::uint8_t* seen, std::uint8_t* lone);
 
-/// 255 where the nearest surface stands alone in front of another camera's, else 0.
-void find_lone(const std::vector<BlendedRow>& rows, float agreement_m, int width,
-               std::uint8_t* lone);
-
-/// covered: by camera; 0 is written where it does not see the nearest surface.
-void mark_uncovered(const std::vector<BlendedRow>& rows, float agreement_m, int width,
-                    const std::vector<std::uint8_t*>& covered);
-
-/// The two cameras that are most trusted of those that see the nearest surface.
-void choose_two(const std::vector<BlendedRow>& rows, float agreement_m, int width,
+/// The two cameras that are most trusted of those that see the nearest surface. (Rule 3.)
+void choose_two(const std::vector<BlendedRow>& rows, int width, const std::uint8_t* seen,
                 const TwoSources& out);
 
 }  // namespace diminish

@@ -3,14 +3,25 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <cstring>
+#include <functional>
+#include <numeric>
 
 #include "core/rows.h"
 #include "reconstruct/depth_noise.h"
 #include "reconstruct/layers.h"
 
 namespace diminish {
+namespace {
+
+/// In the RGB-D camera's frame.
+float depth_m(const BlendedRow& row, int x) {
+  return (row.depth_slope + row.depth_step * static_cast<float>(x)) / row.inverse_z[x] -
+         row.depth_offset_m;
+}
+
+}  // namespace
 
 void CameraBlender::begin(std::vector<Surface>& surfaces, const Rect& region,
                           const Intrinsics& color, float agreement_m) {
@@ -18,18 +29,16 @@ void CameraBlender::begin(std::vector<Surface>& surfaces, const Rect& region,
   region_ = region;
   color_ = color;
   agreement_m_ = agreement_m;
+  seen_.resize(region.width, region.height);
   for_rows(region.height, [&](Rows rows) {
     const int thread = rows.first == 0 ? 0 : 1;
     slivers_[thread].clear();
     for (int y = rows.first; y < rows.last; ++y) {
-      find_slivers(y, scratch_[thread], slivers_[thread]);
+      look_at_row(y, scratch_[thread], slivers_[thread]);
     }
   });
   for (const std::vector<Sliver>& slivers : slivers_) {
-    for (const Sliver& sliver : slivers) {
-      SurfaceBuffer& buffer = *surfaces[sliver.camera].rows[static_cast<std::size_t>(sliver.y)];
-      buffer.inverse_z[static_cast<std::size_t>(buffer.row(region.y + sliver.y) + sliver.x)] = 0;
-    }
+    for (const Sliver& sliver : slivers) remove(sliver);
   }
   grid_.begin(region, color, surfaces.size());
   for_rows(region.height, [&](Rows rows) {
@@ -58,23 +67,17 @@ void CameraBlender::gather(int y, std::vector<BlendedRow>& rows) const {
   }
 }
 
-void CameraBlender::find_slivers(int y, Scratch& scratch, std::vector<Sliver>& slivers) const {
+void CameraBlender::look_at_row(int y, Scratch& scratch, std::vector<Sliver>& slivers) {
   gather(y, scratch.rows);
   scratch.bytes.resize(static_cast<std::size_t>(region_.width));
-  find_lone(scratch.rows, agreement_m_, region_.width, scratch.bytes.data());
+  find_seen(scratch.rows, agreement_m_, region_.width, seen_.row(y), scratch.bytes.data());
   const std::uint8_t* const begin = scratch.bytes.data();
   const std::uint8_t* const end = begin + region_.width;
   for (const std::uint8_t* lone = std::find(begin, end, 255); lone != end;
        lone = std::find(lone + 1, end, 255)) {
     const auto x = static_cast<int>(lone - begin);
-    const auto nearest = std::max_element(
-        scratch.rows.begin(), scratch.rows.end(),
-        [&](const BlendedRow& a, const BlendedRow& b) { return a.inverse_z[x] < b.inverse_z[x]; });
-    const float depth_m = (nearest->depth_slope + nearest->depth_step * static_cast<float>(x)) /
-                              nearest->inverse_z[x] -
-                          nearest->depth_offset_m;
-    const float noise_m = DepthNoise().at(depth_m);
-    const auto camera = static_cast<std::size_t>(nearest - scratch.rows.begin());
+    const auto camera = static_cast<std::size_t>(std::countr_zero(seen_(x, y)));
+    const float noise_m = DepthNoise().at(depth_m(scratch.rows[camera], x));
     if (is_sliver((*surfaces_)[camera], x, y,
                   agreement_tolerance_m(agreement_m_, noise_m, noise_m))) {
       slivers.push_back({camera, x, y});
@@ -108,23 +111,35 @@ bool CameraBlender::is_sliver(const Surface& surface, int x, int y, float tolera
   return true;
 }
 
+/// What is behind it is now seen.
+void CameraBlender::remove(const Sliver& sliver) {
+  SurfaceBuffer& buffer = *(*surfaces_)[sliver.camera].rows[static_cast<std::size_t>(sliver.y)];
+  buffer.inverse_z[static_cast<std::size_t>(buffer.row(region_.y + sliver.y) + sliver.x)] = 0;
+  std::vector<BlendedRow>& rows = scratch_[0].rows;
+  gather(sliver.y, rows);
+  for (BlendedRow& row : rows) {
+    // One pixel of each row.
+    row.depth_slope += row.depth_step * static_cast<float>(sliver.x);
+    row.inverse_z += sliver.x;
+  }
+  std::uint8_t lone = 0;
+  find_seen(rows, agreement_m_, 1, &seen_(sliver.x, sliver.y), &lone);
+}
+
 void CameraBlender::measure_cells(int cell_row, Scratch& scratch) {
-  const auto width = static_cast<std::size_t>(region_.width);
-  const std::size_t cameras = surfaces_->size();
-  scratch.bytes.assign(cameras * width, 255);
-  scratch.covered.resize(cameras);
-  for (std::size_t k = 0; k < cameras; ++k) scratch.covered[k] = scratch.bytes.data() + k * width;
   const Rect first = grid_.cell(0, cell_row);
-  for (int y = first.y; y < first.bottom(); y += ConfidenceGrid::row_step) {
-    gather(y, scratch.rows);
-    mark_uncovered(scratch.rows, agreement_m_, region_.width, scratch.covered);
+  // The cameras that see the nearest surface in all rows of a column.
+  scratch.bytes.assign(static_cast<std::size_t>(region_.width), 255);
+  for (int y = first.y; y < first.bottom(); ++y) {
+    const std::uint8_t* const seen = seen_.row(y);
+    for (std::size_t x = 0; x < scratch.bytes.size(); ++x) scratch.bytes[x] &= seen[x];
   }
   const auto place = [](const SurfaceRow& row, int x) {
     const float z = 1 / row.inverse_z[x];
     return Eigen::Vector2f(row.u_over_z[x] * z, row.v_over_z[x] * z);
   };
-  const int bottom = ConfidenceGrid::last_row(first);
-  for (std::size_t k = 0; k < cameras; ++k) {
+  const int bottom = first.bottom() - 1;
+  for (std::size_t k = 0; k < surfaces_->size(); ++k) {
     const Surface& surface = (*surfaces_)[k];
     const auto row_at = [&](int y) {
       return SurfaceRow(*surface.rows[static_cast<std::size_t>(y)], region_.y + y, surface.source);
@@ -133,8 +148,10 @@ void CameraBlender::measure_cells(int cell_row, Scratch& scratch) {
     const SurfaceRow lower = row_at(bottom);
     for (int column = 0; column < grid_.columns(); ++column) {
       const Rect cell = grid_.cell(column, cell_row);
-      const std::uint8_t* const covered = scratch.covered[k] + cell.x;
-      if (std::memchr(covered, 0, static_cast<std::size_t>(cell.width))) {
+      const auto seen = scratch.bytes.begin() + cell.x;
+      const std::uint8_t covering =
+          std::accumulate(seen, seen + cell.width, std::uint8_t{255}, std::bit_and<std::uint8_t>());
+      if ((covering >> k & 1) == 0) {
         grid_.set(k, column, cell_row, 0, 0);
         continue;
       }
@@ -162,7 +179,7 @@ const std::vector<BlendedRow>& CameraBlender::choose(int y, const TwoSources& ou
     grid_.row(k, row, scratch.nodes, confidence);
     scratch.rows[k].confidence = confidence;
   }
-  choose_two(scratch.rows, agreement_m_, region_.width, out);
+  choose_two(scratch.rows, region_.width, seen_.row(row), out);
   return scratch.rows;
 }
 

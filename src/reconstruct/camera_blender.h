@@ -22,8 +22,11 @@ class CameraBlender {
     std::vector<SurfaceBuffer*> rows;  ///< which buffer holds each row of the region
   };
 
-  /// Takes slivers out of the surfaces and finds out how far each camera is trusted. `surfaces`
-  /// must stay until the region's rows are done.
+  /// There is a bit for each.
+  static constexpr std::size_t most_cameras = 8;
+
+  /// Takes slivers out of the surfaces and finds out how far each camera is trusted. `surfaces`,
+  /// most_cameras at most, must stay until the region's rows are done.
   void begin(std::vector<Surface>& surfaces, const Rect& region, const Intrinsics& color,
              float agreement_m);
 
@@ -32,7 +35,6 @@ class CameraBlender {
     std::vector<BlendedRow> rows;
     std::vector<float> nodes, confidences;
     std::vector<std::uint8_t> bytes;
-    std::vector<std::uint8_t*> covered;
   };
   /// Which cameras the pixels of row y are taken from. Returns the cameras' rows.
   const std::vector<BlendedRow>& choose(int y, const TwoSources& out, Scratch& scratch) const;
@@ -44,14 +46,16 @@ class CameraBlender {
   };
 
   void gather(int y, std::vector<BlendedRow>& rows) const;
-  void find_slivers(int y, Scratch& scratch, std::vector<Sliver>& slivers) const;
+  void look_at_row(int y, Scratch& scratch, std::vector<Sliver>& slivers);
   bool is_sliver(const Surface& surface, int x, int y, float tolerance_m) const;
+  void remove(const Sliver& sliver);
   void measure_cells(int cell_row, Scratch& scratch);
 
   std::vector<Surface>* surfaces_ = nullptr;
   Rect region_;
   Intrinsics color_;
   float agreement_m_ = 0;
+  Image<std::uint8_t> seen_;  ///< which cameras see the nearest surface: a bit each
   ConfidenceGrid grid_;
   Scratch scratch_[2];  ///< of each thread
   std::vector<Sliver> slivers_[2];

@@ -23,8 +23,6 @@ namespace diminish {
 class ConfidenceGrid {
  public:
   static constexpr int cell_px = 8;
-  /// Of a cell's rows every second one tells whether it is covered.
-  static constexpr int row_step = 2;
   /// Neighbouring cells on each side that must be covered, too.
   static constexpr int reach = 2;
   /// From the last pixel of a covered cell beside one that is not, to full confidence.
@@ -41,11 +39,9 @@ class ConfidenceGrid {
   /// A cell's pixels, relative to the region's corner. The last ones of a row or column take what
   /// is left of it.
   Rect cell(int column, int row) const;
-  /// The last of a cell's rows that tells.
-  static int last_row(const Rect& cell) { return cell.y + (cell.height - 1) / row_step * row_step; }
 
   /// What is known of a cell. resolution: see above; 0 where the camera's surface is not the one
-  /// that is seen in all pixels of those rows. z_m: in the colour camera's frame.
+  /// that is seen in all of its pixels. z_m: in the colour camera's frame.
   void set(std::size_t camera, int column, int row, float resolution, float z_m);
   /// Once all cells are set: different cameras in different threads.
   void finish(std::size_t camera, const CameraPlace& place);

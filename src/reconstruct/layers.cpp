@@ -103,7 +103,7 @@ void remove_slivers(const std::vector<BlendedLayer>& layers, const Rect& region,
 /// Pixels of the RGB-D camera's colour image for one of the picture, over a part of the picture.
 float resolution(const Layer& layer, const Rect& part) {
   const int right = part.right() - 1;
-  const int bottom = ConfidenceGrid::last_row(part);
+  const int bottom = part.bottom() - 1;
   const Eigen::Vector2f origin = layer.texture(part.x, part.y);
   const Eigen::Vector2f along_x = layer.texture(right, part.y) - origin;
   const Eigen::Vector2f along_y = layer.texture(part.x, bottom) - origin;
@@ -122,7 +122,6 @@ void trust(const std::vector<BlendedLayer>& layers, const Rect& region, PixelSur
       for (std::size_t k = 0; k < layers.size(); ++k) {
         bool covered = true;
         for_each_pixel(cell, [&](int x, int y) {
-          if ((y - cell.y) % ConfidenceGrid::row_step != 0) return;
           pixel.look_at(x, y);
           covered = covered && pixel.any() && pixel.sees_nearest(k);
         });

@@ -18,7 +18,7 @@ namespace blending {
 //    `least_part` of a window of `2 * window_reach + 1` pixels is a sliver, left over from an
 //    object to remove or from a depth edge, and is left out.
 // 2. Cameras that see the same surface are trusted by their ConfidenceGrid: a camera covers a cell
-//    where it sees the nearest surface in all pixels of the cell that tell.
+//    where it sees the nearest surface in all of the cell's pixels.
 // 3. The two that are trusted most are blended, in parts like what their confidence has beyond the
 //    third's: so nothing jumps where another camera becomes the second.
 // 4. Their colours meet when both are the colour camera's (MappedCorrection).

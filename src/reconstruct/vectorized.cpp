@@ -139,7 +139,8 @@ class VectorizedReconstructor : public Reconstructor {
     });
     if (drawn_.size() > 1) sort_by_coverage(region);
     const auto agreement_m = static_cast<float>(options.depth_agreement_m);
-    const bool blended = drawn_.size() > 1 && options.merge_cameras == "blend";
+    const bool blended = drawn_.size() > 1 && drawn_.size() <= CameraBlender::most_cameras &&
+                         options.merge_cameras == "blend";
     resize_second(blended, color_, reconstruction.second);
     if (blended) begin_blending(poses, region, agreement_m);
     for_rows(region.height, [&](Rows rows) {
