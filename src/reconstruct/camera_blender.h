@@ -22,11 +22,8 @@ class CameraBlender {
     std::vector<SurfaceBuffer*> rows;  ///< which buffer holds each row of the region
   };
 
-  /// There is a bit for each.
-  static constexpr std::size_t most_cameras = 8;
-
   /// Takes slivers out of the surfaces and finds out how far each camera is trusted. `surfaces`,
-  /// most_cameras at most, must stay until the region's rows are done.
+  /// blending::most_cameras at most, must stay until the region's rows are done.
   void begin(std::vector<Surface>& surfaces, const Rect& region, const Intrinsics& color,
              float agreement_m);
 

@@ -11,7 +11,8 @@ namespace diminish {
 
 namespace blending {
 
-// How what several RGB-D cameras see becomes one picture, for every backend that blends.
+// How what several RGB-D cameras see becomes one picture, for every backend that blends. More than
+// `most_cameras` that see part of the region are not blended: one is chosen (merge_layers).
 //
 // 1. Of cameras whose surfaces are apart (agreement_tolerance_m) the nearest is seen. But where one
 //    camera alone sees it, and another looks past it, it must go on around there: less than
@@ -23,6 +24,8 @@ namespace blending {
 //    third's: so nothing jumps where another camera becomes the second.
 // 4. Their colours meet when both are the colour camera's (MappedCorrection).
 
+/// There is a bit for each.
+inline constexpr std::size_t most_cameras = 8;
 inline constexpr int window_reach = 3;
 inline constexpr float least_part = 0.4F;
 /// What every camera's confidence has more than its grid says, so that there are weights where all

@@ -46,8 +46,9 @@ class ReferenceReconstructor : public Reconstructor {
       blended_.push_back(
           {&layers_[k], CameraPlace(*poses.color_from_depth[k]), static_cast<std::uint8_t>(1 + k)});
     }
-    resize_second(blended_.size() > 1, color_, reconstruction.second);
-    if (blended_.size() > 1) {
+    const bool blended = blended_.size() > 1 && blended_.size() <= blending::most_cameras;
+    resize_second(blended, color_, reconstruction.second);
+    if (blended) {
       blend_layers(blended_, color_, agreement_m, reconstruction);
     } else {
       merge_layers(drawn_, agreement_m, reconstruction);

@@ -9,6 +9,7 @@
 #include "reconstruct/camera_blender.h"
 #include "reconstruct/cell_rasterizer.h"
 #include "reconstruct/clear_outside.h"
+#include "reconstruct/layers.h"
 #include "reconstruct/sdct.h"
 #include "reconstruct/texture_lookup.h"
 #include "reconstruct/vertex_row.h"
@@ -139,7 +140,7 @@ class VectorizedReconstructor : public Reconstructor {
     });
     if (drawn_.size() > 1) sort_by_coverage(region);
     const auto agreement_m = static_cast<float>(options.depth_agreement_m);
-    const bool blended = drawn_.size() > 1 && drawn_.size() <= CameraBlender::most_cameras &&
+    const bool blended = drawn_.size() > 1 && drawn_.size() <= blending::most_cameras &&
                          options.merge_cameras == "blend";
     resize_second(blended, color_, reconstruction.second);
     if (blended) begin_blending(poses, region, agreement_m);
