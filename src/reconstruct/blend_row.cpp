@@ -8,29 +8,16 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "reconstruct/row_vectors-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace diminish::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-using Floats = hn::CappedTag<float, 16>;
-
 /// Stands for the depth of nothing.
 constexpr float beyond_m = 1e9F;
-
-/// Calls `visit(tag, first)` for vectors of pixels that cover a row; the last may overlap the one
-/// before it. Rows shorter than a vector are walked pixel by pixel.
-template <class Visit>
-HWY_INLINE void ForEachVector(int width, const Visit& visit) {
-  const auto lanes = static_cast<int>(hn::Lanes(Floats()));
-  if (width < lanes) {
-    for (int i = 0; i < width; ++i) visit(hn::CappedTag<float, 1>(), i);
-    return;
-  }
-  for (int i = 0; i + lanes <= width; i += lanes) visit(Floats(), i);
-  if (width % lanes != 0) visit(Floats(), width - lanes);
-}
 
 /// One camera's surface in a vector of pixels.
 template <class D>
@@ -73,12 +60,6 @@ struct Front {
   }
 };
 
-template <class D>
-HWY_INLINE void StoreBytes(D, hn::Vec<hn::RebindToSigned<D>> values, std::uint8_t* to) {
-  const hn::Rebind<std::uint8_t, D> d8;
-  hn::StoreU(hn::DemoteTo(d8, values), d8, to);
-}
-
 template <class DI>
 HWY_INLINE hn::Mask<DI> HasOneBitAtMost(DI di, hn::Vec<DI> bits) {
   return hn::Eq(hn::And(bits, hn::Sub(bits, hn::Set(di, 1))), hn::Zero(di));
@@ -86,7 +67,7 @@ HWY_INLINE hn::Mask<DI> HasOneBitAtMost(DI di, hn::Vec<DI> bits) {
 
 void FindSeen(const std::vector<BlendedRow>& rows, float agreement_m, int width, std::uint8_t* seen,
               std::uint8_t* lone) {
-  ForEachVector(width, [&](auto d, int i) HWY_ATTR {
+  ForEachOverlappingVector(width, [&](auto d, int i) HWY_ATTR {
     const hn::RebindToSigned<decltype(d)> di;
     const Front<decltype(d)> front(d, rows, i);
     auto bits = hn::Zero(di);
@@ -122,7 +103,7 @@ HWY_INLINE void StoreOnlySource(D d, const std::vector<BlendedRow>& rows, int i,
 
 void ChooseTwo(const std::vector<BlendedRow>& rows, int width, const std::uint8_t* seen,
                const TwoSources& out) {
-  ForEachVector(width, [&](auto d, int i) HWY_ATTR {
+  ForEachOverlappingVector(width, [&](auto d, int i) HWY_ATTR {
     using D = decltype(d);
     const hn::RebindToSigned<D> di;
     const hn::Rebind<std::uint8_t, D> d8;

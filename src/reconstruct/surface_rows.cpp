@@ -15,16 +15,11 @@ namespace hn = hwy::HWY_NAMESPACE;
 using diminish::HWY_NAMESPACE::ForEachVector;
 using diminish::HWY_NAMESPACE::most_lanes;
 using diminish::HWY_NAMESPACE::NoiseAt;
+using diminish::HWY_NAMESPACE::StoreBytes;
 
 template <class D>
 HWY_INLINE hn::Vec<D> Linear(D d, float start, float slope, hn::Vec<D> at) {
   return hn::Add(hn::Set(d, start), hn::Mul(at, hn::Set(d, slope)));
-}
-template <class D>
-HWY_INLINE void StoreBytes(D /*d*/, hn::Vec<D> values, std::uint8_t* bytes) {
-  const hn::RebindToSigned<D> ints;
-  const hn::Rebind<std::uint8_t, D> to;
-  hn::StoreU(hn::DemoteTo(to, hn::ConvertTo(ints, values)), to, bytes);
 }
 
 void Label(const float* depth_m, int count, const InverseDepth* planes, int plane_count,
@@ -45,7 +40,8 @@ void Label(const float* depth_m, int count, const InverseDepth* planes, int plan
       const auto relative = hn::Abs(hn::Sub(hn::Set(d, 1.F), hn::Mul(inverse, z)));
       own = hn::IfThenElse(hn::Le(hn::Mul(relative, z), twice), label, own);
     }
-    StoreBytes(d, hn::IfThenElse(hn::Gt(z, hn::Zero(d)), own, nearest), surface + x);
+    const auto label = hn::IfThenElse(hn::Gt(z, hn::Zero(d)), own, nearest);
+    StoreBytes(d, hn::ConvertTo(hn::RebindToSigned<decltype(d)>(), label), surface + x);
   });
 }
 
@@ -70,7 +66,8 @@ void Shade(const Shading& shading, const float* depth_m, const std::uint8_t* sur
     for (int c = 0; c < 3; ++c) {
       const auto dark = hn::Mul(Linear(d, shading.dark[c], shading.dark_slope[c], at), left);
       const auto full = hn::Set(d, 255.F);
-      StoreBytes(d, hn::Sub(hn::Set(d, 255.5F), hn::Mul(full, dark)), levels[c]);
+      const auto level = hn::Sub(hn::Set(d, 255.5F), hn::Mul(full, dark));
+      StoreBytes(d, hn::ConvertTo(hn::RebindToSigned<decltype(d)>(), level), levels[c]);
     }
     for (int i = 0; i < static_cast<int>(hn::Lanes(d)); ++i) {
       if (surface[x + i] == shading.label)

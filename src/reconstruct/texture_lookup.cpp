@@ -8,32 +8,18 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "reconstruct/row_vectors-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace diminish::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-using Floats = hn::CappedTag<float, 16>;
-
-/// Calls `visit(tag, first)` for vectors of pixels that cover a row; the last may overlap the one
-/// before it. Rows shorter than a vector are walked pixel by pixel.
-template <class Visit>
-HWY_INLINE void ForEachVector(int width, const Visit& visit) {
-  const auto lanes = static_cast<int>(hn::Lanes(Floats()));
-  if (width < lanes) {
-    for (int i = 0; i < width; ++i) visit(hn::CappedTag<float, 1>(), i);
-    return;
-  }
-  for (int i = 0; i + lanes <= width; i += lanes) visit(Floats(), i);
-  if (width % lanes != 0) visit(Floats(), width - lanes);
-}
-
 void ChooseSource(const std::vector<SurfaceRow>& rows, float agreement_m, int width,
                   std::uint8_t* source, float* depth_m) {
-  ForEachVector(width, [&](auto d, int i) HWY_ATTR {
+  ForEachOverlappingVector(width, [&](auto d, int i) HWY_ATTR {
     const hn::RebindToSigned<decltype(d)> di;
-    const hn::Rebind<std::uint8_t, decltype(d)> d8;
     const auto agreement = hn::Set(d, agreement_m);
     auto nearest = hn::Zero(d);
     auto chosen = hn::Zero(di);
@@ -48,7 +34,7 @@ void ChooseSource(const std::vector<SurfaceRow>& rows, float agreement_m, int wi
       chosen = hn::IfThenElse(hn::RebindMask(di, nearer), hn::Set(di, row.source), chosen);
     }
     hn::StoreU(nearest, d, depth_m + i);
-    hn::StoreU(hn::DemoteTo(d8, chosen), d8, source + i);
+    StoreBytes(d, chosen, source + i);
   });
 }
 
@@ -64,7 +50,7 @@ struct alignas(64) Places {
 
 HWY_INLINE void FindPlaces(const SurfaceRow& row, const Image<Bgr>& texture, int first, int count,
                            const float* depth_m, Places& places) {
-  ForEachVector(count, [&](auto d, int i) HWY_ATTR {
+  ForEachOverlappingVector(count, [&](auto d, int i) HWY_ATTR {
     const hn::RebindToSigned<decltype(d)> di;
     const auto zero = hn::Zero(d);
     const auto z = hn::LoadU(d, depth_m + first + i);
@@ -135,7 +121,7 @@ void LookUpColors(const SurfaceRow& row, const Image<Bgr>& texture, int width,
     }
     FindPlaces(row, texture, first, count, depth_m, places);
     ReadPixels(texture, count, places);
-    ForEachVector(count, [&](auto d, int i) HWY_ATTR {
+    ForEachOverlappingVector(count, [&](auto d, int i) HWY_ATTR {
       const hn::RebindToSigned<decltype(d)> di;
       const hn::Rebind<std::uint8_t, decltype(d)> d8;
       const auto sources = hn::PromoteTo(di, hn::LoadU(d8, source + first + i));
