@@ -20,6 +20,7 @@ struct Options {
   bool remove_hidden = true;
   bool smooth_depth = true;
   bool snap_edges = true;
+  bool smooth_colors = true;
   bool lift_shadows = true;
   bool remove_shadows = false;
   double discontinuity_threshold_m = 0.05;
@@ -89,6 +90,9 @@ void for_each_option(AnyOptions& options, Visit&& visit) {
   visit(OptionInfo{"snap_edges", "",
                    "Move depth edges onto the edges of the RGB-D camera's colour image"},
         options.snap_edges);
+  visit(OptionInfo{"smooth_colors", "",
+                   "Average what RGB-D cameras show over neighbouring pixels of the same colour"},
+        options.smooth_colors);
   visit(OptionInfo{"lift_shadows", "",
                    "Show what the objects hide without the shadows that they cast on it"},
         options.lift_shadows);

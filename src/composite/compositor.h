@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "composite/color_smoothing.h"
 #include "composite/shadow_lifting.h"
 #include "composite/soft_rim.h"
 #include "diminish/color_corrector.h"
@@ -46,6 +47,7 @@ class Compositor {
   std::map<std::string, std::unique_ptr<Inpainter>> inpainters_;
   std::map<std::string, std::unique_ptr<ViewMode>> view_modes_;
   ShadowLifting shadow_lifting_;
+  ColorSmoothing color_smoothing_;
   SoftRim soft_rim_;
   Mask missing_;
   Rect objects_;  ///< the mask's bounding box

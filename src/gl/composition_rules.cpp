@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "composite/color_map.h"
+#include "composite/color_smoothing.h"
 #include "composite/shadow_lifting.h"
 #include "composite/soft_membrane.h"
 #include "composite/view_mode_rules.h"
@@ -35,6 +36,21 @@ std::string define(const char* name, const DepthNoise& noise) {
 }
 std::string define(const char* name, const Bgr& color) {
   return line(name, fmt::format("vec3({}, {}, {})", color.b, color.g, color.r));
+}
+
+std::string define_smoothing() {
+  using Smoothing = ColorSmoothing;
+  std::string neighbours;
+  for (int dy = -Smoothing::reach; dy <= Smoothing::reach; ++dy) {
+    for (int dx = -Smoothing::reach; dx <= Smoothing::reach; ++dx) {
+      if (!Smoothing::is_neighbour(dx, dy)) continue;
+      neighbours += fmt::format("{}ivec2({}, {})", neighbours.empty() ? "" : ", ", dx, dy);
+    }
+  }
+  return line("SMOOTHING_NEIGHBOURS", "ivec2[](" + neighbours + ")") +
+         define("SMOOTHING_LARGEST_DIFFERENCE", Smoothing::largest_difference) +
+         line("SMOOTHING_WEIGHT_PART", fmt::format("{}u", Smoothing::weight_part)) +
+         line("SMOOTHING_ONE", fmt::format("{}u", Smoothing::one));
 }
 
 }  // namespace
@@ -70,7 +86,7 @@ std::string composition_rules() {
          define("PROVENANCE_SEEN_COLOR", provenance_view::seen_color) +
          define("PROVENANCE_INVENTED_COLOR", provenance_view::invented_color) +
          define("PROVENANCE_PERIOD_PX", provenance_view::period_px) +
-         define("PROVENANCE_LINE_PX", provenance_view::line_px);
+         define("PROVENANCE_LINE_PX", provenance_view::line_px) + define_smoothing();
 }
 
 }  // namespace diminish::gl

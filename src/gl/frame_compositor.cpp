@@ -84,11 +84,13 @@ FrameCompositor::FrameCompositor(const Rig& rig)
       membrane_solve_(pass({"membrane_nodes.glsl", "membrane_solve.comp"})),
       map_colors_(pass({"membrane_nodes.glsl", "color_map.glsl", "map_colors.comp"})),
       lift_(pass({"lift.comp"})),
+      smooth_guide_(pass({"smoothing.glsl", "smooth_guide.comp"})),
+      smooth_colors_(pass({"smoothing.glsl", "smooth_colors.comp"})),
       row_distances_(pass({"row_distances.comp"})),
       restore_(pass({"restore.comp"})),
       rim_(pass({"rim.comp"})) {
   const Rect whole = rig.color.bounds();
-  for (Buffer* buffer : {&picture_, &state_, &surface_, &distances_}) {
+  for (Buffer* buffer : {&picture_, &values_, &state_, &surface_, &distances_}) {
     buffer->reserve(pixels_of(whole) * sizeof(std::uint32_t));
   }
   constexpr int cell = SoftMembrane::cell;
@@ -153,7 +155,8 @@ void FrameCompositor::pack(const FrameInputs& inputs, FrameUpload& upload) {
 void FrameCompositor::bind(const FrameUpload& upload, const Buffer& reconstruction) const {
   upload.bind();
   upload.bind_block(2, block_begin_, sizeof(block_));
-  const Buffer* const buffers[] = {&picture_, &state_, &surface_, &distances_, &counts_, &nodes_};
+  const Buffer* const buffers[] = {&picture_, &state_, &surface_, &distances_,
+                                   &counts_,  &nodes_, &values_};
   for (GLuint i = 0; i < std::size(buffers); ++i) buffers[i]->bind(i);
   reconstruction.bind(7);
   ray_texture_.bind(6);
@@ -207,6 +210,12 @@ void FrameCompositor::finish(const FrameInputs& inputs, const FrameUpload& uploa
     const Rect window = intersect(grow(inputs.objects, 1), region_);
     filling_.fill({picture_, state_, surface_}, region_, region_, window, timer);
     bind(upload, reconstruction);
+  }
+  if (inputs.options.smooth_colors) {
+    timer.measure("smooth", [&] {
+      run_pass(smooth_guide_);
+      run_pass(smooth_colors_);
+    });
   }
   if (!inputs.shadows.empty() && !inputs.options.remove_shadows) {
     timer.measure("restore", [&] {

@@ -1,0 +1,280 @@
+#include "composite/color_smoothing.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+
+#include "core/rows.h"
+#include "diminish/diminished_frame.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "composite/color_smoothing.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+// Included once for every instruction set.
+#ifndef DIMINISH_COMPOSITE_COLOR_SMOOTHING_ROWS
+#define DIMINISH_COMPOSITE_COLOR_SMOOTHING_ROWS
+namespace diminish {
+
+/// Rows around the one that is smoothed. Pointers are to its first pixel, and to those below and
+/// above it; there are `ColorSmoothing::reach` pixels to the left and a vector to the right.
+struct SmoothedRow {
+  static constexpr int rows = 2 * ColorSmoothing::reach + 1;
+  const std::uint8_t* values[3][rows];
+  const std::int16_t* guide[3][rows];
+  const std::uint8_t* seen;
+};
+
+/// Beyond a row's last pixel.
+constexpr int padding = 64;
+
+/// Stands for a guide's colour where nothing is seen: further from all colours than counts.
+constexpr std::int16_t far = 1000;
+
+}  // namespace diminish
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace diminish::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+constexpr int weight_bits = std::countr_zero(ColorSmoothing::weight_part);
+constexpr int quotient_bits = std::countr_zero(ColorSmoothing::one) - 16;
+
+using Words = hn::CappedTag<std::int16_t, padding / 2>;
+using Bytes = hn::Rebind<std::uint8_t, Words>;
+using Floats = hn::CappedTag<float, padding / 4>;
+
+/// ColorSmoothing::mean.
+struct Division {
+  using Unsigned = hn::RebindToUnsigned<Words>;
+  hn::Vec<Unsigned> half, inverse;
+
+  HWY_INLINE explicit Division(hn::Vec<Words> weights) {
+    const Floats floats;
+    const hn::RebindToSigned<Floats> ints;
+    const hn::Rebind<std::int16_t, Floats> some;
+    const auto one = hn::Set(floats, static_cast<float>(ColorSmoothing::one));
+    // Widening and narrowing half a vector is not known to all instruction sets.
+    alignas(64) std::int16_t lanes[padding / 2];
+    alignas(64) std::uint16_t inverses[padding / 2];
+    hn::Store(weights, Words(), lanes);
+    for (std::size_t i = 0; i < hn::Lanes(Words()); i += hn::Lanes(floats)) {
+      const auto weight = hn::PromoteTo(ints, hn::LoadU(some, lanes + i));
+      const auto dividend = hn::Add(one, hn::ConvertTo(floats, hn::ShiftRight<1>(weight)));
+      // Exact when rounded down: there are less than 2^24 numbers.
+      const auto quotient = hn::ConvertTo(ints, hn::Div(dividend, hn::ConvertTo(floats, weight)));
+      const hn::Rebind<std::uint16_t, Floats> to;
+      hn::StoreU(hn::DemoteTo(to, quotient), to, inverses + i);
+    }
+    inverse = hn::Load(Unsigned(), inverses);
+    half = hn::BitCast(Unsigned(), hn::ShiftRight<1>(weights));
+  }
+
+  HWY_INLINE hn::Vec<Bytes> operator()(hn::Vec<Words> sum) const {
+    const auto rounded = hn::Add(hn::BitCast(Unsigned(), sum), half);
+    const auto mean = hn::ShiftRight<quotient_bits>(hn::MulHigh(rounded, inverse));
+    return hn::DemoteTo(Bytes(), hn::BitCast(Words(), mean));
+  }
+};
+
+void SmoothRow(const SmoothedRow& row, int width, std::uint8_t* picture) {
+  constexpr int reach = ColorSmoothing::reach;
+  const Bytes bytes;
+  const Words words;
+  const auto lanes = static_cast<int>(hn::Lanes(bytes));
+  const auto largest = hn::Set(words, ColorSmoothing::largest_difference);
+  for (int x = 0; x < width; x += lanes) {
+    const auto is_seen = hn::Gt(hn::LoadU(bytes, row.seen + x), hn::Zero(bytes));
+    if (hn::AllFalse(bytes, is_seen)) continue;
+    hn::Vec<Words> own[3], sum[3];
+    for (int c = 0; c < 3; ++c) {
+      own[c] = hn::LoadU(words, row.guide[c][reach] + x);
+      sum[c] = hn::Zero(words);
+    }
+    auto weights = hn::Zero(words);
+    for (int dy = -reach; dy <= reach; ++dy) {
+      for (int dx = -reach; dx <= reach; ++dx) {
+        if (!ColorSmoothing::is_neighbour(dx, dy)) continue;
+        const int at = x + dx;
+        auto difference = hn::Zero(words);
+        for (int c = 0; c < 3; ++c) {
+          const auto other = hn::LoadU(words, row.guide[c][reach + dy] + at);
+          difference = hn::Add(difference, hn::Abs(hn::Sub(other, own[c])));
+        }
+        const auto left = hn::Max(hn::Sub(largest, difference), hn::Zero(words));
+        const auto weight = hn::ShiftRight<weight_bits>(left);
+        weights = hn::Add(weights, weight);
+        for (int c = 0; c < 3; ++c) {
+          const auto value = hn::LoadU(bytes, row.values[c][reach + dy] + at);
+          sum[c] = hn::Add(sum[c], hn::Mul(weight, hn::PromoteTo(words, value)));
+        }
+      }
+    }
+    const Division mean(weights);
+    hn::Vec<Bytes> result[3];
+    for (int c = 0; c < 3; ++c) {
+      const auto value = hn::LoadU(bytes, row.values[c][reach] + x);
+      result[c] = hn::IfThenElse(is_seen, mean(sum[c]), value);
+    }
+    if (x + lanes <= width) {
+      hn::StoreInterleaved3(result[0], result[1], result[2], bytes, picture + 3 * x);
+    } else {
+      std::uint8_t last[3 * padding];
+      hn::StoreInterleaved3(result[0], result[1], result[2], bytes, last);
+      std::copy_n(last, 3 * (width - x), picture + 3 * x);
+    }
+  }
+}
+
+/// The mean of two neighbours and the pixel itself, rounded upwards twice. In place of a neighbour
+/// that was not seen: the pixel itself.
+HWY_INLINE hn::Vec<Bytes> MeanOfThree(const std::uint8_t* first, const std::uint8_t* first_seen,
+                                      const std::uint8_t* second, const std::uint8_t* second_seen,
+                                      const std::uint8_t* own) {
+  const Bytes d;
+  const auto value = hn::LoadU(d, own);
+  const auto among = [&](const std::uint8_t* other, const std::uint8_t* is_seen) HWY_ATTR {
+    return hn::IfVecThenElse(hn::LoadU(d, is_seen), hn::LoadU(d, other), value);
+  };
+  return hn::AverageRound(hn::AverageRound(among(first, first_seen), among(second, second_seen)),
+                          value);
+}
+
+void AverageAlongRow(const std::uint8_t* values, const std::uint8_t* seen, int width,
+                     std::uint8_t* means) {
+  for (int x = 0; x < width; x += static_cast<int>(hn::Lanes(Bytes()))) {
+    const auto mean =
+        MeanOfThree(values + x - 1, seen + x - 1, values + x + 1, seen + x + 1, values + x);
+    hn::StoreU(mean, Bytes(), means + x);
+  }
+}
+
+/// Rows: above, the one to guide and below.
+void MakeGuide(const std::uint8_t* const* means, const std::uint8_t* const* seen, int width,
+               std::int16_t* guide) {
+  for (int x = 0; x < width; x += static_cast<int>(hn::Lanes(Bytes()))) {
+    const auto mean =
+        MeanOfThree(means[0] + x, seen[0] + x, means[2] + x, seen[2] + x, means[1] + x);
+    const auto is_seen = hn::PromoteTo(Words(), hn::LoadU(Bytes(), seen[1] + x));
+    const auto level = hn::IfThenElse(hn::Gt(is_seen, hn::Zero(Words())),
+                                      hn::PromoteTo(Words(), mean), hn::Set(Words(), far));
+    hn::StoreU(level, Words(), guide + x);
+  }
+}
+
+void SplitChannels(const std::uint8_t* pixels, int width, std::uint8_t* const* channels) {
+  const Bytes bytes;
+  const auto lanes = static_cast<int>(hn::Lanes(bytes));
+  int x = 0;
+  for (; x + lanes <= width; x += lanes) {
+    hn::Vec<Bytes> values[3];
+    hn::LoadInterleaved3(bytes, pixels + 3 * x, values[0], values[1], values[2]);
+    for (int c = 0; c < 3; ++c) hn::StoreU(values[c], bytes, channels[c] + x);
+  }
+  for (; x < width; ++x) {
+    for (int c = 0; c < 3; ++c) channels[c][x] = pixels[3 * x + c];
+  }
+}
+
+}  // namespace
+}  // namespace diminish::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace diminish {
+
+HWY_EXPORT(SmoothRow);
+HWY_EXPORT(SplitChannels);
+HWY_EXPORT(AverageAlongRow);
+HWY_EXPORT(MakeGuide);
+
+namespace {
+
+constexpr int reach = ColorSmoothing::reach;
+
+}  // namespace
+
+void ColorSmoothing::smooth(const Mask& origins, const Rect& box, Image<Bgr>& picture) {
+  begin(box);
+  for_rows(box.height, [&](Rows rows) {
+    for (int y = rows.first; y < rows.last; ++y) split_row(origins, picture, box, y);
+  });
+  for_rows(box.height, [&](Rows rows) {
+    for (int y = rows.first; y < rows.last; ++y) guide_row(y, box.width);
+  });
+  for_rows(box.height, [&](Rows rows) {
+    for (int y = rows.first; y < rows.last; ++y) smooth_row(box, y, picture);
+  });
+}
+
+/// What lies around the box is not seen.
+void ColorSmoothing::begin(const Rect& box) {
+  const int width = box.width + reach + padding;
+  const int height = box.height + 2 * reach;
+  seen_.resize(width, height);
+  for (int c = 0; c < 3; ++c) {
+    values_[c].resize(width, height);
+    row_means_[c].resize(width, height);
+    guide_[c].resize(width, height);
+  }
+  for (int y = 0; y < height; ++y) {
+    const bool is_outside = y < reach || y >= reach + box.height;
+    const int end = is_outside ? width : reach;
+    const int begin = is_outside ? width : reach + box.width;
+    std::fill_n(seen_.row(y), end, std::uint8_t{0});
+    std::fill(seen_.row(y) + begin, seen_.row(y) + width, std::uint8_t{0});
+    for (Image<std::int16_t>& guide : guide_) {
+      std::fill_n(guide.row(y), end, far);
+      std::fill(guide.row(y) + begin, guide.row(y) + width, far);
+    }
+  }
+}
+
+void ColorSmoothing::split_row(const Mask& origins, const Image<Bgr>& picture, const Rect& box,
+                               int y) {
+  const int width = box.width;
+  const std::uint8_t* const origin = origins.row(box.y + y) + box.x;
+  std::uint8_t* const seen = seen_.row(y + reach) + reach;
+  for (int x = 0; x < width; ++x) {
+    const bool is_seen = origin[x] >= provenance::first_rgbd && origin[x] < provenance::inpainted;
+    seen[x] = is_seen ? 255 : 0;
+  }
+  std::uint8_t* channels[3];
+  for (int c = 0; c < 3; ++c) channels[c] = values_[c].row(y + reach) + reach;
+  HWY_DYNAMIC_DISPATCH(SplitChannels)
+  (reinterpret_cast<const std::uint8_t*>(picture.row(box.y + y) + box.x), width, channels);
+  for (int c = 0; c < 3; ++c) {
+    HWY_DYNAMIC_DISPATCH(AverageAlongRow)
+    (channels[c], seen, width, row_means_[c].row(y + reach) + reach);
+  }
+}
+
+void ColorSmoothing::guide_row(int y, int width) {
+  const std::uint8_t* seen[3];
+  for (int i = 0; i < 3; ++i) seen[i] = seen_.row(y + reach - 1 + i) + reach;
+  for (int c = 0; c < 3; ++c) {
+    const std::uint8_t* means[3];
+    for (int i = 0; i < 3; ++i) means[i] = row_means_[c].row(y + reach - 1 + i) + reach;
+    HWY_DYNAMIC_DISPATCH(MakeGuide)(means, seen, width, guide_[c].row(y + reach) + reach);
+  }
+}
+
+void ColorSmoothing::smooth_row(const Rect& box, int y, Image<Bgr>& picture) const {
+  SmoothedRow row{};
+  for (int i = 0; i < SmoothedRow::rows; ++i) {
+    for (int c = 0; c < 3; ++c) {
+      row.values[c][i] = values_[c].row(y + i) + reach;
+      row.guide[c][i] = guide_[c].row(y + i) + reach;
+    }
+  }
+  row.seen = seen_.row(y + reach) + reach;
+  HWY_DYNAMIC_DISPATCH(SmoothRow)
+  (row, box.width, reinterpret_cast<std::uint8_t*>(picture.row(box.y + y) + box.x));
+}
+
+}  // namespace diminish
+#endif

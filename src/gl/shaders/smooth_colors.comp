@@ -1,0 +1,26 @@
+// Each pixel that was seen becomes a mean of those around it, by how alike their guide is. One pixel
+// of the region each.
+
+layout(local_size_x = 64) in;
+
+const ivec2 neighbours[] = SMOOTHING_NEIGHBOURS;
+
+void main() {
+  ivec2 place = ivec2(gl_GlobalInvocationID.xy);
+  if (place.x >= region.z || !is_seen(place)) return;
+  int index = index_of(place);
+  ivec3 own = ivec3(levels_of(distances[index]));
+  uvec3 sum = uvec3(0);
+  uint weights = 0u;
+  for (int i = 0; i < neighbours.length(); ++i) {
+    if (!is_seen(place + neighbours[i])) continue;
+    int other = index_of(place + neighbours[i]);
+    ivec3 apart = abs(ivec3(levels_of(distances[other])) - own);
+    int left = SMOOTHING_LARGEST_DIFFERENCE - (apart.x + apart.y + apart.z);
+    uint weight = uint(max(left, 0)) / SMOOTHING_WEIGHT_PART;
+    weights += weight;
+    sum += weight * levels_of(values[other]);
+  }
+  uint inverse = (SMOOTHING_ONE + weights / 2u) / weights;
+  picture[index] = word_of((sum + weights / 2u) * inverse / SMOOTHING_ONE);
+}
