@@ -59,7 +59,8 @@ struct CompositionBlock {
   std::uint32_t plane_count, shadow_count, camera_at, light_at;
   std::int32_t node_columns, node_rows, ray_columns;
   std::uint32_t missing_code, rim_px;
-  float opacity, padding[2];
+  float opacity;
+  std::uint32_t mixes_second, padding;
   ColorMapBlock maps[most_cameras];
 };
 static_assert(sizeof(ShadowBlock) == 64 && sizeof(ColorMapBlock) == 96);

@@ -1,42 +1,18 @@
 #include "gl/composition_rules.h"
 
-#include <fmt/format.h>
-
 #include "composite/color_map.h"
 #include "composite/color_smoothing.h"
 #include "composite/shadow_lifting.h"
 #include "composite/soft_membrane.h"
 #include "composite/view_mode_rules.h"
 #include "diminish/diminished_frame.h"
+#include "gl/definitions.h"
 #include "gl/frame_block.h"
 #include "reconstruct/background_planes.h"
 #include "reconstruct/cast_shadows.h"
-#include "reconstruct/depth_noise.h"
 
 namespace diminish::gl {
 namespace {
-
-std::string line(const char* name, const std::string& value) {
-  return fmt::format("#define {} {}\n", name, value);
-}
-std::string define(const char* name, int value) {
-  return line(name, fmt::format("{}", value));
-}
-std::string define(const char* name, std::size_t value) {
-  return define(name, static_cast<int>(value));
-}
-std::string define(const char* name, std::uint8_t value) {
-  return line(name, fmt::format("{}u", value));
-}
-std::string define(const char* name, float value) {
-  return line(name, fmt::format("{:.9e}", value));
-}
-std::string define(const char* name, const DepthNoise& noise) {
-  return line(name, fmt::format("vec2({:.9e}, {:.9e})", noise.constant_m, noise.by_square));
-}
-std::string define(const char* name, const Bgr& color) {
-  return line(name, fmt::format("vec3({}, {}, {})", color.b, color.g, color.r));
-}
 
 std::string define_smoothing() {
   using Smoothing = ColorSmoothing;
@@ -47,10 +23,10 @@ std::string define_smoothing() {
       neighbours += fmt::format("{}ivec2({}, {})", neighbours.empty() ? "" : ", ", dx, dy);
     }
   }
-  return line("SMOOTHING_NEIGHBOURS", "ivec2[](" + neighbours + ")") +
+  return define_as("SMOOTHING_NEIGHBOURS", "ivec2[](" + neighbours + ")") +
          define("SMOOTHING_LARGEST_DIFFERENCE", Smoothing::largest_difference) +
-         line("SMOOTHING_WEIGHT_PART", fmt::format("{}u", Smoothing::weight_part)) +
-         line("SMOOTHING_ONE", fmt::format("{}u", Smoothing::one));
+         define_as("SMOOTHING_WEIGHT_PART", fmt::format("{}u", Smoothing::weight_part)) +
+         define_as("SMOOTHING_ONE", fmt::format("{}u", Smoothing::one));
 }
 
 }  // namespace

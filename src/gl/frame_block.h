@@ -47,8 +47,9 @@ struct FrameBlock {
   std::uint32_t camera_count;
   std::int32_t tiles_x, tiles_y, tiles_width;
   std::uint32_t tiles_at;
+  std::uint32_t most_blended, padding[3];
 };
-static_assert(sizeof(FrameBlock) == 96);
+static_assert(sizeof(FrameBlock) == 112);
 
 struct CameraBlock {
   LensBlock rgbd_color;
@@ -62,6 +63,18 @@ struct CameraBlock {
 };
 static_assert(sizeof(CameraBlock) == 192);
 
+/// Where a camera is, in the colour camera's frame (blending.glsl): CameraPlace.
+struct CameraPlaceBlock {
+  float eye_m[4], forward[4];
+
+  explicit CameraPlaceBlock(const TransformBlock& color_from_depth) : eye_m{}, forward{} {
+    for (int i = 0; i < 3; ++i) {
+      eye_m[i] = color_from_depth.rows[i][3];
+      forward[i] = color_from_depth.rows[i][2];
+    }
+  }
+};
+
 /// Ranges of buffers that shaders see as blocks begin at multiples of this: what any driver takes.
 constexpr std::size_t block_alignment = 256;
 
@@ -72,7 +85,7 @@ constexpr std::size_t most_cameras = 128;
 struct WorkBlock {
   std::uint32_t small_groups[3], small_count;
   std::uint32_t large_groups[3], large_count;
-  std::uint32_t drawn_pixels, turn, padding[54];
+  std::uint32_t drawn_pixels, turn, blended, padding[53];
 };
 static_assert(sizeof(WorkBlock) == block_alignment);
 

@@ -45,14 +45,15 @@ void pack_picture(const Image<Bgr>& camera, const Mask& mask, const Rect& region
 
 /// Where the parts of what is downloaded begin.
 struct Download {
-  std::size_t counts, result, surface, end;
+  std::size_t counts, result, surface, second, end;
 
   explicit Download(const Rect& region) {
     const std::size_t pixels = pixels_of(region);
     counts = pixels * sizeof(std::uint32_t);
     result = (counts + 8 + 15) / 16 * 16;
     surface = result + pixels * sizeof(ResultPixel);
-    end = surface + pixels * sizeof(std::uint32_t);
+    second = surface + pixels * sizeof(std::uint32_t);
+    end = second + pixels * sizeof(SecondPixel);
   }
 };
 
@@ -97,7 +98,8 @@ FrameCompositor::FrameCompositor(const Rig& rig)
   const Rect nodes{0, 0, whole.width / cell + 2, whole.height / cell + 2};
   nodes_.reserve(2 * pixels_of(nodes) * 4 * sizeof(float));
   counts_.reserve(sizeof(Counts));
-  downloaded_.reserve(Download(whole).end);
+  const Download at(whole);
+  downloaded_.reserve(rig.rgbd.size() > 1 ? at.end : at.second);
 
   const RayGrid rays(rig.color);
   block_.ray_columns = rays.nodes().width();
@@ -133,6 +135,7 @@ void FrameCompositor::pack(const FrameInputs& inputs, FrameUpload& upload) {
   }
 
   const MappedMethod* const method = find_mapped_method(options.color_correct);
+  block_.mixes_second = method && upload.blends() ? 1 : 0;
   const bool has_membrane = method && method->with_membrane;
   block_.node_columns = has_membrane ? region_.width / SoftMembrane::cell + 2 : 0;
   block_.node_rows = has_membrane ? region_.height / SoftMembrane::cell + 2 : 0;
@@ -152,13 +155,14 @@ void FrameCompositor::pack(const FrameInputs& inputs, FrameUpload& upload) {
 }
 
 /// Frame, blocks and buffers, as composition.glsl names them.
-void FrameCompositor::bind(const FrameUpload& upload, const Buffer& reconstruction) const {
+void FrameCompositor::bind(const FrameUpload& upload, const ResultBuffers& reconstruction) const {
   upload.bind();
   upload.bind_block(2, block_begin_, sizeof(block_));
   const Buffer* const buffers[] = {&picture_, &state_, &surface_, &distances_,
                                    &counts_,  &nodes_, &values_};
   for (GLuint i = 0; i < std::size(buffers); ++i) buffers[i]->bind(i);
-  reconstruction.bind(7);
+  reconstruction.second.bind(6);
+  reconstruction.first.bind(7);
   ray_texture_.bind(6);
 }
 
@@ -170,7 +174,7 @@ void FrameCompositor::run_pass(const Program& program) const {
 }
 
 void FrameCompositor::run(const FrameInputs& inputs, const FrameUpload& upload,
-                          const Buffer& reconstruction, PassTimer& timer) {
+                          const ResultBuffers& reconstruction, PassTimer& timer) {
   bind(upload, reconstruction);
   timer.measure("label", [&] { run_pass(label_); });
   if (!inputs.shadows.empty()) timer.measure("light", [&] { run_pass(light_); });
@@ -185,7 +189,7 @@ void FrameCompositor::run(const FrameInputs& inputs, const FrameUpload& upload,
   if (to_the_end) finish(inputs, upload, reconstruction, timer);
   const Program& show_mode = show(to_the_end ? inputs.options.mode : "remove");
   timer.measure("show", [&] { run_pass(show_mode); });
-  timer.measure("download", [&] { download(inputs, reconstruction); });
+  timer.measure("download", [&] { download(inputs, upload, reconstruction); });
 }
 
 void FrameCompositor::correct_colors(PassTimer& timer) const {
@@ -205,7 +209,7 @@ void FrameCompositor::correct_colors(PassTimer& timer) const {
 
 /// What comes after the pixels that cameras see.
 void FrameCompositor::finish(const FrameInputs& inputs, const FrameUpload& upload,
-                             const Buffer& reconstruction, PassTimer& timer) {
+                             const ResultBuffers& reconstruction, PassTimer& timer) {
   if (inputs.options.inpaint == "surfaces") {
     const Rect window = intersect(grow(inputs.objects, 1), region_);
     filling_.fill({picture_, state_, surface_}, region_, region_, window, timer);
@@ -239,14 +243,19 @@ const Program& FrameCompositor::show(const std::string& mode) {
   return shows_.emplace(mode, pass({mode_file(mode), "show.comp"})).first->second;
 }
 
-void FrameCompositor::download(const FrameInputs& inputs, const Buffer& reconstruction) {
+void FrameCompositor::download(const FrameInputs& inputs, const FrameUpload& upload,
+                               const ResultBuffers& reconstruction) {
   const std::size_t pixels = pixels_of(region_);
   const Download at(region_);
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   copy(picture_.name(), downloaded_.name(), pixels * sizeof(std::uint32_t));
   copy(counts_.name(), downloaded_.name(), sizeof(Counts), at.counts);
   if (gives_reconstruction(inputs)) {
-    copy(reconstruction.name(), downloaded_.name(), pixels * sizeof(ResultPixel), at.result);
+    copy(reconstruction.first.name(), downloaded_.name(), pixels * sizeof(ResultPixel), at.result);
+    if (upload.blends()) {
+      copy(reconstruction.second.name(), downloaded_.name(), pixels * sizeof(SecondPixel),
+           at.second);
+    }
     copy(surface_.name(), downloaded_.name(), pixels * sizeof(std::uint32_t), at.surface);
   }
   glMemoryBarrier(GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT);
@@ -279,7 +288,8 @@ void FrameCompositor::read(const FrameInputs& inputs, const FrameUpload& upload,
   const bool gives = gives_reconstruction(inputs);
   const Rect size = gives ? result.picture.bounds() : Rect{};
   if (gives) {
-    unpack(reinterpret_cast<const ResultPixel*>(from + at.result), upload, reconstruction);
+    unpack(reinterpret_cast<const ResultPixel*>(from + at.result),
+           reinterpret_cast<const SecondPixel*>(from + at.second), upload, reconstruction);
   }
   const Rect planes = inputs.planes ? size : Rect{};
   const Rect shaded = inputs.shadows.empty() ? Rect{} : size;

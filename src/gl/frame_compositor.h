@@ -30,10 +30,10 @@ class FrameCompositor {
 
   /// Adds the frame to the upload, which has packed it; needs no context.
   void pack(const FrameInputs& inputs, FrameUpload& upload);
-  /// After the upload was sent. reconstruction: ResultPixels of the region, in the upload's order
-  /// of cameras. What was asked for is on its way to the processor afterwards.
-  void run(const FrameInputs& inputs, const FrameUpload& upload, const Buffer& reconstruction,
-           PassTimer& timer);
+  /// After the upload was sent. reconstruction: of the region, in the upload's order of cameras.
+  /// What was asked for is on its way to the processor afterwards.
+  void run(const FrameInputs& inputs, const FrameUpload& upload,
+           const ResultBuffers& reconstruction, PassTimer& timer);
   /// Fills what `run` has made, when it is done; needs no context. Outside the region result's
   /// images are the caller's.
   void read(const FrameInputs& inputs, const FrameUpload& upload, DiminishedFrame& result) const;
@@ -43,12 +43,13 @@ class FrameCompositor {
     std::uint32_t mask, missing;
   };
 
-  void bind(const FrameUpload& upload, const Buffer& reconstruction) const;
+  void bind(const FrameUpload& upload, const ResultBuffers& reconstruction) const;
   void run_pass(const Program& program) const;
   void correct_colors(PassTimer& timer) const;
-  void finish(const FrameInputs& inputs, const FrameUpload& upload, const Buffer& reconstruction,
-              PassTimer& timer);
-  void download(const FrameInputs& inputs, const Buffer& reconstruction);
+  void finish(const FrameInputs& inputs, const FrameUpload& upload,
+              const ResultBuffers& reconstruction, PassTimer& timer);
+  void download(const FrameInputs& inputs, const FrameUpload& upload,
+                const ResultBuffers& reconstruction);
   const Program& show(const std::string& mode);
 
   CompositionBlock block_{};

@@ -124,10 +124,10 @@ class Composition : public ::testing::Test, protected testing::LitWall {
     upload->pack(frame.frame, depths, frame.poses, masks, region, options);
     on_gpu->pack(inputs, *upload);
     upload->send();
-    gl::Buffer reconstruction;
+    gl::ResultBuffers reconstruction;
     gl::MappedBuffer staging(gl::MappedBuffer::Use::upload);
     const std::size_t bytes = gl::pixels_of(region) * sizeof(gl::ResultPixel);
-    reconstruction.reserve(bytes);
+    reconstruction.first.reserve(bytes);
     staging.reserve(bytes);
     auto* pixel = reinterpret_cast<gl::ResultPixel*>(staging.data());
     const Reconstruction& made = expected.reconstruction;
@@ -137,7 +137,7 @@ class Composition : public ::testing::Test, protected testing::LitWall {
         *pixel++ = {color.b, color.g, color.r, made.source(x, y), made.depth_m(x, y)};
       }
     }
-    gl::copy(staging.name(), reconstruction.name(), bytes);
+    gl::copy(staging.name(), reconstruction.first.name(), bytes);
     gl::PassTimer timer(true);
     timer.begin_frame();
     on_gpu->run(inputs, *upload, reconstruction, timer);

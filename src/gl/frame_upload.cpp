@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "diminish/error.h"
+#include "reconstruct/layers.h"
 #include "reconstruct/sdct.h"
 
 namespace diminish::gl {
@@ -126,6 +127,8 @@ void FrameUpload::pack(const FrameSet& frame, const DepthImages& depths, const P
   frame_.threshold_m = threshold.constant_m;
   frame_.inverse_reach = threshold.inverse_reach;
   frame_.agreement_m = static_cast<float>(options.depth_agreement_m);
+  const bool blends = blocks_.size() > 1 && options.merge_cameras == "blend";
+  frame_.most_blended = blends ? blending::most_cameras : 0;
   frame_.camera_count = static_cast<std::uint32_t>(blocks_.size());
   std::memcpy(mapped_.data(), &frame_, sizeof(frame_));
 }

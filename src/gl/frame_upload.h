@@ -36,6 +36,9 @@ class FrameUpload {
   int cameras() const { return static_cast<int>(blocks_.size()); }
   const CameraBlock& camera(int index) const { return blocks_[static_cast<std::size_t>(index)]; }
 
+  /// Whether several cameras take part and are to be blended.
+  bool blends() const { return frame_.most_blended > 0; }
+
   /// Depth pixels of all the rig's cameras, and every one's ray (x, y), in the rig's order.
   std::size_t depth_pixels() const { return depth_pixels_; }
   void bind_rays(GLuint unit) const { ray_texture_.bind(unit); }

@@ -49,7 +49,9 @@ class GeometryRasterizer : public Rasterizer {
     }
   }
 
-  std::vector<std::string> seen_files() const override { return {"seen_fragments.glsl"}; }
+  std::vector<std::string> seen_files() const override {
+    return {"rule1.glsl", "seen_fragments.glsl"};
+  }
 
   void draw(const FrameUpload& upload, const Rect& region, const Buffer& /*work*/,
             PassTimer& timer) override {

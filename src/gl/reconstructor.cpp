@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "core/rows.h"
+#include "gl/camera_blending.h"
 #include "gl/frame_compositor.h"
 #include "gl/result_pixel.h"
 #include "reconstruct/clear_outside.h"
@@ -31,6 +32,11 @@ void begin(const Rig& rig, const FrameInputs& inputs, Reconstruction& reconstruc
   reconstruction.source.resize(0, 0);
 }
 
+/// Where results are downloaded to: the first cameras' pixels, then the second ones'.
+std::size_t end_of_first(const Rect& region) {
+  return pixels_of(region) * sizeof(ResultPixel);
+}
+
 /// Where nothing is removed.
 void show_camera(const FrameInputs& inputs, DiminishedFrame& result) {
   const Image<Bgr>& camera = inputs.frame.color;
@@ -51,24 +57,24 @@ void show_camera(const FrameInputs& inputs, DiminishedFrame& result) {
 
 struct GlReconstructor::Resources {
   Resources(const Context& context, const Rig& rig, const MakeRasterizer& make_rasterizer)
-      : upload(rig, FrameCompositor::most_added_bytes(rig)),
+      : upload(rig, FrameCompositor::most_added_bytes(rig) + CameraBlending::most_added_bytes),
         rasterizer(make_rasterizer(rig, upload)),
         count(compute_program(files(*rasterizer, "count.comp"))),
         order(compute_program({"frame.glsl", "work.glsl", "order.comp"})),
         merge(compute_program(files(*rasterizer, "merge.comp"))),
         color(compute_program(files(*rasterizer, "color.comp"))),
         timer(context.driver().software) {
-    const std::size_t bytes = pixels_of(rig.color.bounds()) * sizeof(ResultPixel);
     work.reserve(std::max<std::size_t>(rig.rgbd.size(), 1) * sizeof(WorkBlock));
-    result.reserve(bytes);
-    downloaded.reserve(bytes);
+    result.first.reserve(pixels_of(rig.color.bounds()) * sizeof(ResultPixel));
   }
 
   FrameUpload upload;
   std::unique_ptr<Rasterizer> rasterizer;
   Program count, order, merge, color;
-  Buffer work, result;
+  Buffer work;
+  ResultBuffers result;
   MappedBuffer downloaded{MappedBuffer::Use::download};
+  std::optional<CameraBlending> blending;     ///< from the first frame on that is blended
   std::optional<FrameCompositor> compositor;  ///< from the first frame on that is composed
   PassTimer timer;
 };
@@ -90,8 +96,9 @@ void GlReconstructor::reconstruct(const FrameSet& frame, const DepthImages& dept
                                   Reconstruction& reconstruction) {
   passes_.clear();
   clear_outside(rig_.color, region, reconstruction);
-  resize_second(false, rig_.color, reconstruction.second);
   resources_->upload.pack(frame, depths, poses, masks, region, options);
+  const bool blends = !region.empty() && resources_->upload.blends();
+  resize_second(blends, rig_.color, reconstruction.second);
   if (region.empty() || resources_->upload.cameras() == 0) {
     reconstruction.color.fill(region, {});
     reconstruction.depth_m.fill(region, 0.F);
@@ -99,19 +106,25 @@ void GlReconstructor::reconstruct(const FrameSet& frame, const DepthImages& dept
     return;
   }
   Resources& r = *resources_;
+  prepare_blending();
+  const std::size_t second_at = end_of_first(region);
   {
     const Current current(context_);
+    r.downloaded.reserve((blends ? 2 : 1) * end_of_first(rig_.color.bounds()));
     draw(region);
     r.timer.measure("download", [&] {
       glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-      copy(r.result.name(), r.downloaded.name(), pixels_of(region) * sizeof(ResultPixel));
+      copy(r.result.first.name(), r.downloaded.name(), second_at);
+      if (blends) copy(r.result.second.name(), r.downloaded.name(), second_at, second_at);
       glMemoryBarrier(GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT);
     });
     wait_until_done();
     context_.check("reconstruction");
     r.timer.read(passes_);
   }
-  unpack(reinterpret_cast<const ResultPixel*>(r.downloaded.data()), r.upload, reconstruction);
+  const std::byte* const from = r.downloaded.data();
+  unpack(reinterpret_cast<const ResultPixel*>(from),
+         reinterpret_cast<const SecondPixel*>(from + second_at), r.upload, reconstruction);
 }
 
 Reach GlReconstructor::reach(const Options& options) const {
@@ -123,13 +136,19 @@ void GlReconstructor::compose(const FrameInputs& inputs, DiminishedFrame& result
   Resources& r = *resources_;
   const TiledRegion& region = inputs.region;
   begin(rig_, inputs, result.reconstruction);
-  if (region.empty()) return show_camera(inputs, result);
+  if (region.empty()) {
+    resize_second(false, rig_.color, result.reconstruction.second);
+    return show_camera(inputs, result);
+  }
   if (!r.compositor) {
     const Current current(context_);
     r.compositor.emplace(rig_);
     context_.check("making the compositor's programs and buffers");
   }
   r.upload.pack(inputs.frame, inputs.depths, inputs.poses, inputs.masks, region, inputs.options);
+  resize_second(r.upload.blends() && FrameCompositor::gives_reconstruction(inputs), rig_.color,
+                result.reconstruction.second);
+  prepare_blending();
   r.compositor->pack(inputs, r.upload);
   {
     const Current current(context_);
@@ -146,6 +165,19 @@ void GlReconstructor::compose(const FrameInputs& inputs, DiminishedFrame& result
     r.timer.read(passes_);
   }
   r.compositor->read(inputs, r.upload, result);
+}
+
+/// After the upload has packed the frame.
+void GlReconstructor::prepare_blending() {
+  Resources& r = *resources_;
+  if (!r.upload.blends()) return;
+  if (!r.blending) {
+    const Current current(context_);
+    r.blending.emplace(rig_, r.rasterizer->seen_files());
+    r.result.second.reserve(pixels_of(rig_.color.bounds()) * sizeof(SecondPixel));
+    context_.check("making the blending's programs and buffers");
+  }
+  r.blending->pack(r.upload);
 }
 
 void GlReconstructor::draw(const Rect& region) {
@@ -171,7 +203,8 @@ void GlReconstructor::draw(const Rect& region) {
   });
   r.rasterizer->draw(r.upload, region, r.work, r.timer);
   r.rasterizer->bind_seen();
-  r.result.bind(7);
+  r.result.first.bind(7);
+  r.result.second.bind(0);
   r.timer.measure("merge", [&] {
     for (int k = 0; k < cameras && cameras > 1; ++k) {
       r.upload.bind_camera(k);
@@ -191,6 +224,7 @@ void GlReconstructor::draw(const Rect& region) {
     dispatch();
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   });
+  if (r.upload.blends()) r.blending->run(r.upload, region, r.work, r.timer);
   r.timer.measure("color", [&] {
     r.color.use();
     for (int k = 0; k < cameras; ++k) {

@@ -25,7 +25,8 @@ class Rasterizer {
  public:
   virtual ~Rasterizer() = default;
 
-  /// The files that define inverse_z_at() and seen_color() for the passes that follow.
+  /// The files that define inverse_z_at(), seen_place() and seen_color() for the passes that
+  /// follow.
   virtual std::vector<std::string> seen_files() const = 0;
   /// Finds what the cameras see, in the frame that is bound. work: a WorkBlock for each of them,
   /// with nothing in it.
@@ -35,8 +36,8 @@ class Rasterizer {
   virtual void bind_seen() const = 0;
 };
 
-/// The frame around a Rasterizer: one upload, the cameras merged by layers.h's rule, where it is
-/// asked for the way to the picture (FrameCompositor), one download.
+/// The frame around a Rasterizer: one upload, the cameras merged or blended by layers.h's rules,
+/// where it is asked for the way to the picture (FrameCompositor), one download.
 class GlReconstructor : public ComposingReconstructor {
  public:
   using MakeRasterizer =
@@ -57,6 +58,7 @@ class GlReconstructor : public ComposingReconstructor {
  private:
   struct Resources;
 
+  void prepare_blending();
   void draw(const Rect& region);
 
   Rig rig_;

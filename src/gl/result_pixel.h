@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "diminish/reconstruction.h"
+#include "gl/buffer.h"
 #include "gl/frame_upload.h"
 
 namespace diminish::gl {
@@ -15,11 +16,28 @@ struct ResultPixel {
   float depth_m;
 };
 
+/// What a second camera shows of the same surface, where cameras are blended.
+struct SecondPixel {
+  std::uint8_t b, g, r;
+  std::uint8_t place;   ///< as above; 0: there is none
+  std::uint32_t share;  ///< SecondView::share
+};
+
+static_assert(sizeof(ResultPixel) == 8 && sizeof(SecondPixel) == 8);
+
+/// Both of the region's pixels.
+struct ResultBuffers {
+  Buffer first;   ///< ResultPixels
+  Buffer second;  ///< SecondPixels; of no meaning where the upload does not blend
+};
+
 inline std::size_t pixels_of(const Rect& region) {
   return static_cast<std::size_t>(region.width) * static_cast<std::size_t>(region.height);
 }
 
-/// Writes colour, depth and source of the reconstruction's region. upload: of this frame.
-void unpack(const ResultPixel* pixel, const FrameUpload& upload, Reconstruction& reconstruction);
+/// Writes colour, depth and source of the reconstruction's region; where the upload blends a second
+/// view's, too, whose images have their size. upload: of this frame.
+void unpack(const ResultPixel* pixel, const SecondPixel* second, const FrameUpload& upload,
+            Reconstruction& reconstruction);
 
 }  // namespace diminish::gl

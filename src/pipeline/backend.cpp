@@ -27,14 +27,6 @@ bool gpu_is_there() {
 #endif
 }
 
-std::size_t cameras_in(const FrameSet& frame, const Poses& poses) {
-  std::size_t count = 0;
-  for (std::size_t k = 0; k < frame.rgbd.size(); ++k) {
-    count += frame.rgbd[k].available() && poses.color_from_depth[k] ? 1U : 0U;
-  }
-  return count;
-}
-
 }  // namespace
 
 void Backend::choose(const std::string& name) {
@@ -62,14 +54,6 @@ void Backend::give_up(const Error& error, Reconstruction& reconstruction) {
   message_ = std::string(error.what()) + "; drawn by the processor instead";
 }
 
-void Backend::note_what_is_not_done(const FrameSet& frame, const Poses& poses,
-                                    const Options& options, const DrawingReport& report) {
-  const bool is_gpu = !report.device.empty();
-  if (is_gpu && options.merge_cameras == "blend" && cameras_in(frame, poses) > 1) {
-    message_ = "merge_cameras: only the processor blends; the GPU chooses";
-  }
-}
-
 Reach Backend::reach(const Options& options) {
   try {
     const auto* composing = dynamic_cast<const ComposingReconstructor*>(&chosen());
@@ -89,7 +73,6 @@ Reach Backend::compose(const FrameInputs& inputs, DiminishedFrame& result) {
     report.device = composing.device();
     report.passes = composing.gpu_passes();
     report.milliseconds = milliseconds_since(start);
-    note_what_is_not_done(inputs.frame, inputs.poses, inputs.options, report);
     return composing.reach(inputs.options);
   } catch (const Error& error) {
     give_up(error, result.reconstruction);
@@ -107,18 +90,15 @@ void Backend::reconstruct(const FrameSet& frame, const DepthImages& depths, cons
     report.device = reconstructor.device();
     report.passes = reconstructor.gpu_passes();
   };
-  bool is_drawn = false;
   if (message_.empty()) {
     try {
       draw_by(chosen());
-      is_drawn = true;
-      note_what_is_not_done(frame, poses, options, report);
     } catch (const Error& error) {
       if (name_ == on_processor) throw;
       give_up(error, reconstruction);
     }
   }
-  if (!is_drawn) draw_by(processor());
+  if (!message_.empty()) draw_by(processor());
   report.milliseconds = milliseconds_since(start);
 }
 

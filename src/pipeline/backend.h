@@ -29,16 +29,13 @@ class Backend {
   void reconstruct(const FrameSet& frame, const DepthImages& depths, const Poses& poses,
                    const OcclusionMasks& masks, const TiledRegion& region, const Options& options,
                    Reconstruction& reconstruction, DrawingReport& report);
-  /// Why the frame was not drawn by the chosen backend, or not as the options say; empty where it
-  /// was.
+  /// Why the frame was not drawn by the chosen backend; empty where it was.
   const std::string& message() const { return message_; }
 
  private:
   Reconstructor& chosen();
   Reconstructor& processor();
   void give_up(const Error& error, Reconstruction& reconstruction);
-  void note_what_is_not_done(const FrameSet& frame, const Poses& poses, const Options& options,
-                             const DrawingReport& report);
 
   Rig rig_;
   std::string name_;

@@ -146,7 +146,6 @@ class WholeFrames : public ::testing::TestWithParam<const char*> {
   DiminishedFrame expected, result;
 
   void process_both(Options options) {
-    options.merge_cameras = "choose";
     Options on_gpu = options;
     on_gpu.backend = "gl";
     by_processor.set_options(options);
@@ -280,30 +279,6 @@ TEST(WholeFrame, WithoutObjectsOrRgbdCamerasIsTheGpusToo) {
   pipeline.process(frame, result);
   EXPECT_EQ(result.picture, frame.color);
   EXPECT_EQ(result.report.mask_pixels, 0U);
-}
-
-TEST(Backend, TheGpuSaysThatItDoesNotBlend) {
-  for (const std::size_t cameras : {1, 2}) {
-    const std::vector<Eigen::Vector3d> eyes = {{-0.45, 0.3, 0.9}, {0.5, 0.3, 0.9}};
-    const testing::AnalyticFrame scene(testing::AnalyticScene{},
-                                       {eyes.begin(), eyes.begin() + cameras});
-    Backend backend(scene.rig);
-    backend.choose("gl");
-    Reconstruction reconstruction;
-    DrawingReport report;
-    Options options;
-    const auto message = [&] {
-      backend.begin_frame();
-      backend.reconstruct(scene.frame, testing::depths_of(scene.frame), scene.poses,
-                          testing::empty_masks(scene.rig), scene.rig.color.bounds(), options,
-                          reconstruction, report);
-      return backend.message();
-    };
-    EXPECT_EQ(message().empty(), cameras == 1);
-    EXPECT_TRUE(reconstruction.second.share.empty());
-    options.merge_cameras = "choose";
-    EXPECT_EQ(message(), "");
-  }
 }
 
 #endif

@@ -6,10 +6,6 @@
 namespace diminish {
 namespace {
 
-/// Stands for a cell that is not covered: a sum with one of them is negative.
-constexpr float not_covered = -1e6F;
-constexpr float most_resolution = 4;
-
 /// Sums of 2 * reach + 1 neighbours along rows, then along columns, each neighbour with its weight.
 /// Beyond the border the last value goes on.
 template <std::size_t reach>
@@ -78,7 +74,7 @@ void ConfidenceGrid::finish(std::size_t which, const CameraPlace& place) {
   constexpr float mean = 1.F / (2 * reach + 1);
   filter<reach>({mean, mean, mean, mean, mean}, camera.confidence, camera.scratch);
   trust(camera, place);
-  filter<1>({0.25F, 0.5F, 0.25F}, camera.confidence, camera.scratch);
+  filter<1>(smoothing, camera.confidence, camera.scratch);
 }
 
 void ConfidenceGrid::trust(Camera& camera, const CameraPlace& place) const {

@@ -31,6 +31,12 @@ class ConfidenceGrid {
   static constexpr float least_resolution = 1e-4F;
   /// Of the angle, radians: below this smaller ones are not much better.
   static constexpr float least_angle = 0.05F;
+  /// More pixels than these do not help a mean, either.
+  static constexpr float most_resolution = 4;
+  /// Stands for the resolution of a cell that is not covered: a mean with one of them is negative.
+  static constexpr float not_covered = -1e6F;
+  /// Of a cell and its neighbours along rows and columns, in the final means.
+  static constexpr float smoothing[3] = {0.25F, 0.5F, 0.25F};
 
   void begin(const Rect& region, const Intrinsics& color, std::size_t cameras);
 

@@ -26,6 +26,7 @@ layout(std140, binding = 2) uniform Composition {
   uint missing_code;         // the provenance of what no camera sees
   uint rim_px;
   float opacity;             // of the object, in the mode half
+  bool mixes_second;
   ColorMap maps[MOST_CAMERAS];  // by place among the cameras that take part
 };
 
@@ -40,6 +41,9 @@ layout(std430, binding = 3) buffer Distances { uint distances[]; };
 // The reconstruction: colour, with the camera's place among those that take part, from 1 on, in the
 // highest byte (0: nothing was seen), and z as a float's bits.
 layout(std430, binding = 7) readonly buffer Result { uvec2 result[]; };
+
+// What a second camera shows, where cameras are blended: likewise, and its share in 1/255.
+layout(std430, binding = 6) readonly buffer Second { uvec2 second[]; };
 
 const uint color_bits = 0xFFFFFFu;
 

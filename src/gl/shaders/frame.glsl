@@ -19,6 +19,7 @@ layout(std140, binding = 0) uniform Frame {
   // The region's tiles: first column, first row, columns, place in `words`; 0 columns: all are kept.
   ivec3 tiles;
   uint tiles_at;
+  uint most_blended;  // if no more cameras than these see something, they are blended; 0: one is chosen
 };
 
 // The RGB-D camera whose turn it is.

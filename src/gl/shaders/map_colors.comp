@@ -20,6 +20,12 @@ void main() {
   int index = index_of(place);
   uint seen = result[index].x;
   if (seen <= color_bits || !is_object(index)) return;
-  picture[index] = word_of_channels(
-      mapped((seen >> 24) - 1u, levels_of(seen), region.xy + place) + correction(place));
+  vec3 added = correction(place);
+  uint color = word_of_channels(mapped_color(seen, region.xy + place) + added);
+  if (mixes_second && second[index].y > 0u) {
+    uint other = word_of_channels(mapped_color(second[index].x, region.xy + place) + added);
+    color = word_of_channels(
+        mix(vec3(levels_of(color)), vec3(levels_of(other)), second_share(index)));
+  }
+  picture[index] = color;
 }

@@ -17,8 +17,11 @@ void main() {
     uint seen = result[index].x;
     uint camera = camera_word(index);
     if (camera > color_bits || seen <= color_bits) continue;
-    vec3 difference = vec3(levels_of(camera)) -
-                      mapped((seen >> 24) - 1u, levels_of(seen), region.xy + place);
+    vec3 own = mapped_color(seen, region.xy + place);
+    if (mixes_second && second[index].y > 0u) {
+      own = mix(own, mapped_color(second[index].x, region.xy + place), second_share(index));
+    }
+    vec3 difference = vec3(levels_of(camera)) - own;
     vec3 relative = difference / LARGEST_DIFFERENCE;
     vec3 shares = max(1.0 - relative * relative, 0.0);
     float product = shares.x * shares.y * shares.z;

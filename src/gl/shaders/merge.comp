@@ -1,5 +1,5 @@
-// Merges what several cameras show, by the rule of merge_layers (layers.cpp). One pixel of the region
-// each.
+// Merges what several cameras show, by the rule of merge_layers (layers.cpp), where they are not
+// blended. One pixel of the region each.
 
 layout(local_size_x = 64) in;
 
@@ -9,7 +9,7 @@ layout(std430, binding = 7) writeonly buffer Result { uvec2 result[]; };
 
 void main() {
   ivec2 place = ivec2(gl_GlobalInvocationID.xy);
-  if (place.x >= region.z) return;
+  if (place.x >= region.z || works[0].blended > 0u) return;
   int index = place.y * region.z + place.x;
   ivec2 pixel = region.xy + place;
   float nearest = 0.0;

@@ -1,10 +1,12 @@
-// In which order cameras are merged: the one that sees most of the region first (layers.cpp).
+// In which order cameras are merged: the one that sees most of the region first (layers.cpp). And
+// whether they are blended.
 
 layout(local_size_x = 1) in;
 
 layout(std430, binding = 1) buffer AllWork { Work works[]; };
 
 void main() {
+  uint seeing = 0u;
   for (uint camera = 0u; camera < camera_count; ++camera) {
     uint place = camera;
     for (; place > 0u; --place) {
@@ -13,5 +15,7 @@ void main() {
       works[place].turn = before;
     }
     works[place].turn = camera;
+    if (works[camera].drawn_pixels > 0u) ++seeing;
   }
+  works[0].blended = seeing > 1u && seeing <= most_blended ? seeing : 0u;
 }

@@ -5,8 +5,8 @@ uint inverse_z_at(uint which, ivec2 pixel) {
   return is_kept(pixel) ? layers[layer_index(which, pixel)] : 0u;
 }
 
-// Of the camera whose turn it is.
-uint seen_color(ivec2 pixel, float z) {
+// Of the camera whose turn it is: where in its colour image a pixel that it sees is.
+vec2 seen_place(ivec2 pixel, float z) {
   uint id = layers[layer_index(layer, pixel) + 1u];
   uvec3 corners = corners_of(id);
   ivec4 a = position_of(corners.x);
@@ -18,7 +18,9 @@ uint seen_color(ivec2 pixel, float z) {
   float scale = 1.0 / cross_product(b.xy - a.xy, c.xy - a.xy);
   vec3 weights;
   inverse_z_from(edges, scale, vec3(inverse_z_of(a), inverse_z_of(b), inverse_z_of(c)), weights);
-  vec2 place = (weights.x * place_of(corners.x) + weights.y * place_of(corners.y) +
-                weights.z * place_of(corners.z)) * z;
-  return sample_bilinear(place);
+  return (weights.x * place_of(corners.x) + weights.y * place_of(corners.y) +
+          weights.z * place_of(corners.z)) * z;
 }
+
+// Likewise: its colour there.
+uint seen_color(ivec2 pixel, float z) { return sample_bilinear(seen_place(pixel, z)); }

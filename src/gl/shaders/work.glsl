@@ -7,7 +7,8 @@ struct Work {
   uint large_count;
   uint drawn_pixels;
   uint turn;  // the i-th: which camera is merged in the i-th turn
-  uint padding[54];
+  uint blended;  // of the first: how many cameras are blended, in their turns; 0: one is chosen
+  uint padding[53];
 };
 
 // Of the camera whose turn it is.
