@@ -71,6 +71,10 @@ class Composition : public ::testing::Test, protected testing::LitWall {
     Reconstruction& made = expected.reconstruction;
     clear_outside(frame.rig.color, region, made);
     made.samples = samples;
+    resize_second(true, frame.rig.color, made.second);
+    made.second.share.fill(0);
+    made.second.color.fill({});
+    made.second.source.fill(0);
     const Lens lens(rig.color);
     for (int y = region.y; y < region.bottom(); ++y) {
       for (int x = region.x; x < region.right(); ++x) {
@@ -85,6 +89,10 @@ class Composition : public ::testing::Test, protected testing::LitWall {
         };
         const double gain = made.source(x, y) == 1 ? 0.8 : 1.2;
         made.color(x, y) = {dyed(seen.b, gain), dyed(seen.g, 0.9), dyed(seen.r, 1 / gain), 255};
+        if ((x / 41 + y / 37) % 3 == 0) continue;
+        made.second.color(x, y) = {dyed(seen.b, 1), dyed(seen.g, gain), dyed(seen.r, 1), 255};
+        made.second.source(x, y) = static_cast<std::uint8_t>(3 - made.source(x, y));
+        made.second.share(x, y) = static_cast<std::uint8_t>(1 + random() % 128);
       }
     }
   }
@@ -99,6 +107,19 @@ class Composition : public ::testing::Test, protected testing::LitWall {
       made.light.resize(0, 0);
     }
     compositor.composite(frame.frame.color, masks, options, expected);
+  }
+
+  template <class Pixel, class PixelAt>
+  void send(gl::Buffer& buffer, const PixelAt& pixel_at) {
+    const std::size_t bytes = gl::pixels_of(region) * sizeof(Pixel);
+    gl::MappedBuffer staging(gl::MappedBuffer::Use::upload);
+    buffer.reserve(bytes);
+    staging.reserve(bytes);
+    auto* pixel = reinterpret_cast<Pixel*>(staging.data());
+    for (int y = region.y; y < region.bottom(); ++y) {
+      for (int x = region.x; x < region.right(); ++x) *pixel++ = pixel_at(x, y);
+    }
+    gl::copy(staging.name(), buffer.name(), bytes);
   }
 
   void compose_on_gpu(bool with_shadows) {
@@ -116,6 +137,8 @@ class Composition : public ::testing::Test, protected testing::LitWall {
     result.picture = camera;
     result.provenance.resize(camera.width(), camera.height(), provenance::camera);
     clear_outside(frame.rig.color, region, result.reconstruction);
+    resize_second(!expected.reconstruction.second.share.empty(), frame.rig.color,
+                  result.reconstruction.second);
     const gl::Current current(context);
     if (!on_gpu) {
       on_gpu.emplace(frame.rig);
@@ -125,19 +148,19 @@ class Composition : public ::testing::Test, protected testing::LitWall {
     on_gpu->pack(inputs, *upload);
     upload->send();
     gl::ResultBuffers reconstruction;
-    gl::MappedBuffer staging(gl::MappedBuffer::Use::upload);
-    const std::size_t bytes = gl::pixels_of(region) * sizeof(gl::ResultPixel);
-    reconstruction.first.reserve(bytes);
-    staging.reserve(bytes);
-    auto* pixel = reinterpret_cast<gl::ResultPixel*>(staging.data());
     const Reconstruction& made = expected.reconstruction;
-    for (int y = region.y; y < region.bottom(); ++y) {
-      for (int x = region.x; x < region.right(); ++x) {
-        const Bgra& color = made.color(x, y);
-        *pixel++ = {color.b, color.g, color.r, made.source(x, y), made.depth_m(x, y)};
-      }
+    const SecondView& second = made.second;
+    send<gl::ResultPixel>(reconstruction.first, [&](int x, int y) -> gl::ResultPixel {
+      const Bgra& color = made.color(x, y);
+      return {color.b, color.g, color.r, made.source(x, y), made.depth_m(x, y)};
+    });
+    ASSERT_EQ(upload->blends(), !second.share.empty());
+    if (upload->blends()) {
+      send<gl::SecondPixel>(reconstruction.second, [&](int x, int y) -> gl::SecondPixel {
+        const Bgra& color = second.color(x, y);
+        return {color.b, color.g, color.r, second.source(x, y), second.share(x, y)};
+      });
     }
-    gl::copy(staging.name(), reconstruction.first.name(), bytes);
     gl::PassTimer timer(true);
     timer.begin_frame();
     on_gpu->run(inputs, *upload, reconstruction, timer);
@@ -197,6 +220,9 @@ TEST_F(Composition, LabelsAndLightAreTheProcessors) {
   EXPECT_EQ(a.color, b.color);
   EXPECT_EQ(a.depth_m, b.depth_m);
   EXPECT_EQ(a.source, b.source);
+  EXPECT_EQ(a.second.color, b.second.color);
+  EXPECT_EQ(a.second.source, b.second.source);
+  EXPECT_EQ(a.second.share, b.second.share);
   std::size_t other_labels = 0;
   std::size_t by_label[256] = {};
   std::size_t shaded = 0;

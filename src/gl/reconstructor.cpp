@@ -65,6 +65,8 @@ struct GlReconstructor::Resources {
         color(compute_program(files(*rasterizer, "color.comp"))),
         timer(context.driver().software) {
     work.reserve(std::max<std::size_t>(rig.rgbd.size(), 1) * sizeof(WorkBlock));
+    // Bound also where nothing is blended.
+    result.second.reserve(sizeof(SecondPixel));
     result.first.reserve(pixels_of(rig.color.bounds()) * sizeof(ResultPixel));
   }
 

@@ -1,11 +1,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdlib>
 
 #include "first_frame.h"
+#include "mixed_color.h"
 #include "picture_difference.h"
 
 namespace diminish {
@@ -54,14 +54,6 @@ void expect_same(const Reconstruction& fast, const Reconstruction& plain) {
 /// Where several cameras are blended, rounding decides now and then which cells a camera covers.
 void expect_nearly_same_blend(const Reconstruction& fast, const Reconstruction& plain) {
   const Rect& region = plain.region;
-  const auto mixed = [](const Reconstruction& r, int x, int y) {
-    const auto mix = [&](int first, int second) {
-      return first + (second - first) * r.second.share(x, y) / 255;
-    };
-    const Bgra& a = r.color(x, y);
-    const Bgra& b = r.second.color(x, y);
-    return std::array<int, 3>{mix(a.b, b.b), mix(a.g, b.g), mix(a.r, b.r)};
-  };
   std::size_t drawn = 0;
   std::size_t blended = 0;
   std::size_t others = 0;
@@ -69,11 +61,9 @@ void expect_nearly_same_blend(const Reconstruction& fast, const Reconstruction& 
     for (int x = region.x; x < region.right(); ++x) {
       drawn += plain.color(x, y).a != 0 ? 1U : 0U;
       blended += plain.second.share(x, y) != 0 ? 1U : 0U;
-      const auto a = mixed(fast, x, y);
-      const auto b = mixed(plain, x, y);
-      bool same = fast.color(x, y).a == plain.color(x, y).a;
-      for (std::size_t c = 0; c < 3; ++c) same = same && std::abs(a[c] - b[c]) <= 2;
-      others += same ? 0U : 1U;
+      const Bgra a = testing::mixed_color(fast, x, y);
+      const Bgra b = testing::mixed_color(plain, x, y);
+      others += a.a != b.a || testing::difference(a, b) > 2 ? 1U : 0U;
     }
   }
   EXPECT_GT(blended, drawn / 10);
