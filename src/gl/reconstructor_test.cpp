@@ -91,11 +91,6 @@ TEST_P(GlOnRecordings, DrawsWhatThePlainVersionDraws) {
         first.reconstruct(*plain, region, b);
         ASSERT_EQ(a.region, region);
         const Difference difference = compare(a, b);
-        std::printf(
-            "DIFF %s %s masked %d: drawn %zu alpha %zu color %zu source %zu blended %zu depth %g\n",
-            GetParam().backend, merge, masked, difference.drawn, difference.other_alpha,
-            difference.other_color, difference.other_source, difference.blended,
-            difference.worst_depth);
         RecordProperty("other_alpha", static_cast<int>(difference.other_alpha));
         RecordProperty("other_color", static_cast<int>(difference.other_color));
         EXPECT_GT(difference.drawn, difference.pixels / 4);

@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "reconstruct/clear_outside.h"
+
 namespace diminish::gl {
 
 void unpack(const ResultPixel* pixel, const SecondPixel* second, const FrameUpload& upload,
@@ -23,6 +25,7 @@ void unpack(const ResultPixel* pixel, const SecondPixel* second, const FrameUplo
     }
   }
   SecondView& view = reconstruction.second;
+  bool any = false;
   for (int y = region.y; upload.blends() && y < region.bottom(); ++y) {
     Bgra* const color = view.color.row(y) + region.x;
     std::uint8_t* const source = view.source.row(y) + region.x;
@@ -32,8 +35,10 @@ void unpack(const ResultPixel* pixel, const SecondPixel* second, const FrameUplo
       color[x] = {second->b, second->g, second->r, alpha};
       source[x] = sources[second->place];
       share[x] = static_cast<std::uint8_t>(second->share);
+      any = any || second->share != 0;
     }
   }
+  if (!any) resize_second(false, {}, view);
 }
 
 }  // namespace diminish::gl

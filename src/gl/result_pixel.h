@@ -35,8 +35,9 @@ inline std::size_t pixels_of(const Rect& region) {
   return static_cast<std::size_t>(region.width) * static_cast<std::size_t>(region.height);
 }
 
-/// Writes colour, depth and source of the reconstruction's region; where the upload blends a second
-/// view's, too, whose images have their size. upload: of this frame.
+/// Writes colour, depth and source of the reconstruction's region. Where the upload blends the
+/// second view's, too, whose images have their size; it becomes empty if it is so in all pixels.
+/// upload: of this frame.
 void unpack(const ResultPixel* pixel, const SecondPixel* second, const FrameUpload& upload,
             Reconstruction& reconstruction);
 
