@@ -26,7 +26,7 @@ std::string blending_rules() {
 Program pass(const std::vector<std::string>& seen_files, const char* last) {
   std::vector<std::string> files = {"frame.glsl", "sdct.glsl", "texture.glsl", "work.glsl"};
   files.insert(files.end(), seen_files.begin(), seen_files.end());
-  files.insert(files.end(), {"blending.glsl", last});
+  files.insert(files.end(), {"seen.glsl", "blending.glsl", last});
   return compute_program(std::move(files), blending_rules());
 }
 

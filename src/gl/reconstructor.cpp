@@ -15,7 +15,7 @@ namespace {
 std::vector<std::string> files(const Rasterizer& rasterizer, const char* last) {
   std::vector<std::string> names = {"frame.glsl", "sdct.glsl", "texture.glsl", "work.glsl"};
   for (std::string& name : rasterizer.seen_files()) names.push_back(std::move(name));
-  names.emplace_back(last);
+  names.insert(names.end(), {"seen.glsl", last});
   return names;
 }
 

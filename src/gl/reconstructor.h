@@ -25,7 +25,7 @@ class Rasterizer {
  public:
   virtual ~Rasterizer() = default;
 
-  /// The files that define inverse_z_at(), seen_place() and seen_color() for the passes that
+  /// The files that define kept_inverse_z_at(), seen_place() and seen_color() for the passes that
   /// follow.
   virtual std::vector<std::string> seen_files() const = 0;
   /// Finds what the cameras see, in the frame that is bound. work: a WorkBlock for each of them,

@@ -11,7 +11,9 @@ bool is_covered(uint turn, ivec2 first, ivec2 end) {
   return true;
 }
 
-float z_at(ivec2 place) { return 1.0 / uintBitsToFloat(inverse_z_at(layer, region.xy + place)); }
+float z_at(ivec2 place) {
+  return 1.0 / uintBitsToFloat(kept_inverse_z_at(layer, region.xy + place));
+}
 vec2 texture_at(ivec2 place) { return seen_place(region.xy + place, z_at(place)); }
 
 void main() {

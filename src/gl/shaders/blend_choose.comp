@@ -54,7 +54,7 @@ void main() {
     uint share = uint(roundEven(255.0 * part));
     if (share > 0u) second[index] = uvec2(place_of_turn(turns[1]), share);
   }
-  uint inverse_z = inverse_z_at(works[turns[0]].turn, region.xy + place);
+  uint inverse_z = kept_inverse_z_at(works[turns[0]].turn, region.xy + place);
   result[index] =
       uvec2(place_of_turn(turns[0]), floatBitsToUint(1.0 / uintBitsToFloat(inverse_z)));
 }

@@ -2,65 +2,69 @@
 
 layout(local_size_x = 64) in;
 
-const float beyond_m = 1e9;  // the depth of nothing
-
-struct Surface {
-  float z_m, noise_m;
-};
-
-Surface surface_of(uint turn, ivec2 pixel) {
-  uint camera = works[turn].turn;
-  uint inverse_z = inverse_z_at(camera, pixel);
-  if (inverse_z == 0u) return Surface(beyond_m, 0.0);
-  float z_m = 1.0 / uintBitsToFloat(inverse_z);
-  CameraPlace place = camera_places[camera];
-  float depth_m = dot(place.forward.xyz, z_m * pinhole_ray(vec2(pixel)) - place.eye_m.xyz);
-  return Surface(z_m, DEPTH_NOISE.x + DEPTH_NOISE.y * depth_m * depth_m);
+// 1 / z of what a turn's camera shows of a pixel of the region; 0: nothing.
+float inverse_z_in_turn(uint turn, ivec2 pixel) {
+  return uintBitsToFloat(kept_inverse_z_at(works[turn].turn, pixel));
 }
 
-float tolerance_m(Surface a, Surface b) { return max(agreement_m, a.noise_m + b.noise_m); }
+float noise_m(uint turn, ivec2 pixel, float z_m) {
+  CameraPlace place = camera_places[works[turn].turn];
+  float depth_m = dot(place.forward.xyz, z_m * pinhole_ray(vec2(pixel)) - place.eye_m.xyz);
+  return DEPTH_NOISE.x + DEPTH_NOISE.y * depth_m * depth_m;
+}
 
 // A bit for each. left_out: likewise, those that do not count. there: those that see anything.
 uint cameras_of_nearest(ivec2 pixel, uint left_out, out uint there) {
-  Surface nearest = Surface(beyond_m, 0.0);
   there = 0u;
+  uint front = 0u;
+  float nearest = 0.0;
   for (uint turn = 0u; turn < blended_cameras(); ++turn) {
-    Surface surface = surface_of(turn, pixel);
-    if (surface.z_m == beyond_m || (left_out >> turn & 1u) != 0u) continue;
+    float inverse_z = inverse_z_in_turn(turn, pixel);
+    if (inverse_z == 0.0 || (left_out >> turn & 1u) != 0u) continue;
     there |= 1u << turn;
-    if (surface.z_m < nearest.z_m) nearest = surface;
+    if (inverse_z > nearest) {
+      nearest = inverse_z;
+      front = turn;
+    }
   }
-  uint seen = 0u;
-  for (uint turn = 0u; turn < blended_cameras(); ++turn) {
-    if ((there >> turn & 1u) == 0u) continue;
-    Surface surface = surface_of(turn, pixel);
-    if (surface.z_m - nearest.z_m <= tolerance_m(surface, nearest)) seen |= 1u << turn;
+  if (bitCount(there) < 2) return there;
+  float front_z_m = 1.0 / nearest;
+  float front_noise_m = noise_m(front, pixel, front_z_m);
+  uint seen = 1u << front;
+  for (uint others = there & ~seen; others != 0u; others &= others - 1u) {
+    uint turn = uint(findLSB(others));
+    float z_m = 1.0 / inverse_z_in_turn(turn, pixel);
+    float tolerance_m = max(agreement_m, noise_m(turn, pixel, z_m) + front_noise_m);
+    if (z_m - front_z_m <= tolerance_m) seen |= 1u << turn;
   }
   return seen;
 }
 
 bool is_sliver(uint turn, ivec2 pixel) {
-  Surface own = surface_of(turn, pixel);
-  float tolerance = tolerance_m(own, own);
+  float z_m = 1.0 / inverse_z_in_turn(turn, pixel);
+  float tolerance_m = max(agreement_m, 2.0 * noise_m(turn, pixel, z_m));
   ivec2 first = max(pixel - WINDOW_REACH, region.xy);
   ivec2 last = min(pixel + WINDOW_REACH, region.xy + region.zw - 1);
+  ivec2 side = last - first + 1;
+  float enough = LEAST_PART * float(side.x * side.y);
+  uint camera = works[turn].turn;
   int same = 0;
   for (int y = first.y; y <= last.y; ++y) {
     for (int x = first.x; x <= last.x; ++x) {
-      float inverse_z = uintBitsToFloat(inverse_z_at(works[turn].turn, ivec2(x, y)));
-      if (inverse_z * (own.z_m + tolerance) > 1.0 && inverse_z * (own.z_m - tolerance) < 1.0) ++same;
+      float inverse_z = uintBitsToFloat(inverse_z_at(camera, ivec2(x, y)));
+      if (inverse_z * (z_m + tolerance_m) > 1.0 && inverse_z * (z_m - tolerance_m) < 1.0) ++same;
     }
+    if (float(same) >= enough) return false;
   }
-  ivec2 side = last - first + 1;
-  return float(same) < LEAST_PART * float(side.x * side.y);
+  return true;
 }
 
 void main() {
   ivec2 place = ivec2(gl_GlobalInvocationID.xy);
   if (place.x >= region.z || blended_cameras() == 0u) return;
   ivec2 pixel = region.xy + place;
-  uint there;
-  uint seen = cameras_of_nearest(pixel, 0u, there);
+  uint there = 0u;
+  uint seen = is_kept(pixel) ? cameras_of_nearest(pixel, 0u, there) : 0u;
   bool is_lone = bitCount(seen) == 1 && bitCount(there) > 1;
   // What is behind it is now seen.
   if (is_lone && is_sliver(uint(findLSB(seen)), pixel)) {

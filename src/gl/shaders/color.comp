@@ -16,7 +16,7 @@ void main() {
   bool is_second = most_blended > 0u && second[index].x == own;
   if (!is_first && !is_second) return;
   ivec2 pixel = region.xy + place;
-  uint seen = own | seen_color(pixel, 1.0 / uintBitsToFloat(inverse_z_at(layer, pixel)));
+  uint seen = own | seen_color(pixel, 1.0 / uintBitsToFloat(kept_inverse_z_at(layer, pixel)));
   if (is_first) result[index].x = seen;
   if (is_second) second[index].x = seen;
 }

@@ -2,9 +2,9 @@
 
 layout(binding = 0) uniform usampler2DArray seen;
 
-// 1 / z as a float's bits; 0: the camera sees nothing of the region.
-uint inverse_z_at(uint which, ivec2 pixel) {
-  return is_kept(pixel) ? texelFetch(seen, ivec3(pixel, which), 0).y : 0u;
+// 1 / z as a float's bits, 0: the camera sees nothing. Of a pixel that belongs to the region.
+uint kept_inverse_z_at(uint which, ivec2 pixel) {
+  return texelFetch(seen, ivec3(pixel, which), 0).y;
 }
 
 // The ray (x, y, 1) of a pixel of the colour camera. Its lens undistorts it by fixed-point iteration.

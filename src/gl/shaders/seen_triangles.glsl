@@ -1,9 +1,7 @@
 // What draw_small and draw_large have found: looks up the one triangle that is seen.
 
-// 1 / z as a float's bits; 0: the camera sees nothing of the region.
-uint inverse_z_at(uint which, ivec2 pixel) {
-  return is_kept(pixel) ? layers[layer_index(which, pixel)] : 0u;
-}
+// 1 / z as a float's bits, 0: the camera sees nothing. Of a pixel that belongs to the region.
+uint kept_inverse_z_at(uint which, ivec2 pixel) { return layers[layer_index(which, pixel)]; }
 
 // Of the camera whose turn it is: where in its colour image a pixel that it sees is.
 vec2 seen_place(ivec2 pixel, float z) {
