@@ -158,8 +158,7 @@ void FrameCompositor::pack(const FrameInputs& inputs, FrameUpload& upload) {
 void FrameCompositor::bind(const FrameUpload& upload, const ResultBuffers& reconstruction) const {
   upload.bind();
   upload.bind_block(2, block_begin_, sizeof(block_));
-  const Buffer* const buffers[] = {&picture_, &state_, &surface_, &distances_,
-                                   &counts_,  &nodes_, &values_};
+  const Buffer* const buffers[] = {&picture_, &state_, &surface_, &distances_, &counts_, &nodes_};
   for (GLuint i = 0; i < std::size(buffers); ++i) buffers[i]->bind(i);
   reconstruction.second.bind(6);
   reconstruction.first.bind(7);
@@ -217,6 +216,7 @@ void FrameCompositor::finish(const FrameInputs& inputs, const FrameUpload& uploa
   }
   if (inputs.options.smooth_colors) {
     timer.measure("smooth", [&] {
+      values_.bind(5);  // the membrane is done
       run_pass(smooth_guide_);
       run_pass(smooth_colors_);
     });

@@ -1,7 +1,7 @@
 // ColorSmoothing (color_smoothing.h): its guide takes the distances' place, before there are any.
 
 // The picture before smoothing.
-layout(std430, binding = 6) buffer Values { uint values[]; };
+layout(std430, binding = 5) buffer Values { uint values[]; };
 
 bool is_seen(ivec2 place) {
   if (!is_in_region(place)) return false;
