@@ -70,13 +70,14 @@ Eigen::Vector2d Lens::undistort(const Eigen::Vector2d& pixel) const {
     const double slope = k1 + r2 * (2 * k2 + r2 * 3 * k3);  // d radial / d r2
     const Eigen::Vector2d error(x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x) - target.x(),
                                 y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y - target.y());
-    if (error.squaredNorm() < 1e-20) break;
     Eigen::Matrix2d jacobian;
     jacobian << radial + 2 * x * x * slope + 2 * p1 * y + 6 * p2 * x,
         2 * x * y * slope + 2 * p1 * x + 2 * p2 * y,  //
         2 * x * y * slope + 2 * p1 * x + 2 * p2 * y,
         radial + 2 * y * y * slope + 6 * p1 * y + 2 * p2 * x;
     ray -= jacobian.inverse() * error;
+    // What is left after this step is of the order of the error's square.
+    if (error.squaredNorm() < 1e-10) break;
   }
   return ray;
 }
