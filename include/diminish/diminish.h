@@ -15,6 +15,7 @@
 #include "diminish/diminished_frame.h"
 #include "diminish/error.h"
 #include "diminish/frame_source.h"
+#include "diminish/gl_texture.h"
 #include "diminish/inpainter.h"
 #include "diminish/marker_detector.h"
 #include "diminish/occluder_detector.h"

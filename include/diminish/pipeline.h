@@ -1,9 +1,11 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "diminish/diminished_frame.h"
 #include "diminish/frame_set.h"
+#include "diminish/gl_texture.h"
 #include "diminish/options.h"
 #include "diminish/rig.h"
 #include "diminish/scene.h"
@@ -28,6 +30,16 @@ class Pipeline {
   /// Whether `result.reconstruction` is looked at: at first it is. Where a GPU does the whole
   /// frame, its images then stay there, and are empty in the result.
   void want_reconstruction(bool wanted);
+
+  /// From the next frame on, each picture goes into a texture that an application shares; nullopt:
+  /// no longer. Where a GPU does the whole frame, `result.picture` and `result.provenance` are then
+  /// empty: nothing but what is reported is read back. Where the processor does the picture it is
+  /// uploaded, and a message says so. Throws Error where diminish was built without OpenGL, or the
+  /// context cannot be shared. To be called again where the application's context was lost.
+  void want_texture(const std::optional<GlSharing>& application);
+  /// The last frame's picture. Without a name where it was skipped, or no texture is wanted, or the
+  /// GPU failed: a message says so then, and `result.picture` is there.
+  const GlTexture& texture() const;
 
   /// `result`'s memory is used again. Never throws for what a camera delivered: that is reported.
   void process(const FrameSet& frame, DiminishedFrame& result);

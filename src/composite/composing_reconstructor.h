@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "composite/color_map.h"
+#include "composite/texture_output.h"
 #include "diminish/diminished_frame.h"
 #include "diminish/reconstructor.h"
 #include "reconstruct/background_planes.h"
@@ -26,13 +27,14 @@ struct FrameInputs {
   const Poses& poses;
   const OcclusionMasks& masks;
   Rect objects;  ///< the objects' mask's bounding box
-  const TiledRegion&
-      region;  ///< holds it, and at least a pixel more on each side that is not the picture's
+  /// Holds it, and at least a pixel more on each side that is not the picture's.
+  const TiledRegion& region;
   const Options& options;
   const std::vector<BackgroundPlane>* planes;  ///< null: not looked for
   std::span<const CastShadows::Shadow> shadows;
   const std::vector<ColorMap>& color_maps;  ///< by Reconstruction::source
   bool wants_reconstruction;                ///< in the result
+  TextureOutput* texture = nullptr;         ///< where the picture goes; null: to the result
 };
 
 /// A backend that does not give the reconstruction away where it can go on with it.
@@ -44,6 +46,7 @@ class ComposingReconstructor : public Reconstructor {
   /// Does what Reconstructor::reconstruct and the Compositor do, as far as `reach`: fills picture,
   /// mask, provenance and pixel counts. The reconstruction (with surface and light) is filled where
   /// it is wanted or someone has to go on with it; else it has a region, and its images are empty.
+  /// So are picture and provenance where `reach` is the picture and that goes to a texture.
   /// Throws Error where the GPU fails.
   virtual void compose(const FrameInputs& inputs, DiminishedFrame& result) = 0;
 };

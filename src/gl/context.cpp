@@ -1,53 +1,17 @@
 #include "gl/context.h"
 
-#include <dlfcn.h>
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 
-#include <array>
-#include <optional>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include "diminish/error.h"
+#include "gl/display.h"
 
 namespace diminish::gl {
 namespace {
-
-constexpr int major_version = 4;
-constexpr int minor_version = 5;
-
-/// Whether a list of extensions, divided by spaces, names one.
-bool lists(const char* extensions, std::string_view name) {
-  std::string_view rest = extensions ? extensions : "";
-  while (!rest.empty()) {
-    const std::size_t end = std::min(rest.find(' '), rest.size());
-    if (rest.substr(0, end) == name) return true;
-    rest.remove_prefix(std::min(end + 1, rest.size()));
-  }
-  return false;
-}
-
-std::string_view egl_error_name(EGLint error) {
-  switch (error) {
-    case EGL_BAD_ALLOC:
-      return "EGL_BAD_ALLOC";
-    case EGL_BAD_ATTRIBUTE:
-      return "EGL_BAD_ATTRIBUTE";
-    case EGL_BAD_CONFIG:
-      return "EGL_BAD_CONFIG";
-    case EGL_BAD_MATCH:
-      return "EGL_BAD_MATCH";
-    case EGL_CONTEXT_LOST:
-      return "EGL_CONTEXT_LOST";
-    case EGL_NOT_INITIALIZED:
-      return "EGL_NOT_INITIALIZED";
-    default:
-      return "EGL error";
-  }
-}
 
 std::string_view gl_error_name(GLenum error) {
   switch (error) {
@@ -68,110 +32,6 @@ std::string_view gl_error_name(GLenum error) {
   }
 }
 
-/// libepoxy ends the program where there is no EGL library at all.
-void expect_egl_library() {
-  static void* const library = dlopen("libEGL.so.1", RTLD_LAZY | RTLD_GLOBAL);
-  if (!library) throw Error("gl: expected an EGL library (libEGL.so.1), there is none");
-}
-
-/// A place where contexts can be made.
-struct Display {
-  EGLDisplay display = EGL_NO_DISPLAY;
-  bool software = true;
-};
-
-/// True also where the platform does not say.
-bool draws_in_software(EGLDisplay display) {
-  if (!lists(eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS), "EGL_EXT_device_query")) return true;
-  EGLAttrib device = 0;
-  if (eglQueryDisplayAttribEXT(display, EGL_DEVICE_EXT, &device) != EGL_TRUE || device == 0) {
-    return true;
-  }
-  const char* extensions =
-      eglQueryDeviceStringEXT(reinterpret_cast<EGLDeviceEXT>(device), EGL_EXTENSIONS);
-  return !extensions || lists(extensions, "EGL_MESA_device_software");
-}
-
-EGLContext make_context(EGLDisplay display) {
-  const char* extensions = eglQueryString(display, EGL_EXTENSIONS);
-  if (!lists(extensions, "EGL_KHR_surfaceless_context") || eglBindAPI(EGL_OPENGL_API) != EGL_TRUE) {
-    return EGL_NO_CONTEXT;
-  }
-  EGLConfig config = EGL_NO_CONFIG_KHR;
-  if (!lists(extensions, "EGL_KHR_no_config_context")) {
-    constexpr std::array<EGLint, 5> wanted = {EGL_SURFACE_TYPE, 0, EGL_RENDERABLE_TYPE,
-                                              EGL_OPENGL_BIT, EGL_NONE};
-    EGLint count = 0;
-    if (eglChooseConfig(display, wanted.data(), &config, 1, &count) != EGL_TRUE || count == 0) {
-      return EGL_NO_CONTEXT;
-    }
-  }
-  std::vector<EGLint> attributes = {
-      EGL_CONTEXT_MAJOR_VERSION_KHR,   major_version,
-      EGL_CONTEXT_MINOR_VERSION_KHR,   minor_version,
-      EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT};
-  if (lists(extensions, "EGL_EXT_create_context_robustness")) {
-    attributes.insert(attributes.end(),
-                      {EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET});
-  }
-  attributes.push_back(EGL_NONE);
-  return eglCreateContext(display, config, EGL_NO_CONTEXT, attributes.data());
-}
-
-std::optional<Display> usable(EGLDisplay display) {
-  if (display == EGL_NO_DISPLAY || eglInitialize(display, nullptr, nullptr) != EGL_TRUE) return {};
-  const EGLContext context = make_context(display);
-  if (context == EGL_NO_CONTEXT) return {};
-  eglDestroyContext(display, context);
-  return Display{display, draws_in_software(display)};
-}
-
-/// The first display with a hardware driver, else the first.
-Display find_display() {
-  expect_egl_library();
-  const char* extensions = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
-  if (!lists(extensions, "EGL_EXT_platform_base")) {
-    throw Error("gl: expected an EGL library with EGL_EXT_platform_base, this one has it not");
-  }
-  std::optional<Display> found;
-  const auto consider = [&](EGLDisplay display) {
-    const std::optional<Display> other = usable(display);
-    if (other && (!found || (found->software && !other->software))) found = other;
-    return found && !found->software;
-  };
-  bool done = false;
-  if (lists(extensions, "EGL_MESA_platform_surfaceless")) {
-    done = consider(
-        eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr));
-  }
-  const bool has_devices =
-      lists(extensions, "EGL_EXT_platform_device") &&
-      (lists(extensions, "EGL_EXT_device_enumeration") || lists(extensions, "EGL_EXT_device_base"));
-  if (!done && has_devices) {
-    std::array<EGLDeviceEXT, 16> devices{};
-    EGLint count = 0;
-    if (eglQueryDevicesEXT(static_cast<EGLint>(devices.size()), devices.data(), &count) ==
-        EGL_TRUE) {
-      for (std::size_t i = 0; i < static_cast<std::size_t>(count) && !done; ++i) {
-        done = consider(eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, devices[i], nullptr));
-      }
-    }
-  }
-  if (!found) {
-    throw Error(
-        fmt::format("gl: expected a driver with OpenGL {}.{} core and surfaceless EGL "
-                    "contexts, found none",
-                    major_version, minor_version));
-  }
-  return *found;
-}
-
-/// Looked for once: displays belong to the process.
-const Display& chosen_display() {
-  static const Display display = find_display();
-  return display;
-}
-
 std::string text(GLenum name) {
   const GLubyte* value = glGetString(name);
   return value ? reinterpret_cast<const char*>(value) : "unknown";
@@ -183,6 +43,8 @@ struct Context::State {
   EGLDisplay display = EGL_NO_DISPLAY;
   EGLContext context = EGL_NO_CONTEXT;
   Driver driver;
+  /// Held by all contexts that have their objects in common.
+  std::shared_ptr<const int> group = std::make_shared<int>();
 
   State() = default;
   State(const State&) = delete;
@@ -192,23 +54,64 @@ struct Context::State {
   }
 };
 
-Context::Context() : state_(std::make_unique<State>()) {
-  const Display& display = chosen_display();
-  state_->display = display.display;
-  state_->context = make_context(display.display);
-  if (state_->context == EGL_NO_CONTEXT) {
-    throw Error(
-        fmt::format("gl: no OpenGL context could be made ({})", egl_error_name(eglGetError())));
+namespace {
+
+std::unique_ptr<Context::State> make_state(const Display& display,
+                                           EGLContext shared = EGL_NO_CONTEXT) {
+  auto state = std::make_unique<Context::State>();
+  state->display = display.display;
+  state->context = make_context(display.display, shared);
+  if (state->context == EGL_NO_CONTEXT) {
+    throw Error(fmt::format("gl: no OpenGL context could be made{} ({})",
+                            shared == EGL_NO_CONTEXT ? "" : " that shares with the given one",
+                            egl_error_name(eglGetError())));
   }
-  const Current current(*this);
-  state_->driver = {text(GL_RENDERER), text(GL_VERSION), display.software};
+  state->driver.software = display.software;
+  return state;
 }
+
+}  // namespace
+
+Context::Context(std::unique_ptr<State> state) : state_(std::move(state)) {
+  const Current current(*this);
+  state_->driver.name = text(GL_RENDERER);
+  state_->driver.version = text(GL_VERSION);
+}
+Context::Context() : Context(make_state(chosen_display())) {}
+
+Context Context::sharing_with(const GlSharing& application) {
+  expect_egl_library();
+  EGLint api = EGL_NONE;
+  if (!application.egl_display || !application.egl_context ||
+      eglQueryContext(application.egl_display, application.egl_context, EGL_CONTEXT_CLIENT_TYPE,
+                      &api) != EGL_TRUE) {
+    throw Error(fmt::format("gl: expected an initialised EGLDisplay and an EGLContext made on it{}",
+                            application.egl_display && application.egl_context
+                                ? fmt::format(" ({})", egl_error_name(eglGetError()))
+                                : ", got null"));
+  }
+  if (api != EGL_OPENGL_API) throw Error("gl: expected a context of OpenGL, got another API's");
+  const bool software = draws_in_software(application.egl_display);
+  return Context(make_state({application.egl_display, software}, application.egl_context));
+}
+
+Context Context::sharing_with(const Context& other) {
+  const State& state = *other.state_;
+  Context context(make_state({state.display, state.driver.software}, state.context));
+  context.state_->group = state.group;
+  return context;
+}
+
 Context::~Context() = default;
 Context::Context(Context&&) noexcept = default;
 Context& Context::operator=(Context&&) noexcept = default;
 
 const Driver& Context::driver() const {
   return state_->driver;
+}
+
+bool Context::shares_with(const Context& other) const {
+  return state_->group == other.state_->group;
 }
 
 void Context::check(const char* doing) const {

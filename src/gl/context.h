@@ -4,6 +4,7 @@
 #include <string>
 
 #include "diminish/error.h"
+#include "diminish/gl_texture.h"
 
 namespace diminish::gl {
 
@@ -20,11 +21,17 @@ class Context {
  public:
   /// Throws Error that says what is missing.
   Context();
+  /// One that has its textures, buffers, programs and fences in common with another, which may be
+  /// current in another thread. Throws Error that says what is wrong with that.
+  static Context sharing_with(const GlSharing& application);
+  static Context sharing_with(const Context& other);
   ~Context();
   Context(Context&&) noexcept;
   Context& operator=(Context&&) noexcept;
 
   const Driver& driver() const;
+  /// Whether they have their objects in common.
+  bool shares_with(const Context& other) const;
 
   /// Throws Error if a call since the last check failed or the context was lost. doing: what the
   /// message names.
@@ -34,6 +41,7 @@ class Context {
 
  private:
   friend class Current;
+  explicit Context(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
 };
 

@@ -71,6 +71,10 @@ bool FrameCompositor::gives_reconstruction(const FrameInputs& inputs) {
   return inputs.wants_reconstruction || reach(inputs.options) != Reach::picture;
 }
 
+bool FrameCompositor::gives_picture(const FrameInputs& inputs) {
+  return !inputs.texture || reach(inputs.options) != Reach::picture;
+}
+
 std::size_t FrameCompositor::most_added_bytes(const Rig& rig) {
   return pixels_of(rig.color.bounds()) * sizeof(std::uint32_t) +
          BackgroundPlanes::most_planes * cells_of_a_shadow * sizeof(Light) +
@@ -248,7 +252,9 @@ void FrameCompositor::download(const FrameInputs& inputs, const FrameUpload& upl
   const std::size_t pixels = pixels_of(region_);
   const Download at(region_);
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  copy(picture_.name(), downloaded_.name(), pixels * sizeof(std::uint32_t));
+  if (gives_picture(inputs)) {
+    copy(picture_.name(), downloaded_.name(), pixels * sizeof(std::uint32_t));
+  }
   copy(counts_.name(), downloaded_.name(), sizeof(Counts), at.counts);
   if (gives_reconstruction(inputs)) {
     copy(reconstruction.first.name(), downloaded_.name(), pixels * sizeof(ResultPixel), at.result);
@@ -271,7 +277,7 @@ void FrameCompositor::read(const FrameInputs& inputs, const FrameUpload& upload,
   result.report.missing_pixels = counts.missing;
   result.report.valid_pixels = counts.mask - counts.missing;
   const auto* const words = reinterpret_cast<const std::uint32_t*>(from);
-  for_rows(region_.height, [&](Rows rows) {
+  for_rows(gives_picture(inputs) ? region_.height : 0, [&](Rows rows) {
     for (int y = rows.first; y < rows.last; ++y) {
       const std::uint32_t* row = words + static_cast<std::ptrdiff_t>(y) * region_.width;
       Bgr* colors = result.picture.row(region_.y + y) + region_.x;
@@ -286,7 +292,7 @@ void FrameCompositor::read(const FrameInputs& inputs, const FrameUpload& upload,
 
   Reconstruction& reconstruction = result.reconstruction;
   const bool gives = gives_reconstruction(inputs);
-  const Rect size = gives ? result.picture.bounds() : Rect{};
+  const Rect size = gives ? inputs.frame.color.bounds() : Rect{};
   if (gives) {
     unpack(reinterpret_cast<const ResultPixel*>(from + at.result),
            reinterpret_cast<const SecondPixel*>(from + at.second), upload, reconstruction);

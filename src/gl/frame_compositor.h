@@ -23,6 +23,8 @@ class FrameCompositor {
   static Reach reach(const Options& options);
   /// Whether the reconstruction is filled, too.
   static bool gives_reconstruction(const FrameInputs& inputs);
+  /// Whether picture and provenance are.
+  static bool gives_picture(const FrameInputs& inputs);
   /// What `pack` adds to an upload at most.
   static std::size_t most_added_bytes(const Rig& rig);
 
@@ -37,6 +39,8 @@ class FrameCompositor {
   /// Fills what `run` has made, when it is done; needs no context. Outside the region result's
   /// images are the caller's.
   void read(const FrameInputs& inputs, const FrameUpload& upload, DiminishedFrame& result) const;
+  /// The region's pixels, as `run` has made them: colour, and any byte.
+  const Buffer& picture() const { return picture_; }
 
  private:
   struct Counts {

@@ -6,6 +6,7 @@
 #include "core/rows.h"
 #include "gl/camera_blending.h"
 #include "gl/frame_compositor.h"
+#include "gl/picture_textures.h"
 #include "gl/result_pixel.h"
 #include "reconstruct/clear_outside.h"
 
@@ -37,20 +38,24 @@ std::size_t end_of_first(const Rect& region) {
   return pixels_of(region) * sizeof(ResultPixel);
 }
 
-/// Where nothing is removed.
-void show_camera(const FrameInputs& inputs, DiminishedFrame& result) {
+/// Shows the camera's picture: all that is to be seen where nothing is removed, and else what is
+/// around the region. textures: null where the picture goes to the result.
+void show_camera(const FrameInputs& inputs, PictureTextures* textures, DiminishedFrame& result) {
   const Image<Bgr>& camera = inputs.frame.color;
   const Mask& mask = inputs.masks.color;
-  result.picture.resize(camera.width(), camera.height());
+  const Rect given = textures ? Rect{} : camera.bounds();
+  result.picture.resize(given.width, given.height);
+  result.provenance.resize(given.width, given.height);
   result.mask.resize(camera.width(), camera.height());
-  result.provenance.resize(camera.width(), camera.height());
   for_rows(camera.height(), [&](Rows rows) {
     for (int y = rows.first; y < rows.last; ++y) {
-      std::copy_n(camera.row(y), camera.width(), result.picture.row(y));
       std::copy_n(mask.row(y), camera.width(), result.mask.row(y));
+      if (textures) continue;
+      std::copy_n(camera.row(y), camera.width(), result.picture.row(y));
       std::fill_n(result.provenance.row(y), camera.width(), provenance::camera);
     }
   });
+  if (textures) textures->pack(camera);
 }
 
 }  // namespace
@@ -82,14 +87,27 @@ struct GlReconstructor::Resources {
 };
 
 GlReconstructor::GlReconstructor(const Rig& rig, const MakeRasterizer& make_rasterizer)
-    : rig_(rig), device_(context_.driver().name) {
-  const Current current(context_);
-  resources_ = std::make_unique<Resources>(context_, rig, make_rasterizer);
-  context_.check("making programs and buffers");
+    : rig_(rig), make_rasterizer_(make_rasterizer), device_(context_.driver().name) {
+  make_resources();
 }
 
 GlReconstructor::~GlReconstructor() {
   delete_in(context_, resources_);
+}
+
+void GlReconstructor::make_resources() {
+  const Current current(context_);
+  resources_ = std::make_unique<Resources>(context_, rig_, make_rasterizer_);
+  context_.check("making programs and buffers");
+}
+
+/// A context cannot begin to share: it is made anew.
+void GlReconstructor::share_with(const Context& other) {
+  if (context_.shares_with(other)) return;
+  delete_in(context_, resources_);
+  context_ = Context::sharing_with(other);
+  device_ = context_.driver().name;
+  make_resources();
 }
 
 void GlReconstructor::reconstruct(const FrameSet& frame, const DepthImages& depths,
@@ -135,12 +153,18 @@ Reach GlReconstructor::reach(const Options& options) const {
 
 void GlReconstructor::compose(const FrameInputs& inputs, DiminishedFrame& result) {
   passes_.clear();
+  auto* const textures = FrameCompositor::gives_picture(inputs)
+                             ? nullptr
+                             : &dynamic_cast<PictureTextures&>(*inputs.texture);
+  if (textures) share_with(textures->context());
   Resources& r = *resources_;
   const TiledRegion& region = inputs.region;
   begin(rig_, inputs, result.reconstruction);
   if (region.empty()) {
     resize_second(false, rig_.color, result.reconstruction.second);
-    return show_camera(inputs, result);
+    show_camera(inputs, textures, result);
+    if (textures) textures->upload(inputs.frame.color);
+    return;
   }
   if (!r.compositor) {
     const Current current(context_);
@@ -159,11 +183,18 @@ void GlReconstructor::compose(const FrameInputs& inputs, DiminishedFrame& result
     glFlush();
   }
   // While the GPU works.
-  show_camera(inputs, result);
+  show_camera(inputs, textures, result);
   {
     const Current current(context_);
+    if (textures) {
+      r.timer.measure("texture", [&] {
+        textures->draw_packed();
+        textures->draw_region(r.compositor->picture(), region);
+      });
+    }
     wait_until_done();
     context_.check("composing a frame");
+    if (textures) textures->publish();
     r.timer.read(passes_);
   }
   r.compositor->read(inputs, r.upload, result);

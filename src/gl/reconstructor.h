@@ -59,9 +59,12 @@ class GlReconstructor : public ComposingReconstructor {
   struct Resources;
 
   void prepare_blending();
+  void make_resources();
+  void share_with(const Context& other);
   void draw(const Rect& region);
 
   Rig rig_;
+  MakeRasterizer make_rasterizer_;
   Context context_;
   std::string device_;
   std::vector<GpuPass> passes_;

@@ -6,6 +6,7 @@
 #include "diminish/reconstruction.h"
 #include "gl/buffer.h"
 #include "gl/frame_upload.h"
+#include "gl/pixels_of.h"
 
 namespace diminish::gl {
 
@@ -30,10 +31,6 @@ struct ResultBuffers {
   Buffer first;   ///< ResultPixels
   Buffer second;  ///< SecondPixels; of no meaning where the upload does not blend
 };
-
-inline std::size_t pixels_of(const Rect& region) {
-  return static_cast<std::size_t>(region.width) * static_cast<std::size_t>(region.height);
-}
 
 /// Writes colour, depth and source of the reconstruction's region. Where the upload blends the
 /// second view's, too, whose images have their size; it becomes empty if it is so in all pixels.

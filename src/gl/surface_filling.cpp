@@ -8,6 +8,7 @@
 #include "composite/smooth_filling.h"
 #include "composite/surface_rules.h"
 #include "diminish/diminished_frame.h"
+#include "gl/pixels_of.h"
 
 namespace diminish::gl {
 namespace {
@@ -84,10 +85,6 @@ GLuint groups(int cells, int group) {
 
 void barrier() {
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
-}
-
-std::size_t pixels_of(const Rect& rect) {
-  return static_cast<std::size_t>(rect.width) * static_cast<std::size_t>(rect.height);
 }
 
 Rect cells_of(const Rect& region) {

@@ -12,6 +12,7 @@
 #include "detect/occlusion_masks.h"
 #include "diminish/marker_detector.h"
 #include "pipeline/backend.h"
+#include "pipeline/frame_texture.h"
 #include "pose/camera_poses.h"
 #include "pose/pose_refinement.h"
 #include "reconstruct/background_planes.h"
@@ -122,11 +123,11 @@ struct Pipeline::Implementation {
       region.keep_near(masks.color, options.surroundings_px);
     }
     if (composes) {
-      const Reach reach =
-          backend.compose({frame, depths, poses, masks, objects, region, options,
-                           finds_surfaces ? &background_planes.planes() : nullptr,
-                           cast_shadows.shadows(), color_maps.by_source(), wants_reconstruction},
-                          result);
+      const Reach reach = backend.compose(
+          {frame, depths, poses, masks, objects, region, options,
+           finds_surfaces ? &background_planes.planes() : nullptr, cast_shadows.shadows(),
+           color_maps.by_source(), wants_reconstruction, texture.output()},
+          result);
       if (reach != Reach::reconstruction) return reach;
     }
     backend.reconstruct(frame, depths, poses, masks, region, options, reconstruction,
@@ -198,6 +199,7 @@ struct Pipeline::Implementation {
   Compositor compositor;
   OcclusionMasks masks;
   bool wants_reconstruction = true;
+  FrameTexture texture;
 };
 
 Pipeline::Pipeline(const Rig& rig, const Scene& scene, const Options& options)
@@ -216,6 +218,12 @@ void Pipeline::set_options(const Options& options) {
 void Pipeline::want_reconstruction(bool wanted) {
   implementation_->wants_reconstruction = wanted;
 }
+void Pipeline::want_texture(const std::optional<GlSharing>& application) {
+  implementation_->texture.want(application, implementation_->rig.color);
+}
+const GlTexture& Pipeline::texture() const {
+  return implementation_->texture.texture();
+}
 const Options& Pipeline::options() const {
   return implementation_->options;
 }
@@ -226,6 +234,7 @@ void Pipeline::process(const FrameSet& frame, DiminishedFrame& result) {
   FrameReport& report = result.report;
   expect_sizes(frame, self.rig);
   self.begin(frame, result);
+  self.texture.begin_frame();
   if (report.skipped) return;
 
   {  // 3.2 Camera poses
@@ -250,6 +259,7 @@ void Pipeline::process(const FrameSet& frame, DiminishedFrame& result) {
   } else if (reach == Reach::seen) {
     self.compositor.complete(frame.color, self.masks, self.options, result);
   }
+  self.texture.finish_frame(reach == Reach::picture, result);
 
   for (const std::string& message : report.poses.messages) report.messages.push_back(message);
   for (const OccluderReport& occluder : report.occluders) {
