@@ -6,8 +6,8 @@
 
 #include "detect/marker_views.h"
 #include "detect/place_deviation.h"
+#include "detect/shape_detector.h"
 #include "detect/silhouette.h"
-#include "diminish/occluder_detector.h"
 #include "geometry/triangle_mesh.h"
 #include "pose/known_markers.h"
 #include "pose/marker_pose.h"
@@ -41,10 +41,10 @@ std::vector<Eigen::Vector3d> corners_of_box(const std::vector<Eigen::Vector3d>& 
 }
 
 /// An object with a marker on it, whose shape in the marker's frame is known.
-class MarkerOccluder : public OccluderDetector {
+class MarkerOccluder : public ShapeDetector {
  public:
   MarkerOccluder(const OccluderSpec& spec, const Rig& rig)
-      : name_(spec.name), rig_(rig), color_lens_(rig.color), color_drawer_(color_lens_) {
+      : name_(spec.name), rig_(rig), color_lens_(rig.color), in_color_(color_lens_) {
     const Config& config = spec.config;
     config.expect_keys({"name", "detector", "marker", "vertices", "mesh"});
     marker_ = read_marker(config.at("marker"));
@@ -59,14 +59,15 @@ class MarkerOccluder : public OccluderDetector {
     shape_corners_ = corners_of_box(shape_.vertices);
     for (const RgbdCamera& camera : rig.rgbd) {
       rgbd_color_lenses_.emplace_back(camera.color);
-      rgbd_color_drawers_.emplace_back(rgbd_color_lenses_.back());
-      rgbd_depth_drawers_.emplace_back(Lens(camera.depth));
+      in_rgbd_color_.emplace_back(rgbd_color_lenses_.back());
+      in_rgbd_depth_.emplace_back(Lens(camera.depth));
     }
   }
 
   bool needs_markers() const override { return true; }
 
-  OccluderReport detect(const Observation& observation, OcclusionMasks& masks) override {
+  OccluderReport outline(const Observation& observation, std::uint32_t object,
+                         OcclusionOutlines& outlines) override {
     // The colour camera first, then the RGB-D cameras' colour sensors.
     views_.clear();
     views_.push_back({&color_lens_, corners_in(observation.markers.color), RigidTransform{}});
@@ -81,12 +82,16 @@ class MarkerOccluder : public OccluderDetector {
 
     OccluderReport report;
     report.name = name_;
-    report.in_color =
-        camera_from_marker_[0] && draw(*camera_from_marker_[0], color_drawer_, masks.color);
+    report.in_rgbd.assign(rig_.rgbd.size(), false);
+    if (const auto& pose = camera_from_marker_[0]) {
+      add_shape(*pose, in_color_, object, outlines.color);
+    }
     for (std::size_t k = 0; k < rig_.rgbd.size(); ++k) {
       const auto& pose = camera_from_marker_[k + 1];
-      const bool draws = pose && observation.frame.rgbd[k].available();
-      report.in_rgbd.push_back(draws && draw_in_rgbd(k, *pose, masks));
+      if (!pose || !observation.frame.rgbd[k].available()) continue;
+      add_shape(*pose, in_rgbd_color_[k], object, outlines.rgbd_color[k]);
+      add_shape(rig_.rgbd[k].color_from_depth.inverse() * *pose, in_rgbd_depth_[k], object,
+                outlines.rgbd_depth[k]);
     }
     report.deviation_px = deviation_px();
     report.message = message();
@@ -117,22 +122,17 @@ class MarkerOccluder : public OccluderDetector {
     return most;
   }
 
-  bool draw_in_rgbd(std::size_t k, const RigidTransform& color_from_marker, OcclusionMasks& masks) {
-    const RigidTransform depth_from_marker =
-        rig_.rgbd[k].color_from_depth.inverse() * color_from_marker;
-    const bool in_color = draw(color_from_marker, rgbd_color_drawers_[k], masks.rgbd_color[k]);
-    const bool in_depth = draw(depth_from_marker, rgbd_depth_drawers_[k], masks.rgbd_depth[k]);
-    return in_color || in_depth;
-  }
-
-  bool draw(const RigidTransform& camera_from_marker, SilhouetteDrawer& drawer, Mask& mask) {
+  void add_shape(const RigidTransform& camera_from_marker, Silhouette& silhouette,
+                 std::uint32_t object, Polygons& polygons) {
     vertices_in_camera_.clear();
     for (const Eigen::Vector3d& vertex : shape_.vertices) {
       vertices_in_camera_.push_back(camera_from_marker * vertex);
     }
-    return shape_.triangles.empty()
-               ? drawer.fill_convex_hull(vertices_in_camera_, mask)
-               : drawer.fill_triangles(vertices_in_camera_, shape_.triangles, mask);
+    if (shape_.triangles.empty()) {
+      silhouette.outline_convex_hull(vertices_in_camera_, object, polygons);
+    } else {
+      silhouette.outline_triangles(vertices_in_camera_, shape_.triangles, object, polygons);
+    }
   }
 
   /// What is missing. An object that is out of a camera's sight is not: its place is known.
@@ -159,8 +159,8 @@ class MarkerOccluder : public OccluderDetector {
   std::vector<Eigen::Vector3d> shape_corners_;  ///< of the box around it
   Lens color_lens_;
   std::vector<Lens> rgbd_color_lenses_;
-  SilhouetteDrawer color_drawer_;
-  std::vector<SilhouetteDrawer> rgbd_color_drawers_, rgbd_depth_drawers_;
+  Silhouette in_color_;
+  std::vector<Silhouette> in_rgbd_color_, in_rgbd_depth_;
   std::vector<Eigen::Vector3d> vertices_in_camera_;
   std::vector<MarkerView> views_;                                  ///< of this frame
   std::vector<std::optional<RigidTransform>> camera_from_marker_;  ///< of each view

@@ -29,7 +29,8 @@ OccluderStage::OccluderStage(const Rig& rig, const Scene& scene) : rig_(rig) {
     detectors_.push_back(Detectors::get(spec.detector)(spec, rig));
     names_.push_back(spec.name);
   }
-  dilations_.resize(rig.rgbd.size() + 1);
+  drawings_.resize(1 + 2 * rig.rgbd.size());
+  processor_ = Registry<MaskDrawer>::get("cpu")();
 }
 
 bool OccluderStage::needs_markers() const {
@@ -37,24 +38,49 @@ bool OccluderStage::needs_markers() const {
                      [](const auto& detector) { return detector->needs_markers(); });
 }
 
+void OccluderStage::draw_by(const std::string& drawer) {
+  if (drawer == drawer_name_) return;
+  drawer_name_ = drawer;
+  drawer_.reset();
+}
+
 void OccluderStage::detect(const Observation& observation, OcclusionMasks& masks,
                            std::vector<OccluderReport>& reports) {
   clear(masks);
+  outlines_.clear(rig_.rgbd.size());
+  is_blank_ = true;
   reports.clear();
   const std::vector<std::string> kept = kept_objects(observation.options);
   for (std::size_t i = 0; i < detectors_.size(); ++i) {
-    if (std::find(kept.begin(), kept.end(), names_[i]) == kept.end()) {
-      reports.push_back(detectors_[i]->detect(observation, masks));
-    } else {
+    if (std::find(kept.begin(), kept.end(), names_[i]) != kept.end()) {
       reports.push_back(
           {.name = names_[i], .in_rgbd = std::vector<bool>(rig_.rgbd.size(), false), .kept = true});
+    } else if (auto* const shape = dynamic_cast<ShapeDetector*>(detectors_[i].get())) {
+      reports.push_back(shape->outline(observation, static_cast<std::uint32_t>(i), outlines_));
+    } else {
+      reports.push_back(detectors_[i]->detect(observation, masks));
+      is_blank_ = false;
     }
   }
+  draw(observation.options, masks, reports);
+}
+
+/// What is outlined, and the margins.
+void OccluderStage::draw(const Options& options, OcclusionMasks& masks,
+                         std::vector<OccluderReport>& reports) {
   double deviation_px = 0;
   for (const OccluderReport& report : reports) {
     deviation_px = std::max(deviation_px, report.deviation_px);
   }
-  grow_by_margins(observation.options, deviation_px, masks);
+  list_drawings(options, deviation_px, masks);
+  draw_by_chosen();
+  for (std::size_t i = 0; i < reports.size(); ++i) {
+    const auto covers = [&](std::size_t image) { return drawings_[image].covers[i] != 0; };
+    if (covers(0)) reports[i].in_color = true;
+    for (std::size_t k = 0; k < rig_.rgbd.size(); ++k) {
+      if (covers(1 + 2 * k) || covers(2 + 2 * k)) reports[i].in_rgbd[k] = true;
+    }
+  }
 }
 
 void OccluderStage::clear(OcclusionMasks& masks) const {
@@ -67,8 +93,8 @@ void OccluderStage::clear(OcclusionMasks& masks) const {
   });
 }
 
-void OccluderStage::grow_by_margins(const Options& options, double deviation_px,
-                                    OcclusionMasks& masks) {
+void OccluderStage::list_drawings(const Options& options, double deviation_px,
+                                  OcclusionMasks& masks) {
   // A marker that faces the camera leaves its own lean open; so much it does not matter.
   constexpr double most_px = 10;
   // Half the margin is for blur, half for what is usual.
@@ -76,16 +102,33 @@ void OccluderStage::grow_by_margins(const Options& options, double deviation_px,
   const double wanted_px =
       options.margin_deviations > 0 ? options.margin_deviations * deviation_px : 0;
   const auto more_px = static_cast<int>(std::lrint(std::clamp(wanted_px - usual_px, 0.0, most_px)));
-  oneapi::tbb::parallel_for(std::size_t{0}, rig_.rgbd.size() + 1, [&](std::size_t i) {
-    const auto grow_by = [&](int margin_px, Mask& mask) {
-      if (margin_px > 0) dilations_[i].dilate(mask, margin_px);
-    };
-    if (i == 0) return grow_by(options.mask_margin_px + more_px, masks.color);
-    const std::size_t k = i - 1;
-    const int margin_px = options.rgbd_mask_margin_px + more_px;
-    grow_by(margin_px, masks.rgbd_color[k]);
-    grow_by(depth_margin_px(rig_.rgbd[k], margin_px), masks.rgbd_depth[k]);
-  });
+  const auto list = [&](std::size_t image, const Polygons& polygons, int margin_px, Mask& mask) {
+    MaskDrawing& drawing = drawings_[image];
+    drawing.polygons = &polygons;
+    drawing.margin_px = margin_px;
+    drawing.is_blank = is_blank_;
+    drawing.mask = &mask;
+    drawing.covers.assign(detectors_.size(), 0);
+  };
+  list(0, outlines_.color, options.mask_margin_px + more_px, masks.color);
+  const int margin_px = options.rgbd_mask_margin_px + more_px;
+  for (std::size_t k = 0; k < rig_.rgbd.size(); ++k) {
+    list(1 + 2 * k, outlines_.rgbd_color[k], margin_px, masks.rgbd_color[k]);
+    list(2 + 2 * k, outlines_.rgbd_depth[k], depth_margin_px(rig_.rgbd[k], margin_px),
+         masks.rgbd_depth[k]);
+  }
+}
+
+void OccluderStage::draw_by_chosen() {
+  message_.clear();
+  try {
+    if (!drawer_) drawer_ = Registry<MaskDrawer>::get(drawer_name_)();
+    drawer_->draw(drawings_);
+  } catch (const Error& error) {
+    drawer_.reset();
+    message_ = std::string(error.what()) + "; masks were drawn by the processor instead";
+    processor_->draw(drawings_);
+  }
 }
 
 }  // namespace diminish

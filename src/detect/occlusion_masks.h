@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "detect/disc_dilation.h"
+#include "detect/mask_drawer.h"
+#include "detect/shape_detector.h"
 #include "diminish/occluder_detector.h"
 
 namespace diminish {
@@ -18,20 +19,33 @@ class OccluderStage {
   /// Whether the observation must hold the markers of the colour images.
   bool needs_markers() const;
 
+  /// drawer: of a registered MaskDrawer; "cpu" at first. Where that fails the processor draws, and
+  /// it begins anew in the next frame.
+  void draw_by(const std::string& drawer);
+
   /// Replaces `masks` by the union of all objects' masks in this frame, grown by the options'
   /// margins, and `reports` by one report for each object. Those that the option `keep` names are
   /// not looked for.
   void detect(const Observation& observation, OcclusionMasks& masks,
               std::vector<OccluderReport>& reports);
+  /// Why the last frame's masks were not drawn as was chosen; empty where they were.
+  const std::string& message() const { return message_; }
 
  private:
   void clear(OcclusionMasks& masks) const;
-  void grow_by_margins(const Options& options, double deviation_px, OcclusionMasks& masks);
+  void draw(const Options& options, OcclusionMasks& masks, std::vector<OccluderReport>& reports);
+  void list_drawings(const Options& options, double deviation_px, OcclusionMasks& masks);
+  void draw_by_chosen();
 
   Rig rig_;
   std::vector<std::unique_ptr<OccluderDetector>> detectors_;
-  std::vector<std::string> names_;       ///< of the objects
-  std::vector<DiscDilation> dilations_;  ///< of the colour camera, and each RGB-D camera
+  std::vector<std::string> names_;  ///< of the objects
+  OcclusionOutlines outlines_;
+  bool is_blank_ = true;               ///< no detector has set pixels in this frame
+  std::vector<MaskDrawing> drawings_;  ///< color, and of each RGB-D camera color and depth
+  std::string drawer_name_ = "cpu";
+  std::unique_ptr<MaskDrawer> drawer_, processor_;
+  std::string message_;
 };
 
 }  // namespace diminish

@@ -77,6 +77,35 @@ TEST(OccluderStage, TheDepthMasksMarginCoversTheSameAngle) {
   }
 }
 
+/// A drawer that fails in every frame, as a GPU does.
+class BrokenDrawer : public MaskDrawer {
+ public:
+  static inline int made = 0;
+  BrokenDrawer() { ++made; }
+  void draw(std::span<MaskDrawing>) override { throw Error("the driver lost the context"); }
+};
+
+TEST(OccluderStage, WhereTheGpuFailsTheProcessorDraws) {
+  Registry<MaskDrawer>::add("broken", [] { return std::make_unique<BrokenDrawer>(); });
+  Detection detection(small_rig());
+  detection.frame.masks = {pixel("a", detection.rig, 10, 10)};
+  detection.options.mask_margin_px = 2;
+  OccluderStage stage(detection.rig, scene_with("[{name: a, detector: mask, color: x}]"));
+  stage.draw_by("broken");
+  OcclusionMasks masks;
+  std::vector<OccluderReport> reports;
+  for (int frame = 1; frame <= 2; ++frame) {
+    stage.detect(detection.observation(), masks, reports);
+    EXPECT_EQ(count_nonzero(masks.color, masks.color.bounds()), 13U);
+    EXPECT_EQ(stage.message(),
+              "the driver lost the context; masks were drawn by the processor instead");
+    EXPECT_EQ(BrokenDrawer::made, frame);
+  }
+  stage.draw_by("cpu");
+  stage.detect(detection.observation(), masks, reports);
+  EXPECT_EQ(stage.message(), "");
+}
+
 TEST(OccluderStage, AnUnknownDetectorIsNamed) {
   EXPECT_THAT(
       error_of([] { OccluderStage(small_rig(), scene_with("[{name: a, detector: magic}]")); }),

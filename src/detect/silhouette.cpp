@@ -110,31 +110,31 @@ class FieldOfView {
   std::vector<Eigen::Vector2d> normals_;
 };
 
-/// Draws polygons of rays; keeps its memory from one polygon to the next.
-class PolygonFiller {
+/// Outlines polygons of rays; keeps its memory from one polygon to the next.
+class BentOutline {
  public:
-  explicit PolygonFiller(const Lens& lens) : lens_(lens), field_(lens) {}
+  explicit BentOutline(const Lens& lens) : lens_(lens), field_(lens) {}
 
-  /// Draws a convex polygon of rays. Changes `rays`.
-  bool fill(Polygon& rays, Mask& mask) {
+  /// Adds the picture of a convex polygon of rays. Changes `rays`.
+  void add(Polygon& rays, std::uint32_t object, Polygons& polygons) {
     field_.clip_to_field(rays, scratch_);
-    if (rays.size() < 3) return false;
-    pixels_.clear();
+    if (rays.size() < 3) return;
     Eigen::Vector2d begin = lens_.distort(rays.back()).value();
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const Eigen::Vector2d& previous = i > 0 ? rays[i - 1] : rays.back();
       const Eigen::Vector2d end = lens_.distort(rays[i]).value();
-      append_bent_edge(previous, begin, rays[i], end);
+      add_bent_edge(previous, begin, rays[i], end, polygons);
       begin = end;
     }
-    return fill_pixels(mask);
+    polygons.end_polygon(object);
   }
 
  private:
-  /// Appends the picture of the edge from ray `a` to ray `b`, without its first point, as straight
+  /// Adds the picture of the edge from ray `a` to ray `b`, without its first point, as straight
   /// pieces that follow its bend.
-  void append_bent_edge(const Eigen::Vector2d& a, const Eigen::Vector2d& pixel_a,
-                        const Eigen::Vector2d& b, const Eigen::Vector2d& pixel_b) {
+  void add_bent_edge(const Eigen::Vector2d& a, const Eigen::Vector2d& pixel_a,
+                     const Eigen::Vector2d& b, const Eigen::Vector2d& pixel_b,
+                     Polygons& polygons) const {
     constexpr double always_straight_px = 4;
     constexpr double longest_px = 64;  // a longer piece could bend to both sides of its middle
     constexpr double largest_bend_px = 0.02;
@@ -144,54 +144,17 @@ class PolygonFiller {
       const Eigen::Vector2d pixel_middle = lens_.distort(middle).value();
       const double bend_px = (pixel_middle - (pixel_a + pixel_b) / 2).norm();
       if (length_px > longest_px || bend_px > largest_bend_px) {
-        append_bent_edge(a, pixel_a, middle, pixel_middle);
-        append_bent_edge(middle, pixel_middle, b, pixel_b);
+        add_bent_edge(a, pixel_a, middle, pixel_middle, polygons);
+        add_bent_edge(middle, pixel_middle, b, pixel_b, polygons);
         return;
       }
     }
-    pixels_.push_back(pixel_b);
-  }
-
-  /// Sets the pixels whose centres are inside `pixels_`, by the even-odd rule.
-  bool fill_pixels(Mask& mask) {
-    const auto by_y = [](const auto& a, const auto& b) { return a.y() < b.y(); };
-    const auto [top, bottom] = std::minmax_element(pixels_.begin(), pixels_.end(), by_y);
-    const int first_row = static_cast<int>(std::ceil(std::max(top->y(), 0.0)));
-    const int last_row = static_cast<int>(std::floor(std::min(bottom->y(), mask.height() - 1.0)));
-    bool any = false;
-    for (int row = first_row; row <= last_row; ++row) any |= fill_row(row, mask);
-    return any;
-  }
-
-  bool fill_row(int row, Mask& mask) {
-    crossings_.clear();
-    for (std::size_t i = 0; i < pixels_.size(); ++i) {
-      const Eigen::Vector2d& a = i > 0 ? pixels_[i - 1] : pixels_.back();
-      const Eigen::Vector2d& b = pixels_[i];
-      if ((a.y() <= row) == (b.y() <= row)) continue;
-      crossings_.push_back(a.x() + (row - a.y()) / (b.y() - a.y()) * (b.x() - a.x()));
-    }
-    std::sort(crossings_.begin(), crossings_.end());
-    // A centre on the edge between two triangles must not fall between them by rounding.
-    constexpr double rounding_px = 1e-9;
-    bool any = false;
-    for (std::size_t i = 0; i + 1 < crossings_.size(); i += 2) {
-      const double left = std::max(crossings_[i] - rounding_px, 0.0);
-      const double right = std::min(crossings_[i + 1] + rounding_px, mask.width() - 1.0);
-      const int first = static_cast<int>(std::ceil(left));
-      const int last = static_cast<int>(std::floor(right));
-      if (first > last) continue;
-      std::fill(mask.row(row) + first, mask.row(row) + last + 1, std::uint8_t{255});
-      any = true;
-    }
-    return any;
+    polygons.add_corner(pixel_b);
   }
 
   Lens lens_;
   FieldOfView field_;
   Polygon scratch_;
-  Polygon pixels_;
-  std::vector<double> crossings_;
 };
 
 /// Finds the corners of the convex hull, in order (Andrew 1979). Sorts `points`.
@@ -217,23 +180,23 @@ void find_convex_hull(Polygon& points, Polygon& hull) {
 
 }  // namespace
 
-struct SilhouetteDrawer::Implementation {
-  explicit Implementation(const Lens& lens) : filler(lens) {}
+struct Silhouette::Implementation {
+  explicit Implementation(const Lens& lens) : outline(lens) {}
 
-  PolygonFiller filler;
+  BentOutline outline;
   Polygon rays, hull;
   std::vector<Eigen::Vector3d> corners, in_front;  ///< of a triangle
 };
 
-SilhouetteDrawer::SilhouetteDrawer(const Lens& lens)
+Silhouette::Silhouette(const Lens& lens)
     : implementation_(std::make_unique<Implementation>(lens)) {}
-SilhouetteDrawer::~SilhouetteDrawer() = default;
-SilhouetteDrawer::SilhouetteDrawer(SilhouetteDrawer&&) noexcept = default;
-SilhouetteDrawer& SilhouetteDrawer::operator=(SilhouetteDrawer&&) noexcept = default;
+Silhouette::~Silhouette() = default;
+Silhouette::Silhouette(Silhouette&&) noexcept = default;
+Silhouette& Silhouette::operator=(Silhouette&&) noexcept = default;
 
-bool SilhouetteDrawer::fill_convex_hull(const std::vector<Eigen::Vector3d>& points_in_camera,
-                                        Mask& mask) {
-  auto& [filler, rays, hull, corners, in_front] = *implementation_;
+void Silhouette::outline_convex_hull(const std::vector<Eigen::Vector3d>& points_in_camera,
+                                     std::uint32_t object, Polygons& polygons) {
+  auto& [outline, rays, hull, corners, in_front] = *implementation_;
   rays.clear();
   for (const Eigen::Vector3d& point : points_in_camera) {
     if (point.z() < near_m) continue;
@@ -247,14 +210,13 @@ bool SilhouetteDrawer::fill_convex_hull(const std::vector<Eigen::Vector3d>& poin
     }
   }
   find_convex_hull(rays, hull);
-  return filler.fill(hull, mask);
+  outline.add(hull, object, polygons);
 }
 
-bool SilhouetteDrawer::fill_triangles(const std::vector<Eigen::Vector3d>& vertices_in_camera,
-                                      const std::vector<std::array<int, 3>>& triangles,
-                                      Mask& mask) {
-  auto& [filler, rays, hull, corners, in_front] = *implementation_;
-  bool any = false;
+void Silhouette::outline_triangles(const std::vector<Eigen::Vector3d>& vertices_in_camera,
+                                   const std::vector<std::array<int, 3>>& triangles,
+                                   std::uint32_t object, Polygons& polygons) {
+  auto& [outline, rays, hull, corners, in_front] = *implementation_;
   for (const std::array<int, 3>& triangle : triangles) {
     corners.clear();
     for (const int index : triangle) corners.push_back(vertices_in_camera[index]);
@@ -262,9 +224,29 @@ bool SilhouetteDrawer::fill_triangles(const std::vector<Eigen::Vector3d>& vertic
         corners, [](const Eigen::Vector3d& point) { return point.z() - near_m; }, in_front);
     rays.clear();
     for (const Eigen::Vector3d& point : in_front) rays.emplace_back(point.head<2>() / point.z());
-    any |= filler.fill(rays, mask);
+    outline.add(rays, object, polygons);
   }
-  return any;
+}
+
+bool SilhouetteDrawer::fill_convex_hull(const std::vector<Eigen::Vector3d>& points_in_camera,
+                                        Mask& mask) {
+  polygons_.clear();
+  silhouette_.outline_convex_hull(points_in_camera, 0, polygons_);
+  return fill(mask);
+}
+
+bool SilhouetteDrawer::fill_triangles(const std::vector<Eigen::Vector3d>& vertices_in_camera,
+                                      const std::vector<std::array<int, 3>>& triangles,
+                                      Mask& mask) {
+  polygons_.clear();
+  silhouette_.outline_triangles(vertices_in_camera, triangles, 0, polygons_);
+  return fill(mask);
+}
+
+bool SilhouetteDrawer::fill(Mask& mask) {
+  std::uint8_t covers = 0;
+  filler_.fill(polygons_, mask, {&covers, 1});
+  return covers != 0;
 }
 
 }  // namespace diminish

@@ -36,6 +36,10 @@ void Backend::choose(const std::string& name) {
   name_ = meant;
 }
 
+std::string Backend::mask_drawer() const {
+  return name_.starts_with("gl") && gpu_is_there() ? "gl" : on_processor;
+}
+
 Reconstructor& Backend::chosen() {
   if (!chosen_) chosen_ = Registry<Reconstructor>::get(name_)(rig_);
   return *chosen_;

@@ -17,6 +17,10 @@ class Backend {
   /// name: of a registered Reconstructor, or "auto". Throws Error where it cannot work here.
   void choose(const std::string& name);
 
+  /// The MaskDrawer that goes with it: the GPU's where hardware draws. A software driver would
+  /// only take longer.
+  std::string mask_drawer() const;
+
   /// Forgets what failed in the last frame.
   void begin_frame() { message_.clear(); }
   /// How far `compose` goes by the chosen backend, where it does not fail.

@@ -213,6 +213,7 @@ Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;
 void Pipeline::set_options(const Options& options) {
   check(options, implementation_->scene);
   implementation_->backend.choose(options.backend);
+  implementation_->occluders.draw_by(implementation_->backend.mask_drawer());
   implementation_->options = options;
 }
 void Pipeline::want_reconstruction(bool wanted) {
@@ -247,6 +248,7 @@ void Pipeline::process(const FrameSet& frame, DiminishedFrame& result) {
     self.occluders.detect({frame, report.markers, report.poses, self.options}, self.masks,
                           report.occluders);
   }
+  if (!self.occluders.message().empty()) report.messages.push_back(self.occluders.message());
   Reach reach = Reach::reconstruction;
   {  // 3.3 Reconstruction of what is behind them
     const ScopedTimer timer(report.milliseconds, Stage::reconstruction);

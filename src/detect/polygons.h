@@ -1,0 +1,73 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace diminish {
+
+/// Polygons in a picture, and by whole numbers which pixels they cover, so that any implementation
+/// sets the same ones and neighbours with a common edge neither overlap nor leave gaps: corners are
+/// rounded to 1/256 pixel; an edge crosses the rows from its upper end to before its lower one; a
+/// pixel is inside when the edges that cross its row at its centre or left of it are odd in number.
+struct Polygons {
+  static constexpr int subpixels = 256;
+
+  struct Corner {
+    std::int32_t x, y;  ///< in subpixels
+  };
+  struct Polygon {
+    std::uint32_t end;     ///< its last corner's index and 1; it begins where the last one ends
+    std::uint32_t object;  ///< whose it is
+  };
+
+  std::vector<Corner> corners;
+  std::vector<Polygon> polygons;
+
+  void clear() {
+    corners.clear();
+    polygons.clear();
+  }
+
+  /// Begins or goes on with a polygon.
+  void add_corner(const Eigen::Vector2d& pixel) {
+    // Far outside of any picture; products of differences then fit into 53 bits.
+    static constexpr double farthest_px = 65536;
+    const auto rounded = [](double px) {
+      const double within_px = std::clamp(px, -farthest_px, farthest_px);
+      return static_cast<std::int32_t>(std::lrint(within_px * subpixels));
+    };
+    corners.push_back({rounded(pixel.x()), rounded(pixel.y())});
+  }
+  void end_polygon(std::uint32_t object) {
+    polygons.push_back({static_cast<std::uint32_t>(corners.size()), object});
+  }
+
+  std::uint32_t begin_of(std::size_t polygon) const {
+    return polygon > 0 ? polygons[polygon - 1].end : 0;
+  }
+};
+
+/// Rows [first, last) of a picture that a polygon may cover.
+struct PolygonRows {
+  int first = 0;
+  int last = 0;
+
+  PolygonRows(const Polygons& all, std::size_t polygon, int height) {
+    constexpr int subpixels = Polygons::subpixels;
+    const auto begin = all.corners.begin() + all.begin_of(polygon);
+    const auto end = all.corners.begin() + all.polygons[polygon].end;
+    if (begin == end) return;
+    const auto by_y = [](const auto& a, const auto& b) { return a.y < b.y; };
+    const auto [top, bottom] = std::minmax_element(begin, end, by_y);
+    // Rounded up: what ends at a row's centre does not cross it.
+    const auto row_from = [](std::int32_t y) { return (y + subpixels - 1) >> 8; };
+    static_assert(subpixels == 1 << 8);
+    first = std::clamp(row_from(top->y), 0, height);
+    last = std::clamp(row_from(bottom->y), first, height);
+  }
+};
+
+}  // namespace diminish

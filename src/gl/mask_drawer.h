@@ -1,0 +1,28 @@
+#pragma once
+
+#include <memory>
+
+#include "detect/disc_dilation.h"
+#include "detect/mask_drawer.h"
+#include "gl/context.h"
+
+namespace diminish::gl {
+
+/// Draws and grows the masks of all images on the GPU: corners go up, a bit a pixel comes down.
+class GpuMaskDrawer : public MaskDrawer {
+ public:
+  /// Throws Error where there is no driver that can do it.
+  GpuMaskDrawer();
+  ~GpuMaskDrawer() override;
+
+  void draw(std::span<MaskDrawing> drawings) override;
+
+ private:
+  struct Resources;
+
+  Context context_;
+  std::unique_ptr<Resources> resources_;
+  DiscDilation dilation_;  ///< for margins that are too wide for the GPU
+};
+
+}  // namespace diminish::gl

@@ -1,0 +1,22 @@
+// Masks of several images, a bit a pixel: src/gl/mask_drawer.cpp.
+
+struct MaskImage {
+  ivec2 size;
+  int row_words;  // of 32 pixels; the leftmost is the lowest bit
+  int margin_px;
+  uint first_word;
+};
+
+// Rows of a polygon.
+struct Part {
+  uint begin, end;  // of its corners
+  int first_row;
+  uint place;  // in `covers`: an image's objects, then the next image's
+};
+
+layout(std430, binding = 0) readonly buffer Images { MaskImage images[]; };
+layout(std430, binding = 1) readonly buffer Parts { Part parts[]; };
+layout(std430, binding = 2) readonly buffer Corners { ivec2 corners[]; };  // in subpixels
+layout(std430, binding = 3) buffer Drawn { uint drawn[]; };
+layout(std430, binding = 4) writeonly buffer Grown { uint grown[]; };
+layout(std430, binding = 5) writeonly buffer Covers { uint covers[]; };
