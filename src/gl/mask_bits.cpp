@@ -18,25 +18,60 @@ std::array<std::array<std::uint8_t, 8>, 256> make_pixels() {
 
 }  // namespace
 
-void pack_bits(const Mask& mask, std::uint32_t* words) {
-  for (int y = 0; y < mask.height(); ++y) {
+BitWindow::BitWindow(const Rect& part) {
+  if (part.empty()) return;
+  first_word = part.x / 32;
+  first_row = part.y;
+  words = (part.right() + 31) / 32 - first_word;
+  rows = part.height;
+}
+
+BitWindow window_of(const MaskDrawing& drawing, int margin_px) {
+  const Mask& mask = *drawing.mask;
+  // Corners may be far outside.
+  int left = mask.width();
+  int top = mask.height();
+  int right = 0;
+  int bottom = 0;
+  constexpr int subpixels = Polygons::subpixels;
+  for (const Polygons::Corner& corner : drawing.polygons->corners) {
+    left = std::min(left, corner.x / subpixels - 1);
+    top = std::min(top, corner.y / subpixels - 1);
+    right = std::max(right, corner.x / subpixels + 1);
+    bottom = std::max(bottom, corner.y / subpixels + 1);
+  }
+  left = std::max(left, 0);
+  top = std::max(top, 0);
+  right = std::min(right, mask.width());
+  bottom = std::min(bottom, mask.height());
+  Rect part;
+  if (left < right && top < bottom) part = {left, top, right - left, bottom - top};
+  if (!drawing.is_blank) part = join(part, bounding_box(mask));
+  if (part.empty()) return {};
+  return BitWindow(intersect(grow(part, margin_px), mask.bounds()));
+}
+
+void pack_bits(const Mask& mask, const BitWindow& window, std::uint32_t* words) {
+  for (int y = window.first_row; y < window.first_row + window.rows; ++y) {
     const std::uint8_t* const row = mask.row(y);
-    for (int x = 0; x < mask.width(); x += 32) {
+    for (int word = window.first_word; word < window.first_word + window.words; ++word) {
+      const int x = 32 * word;
       const int count = std::min(32, mask.width() - x);
-      std::uint32_t word = 0;
+      std::uint32_t bits = 0;
       for (int i = 0; i < count; ++i) {
-        word |= (row[x + i] != 0 ? 1U : 0U) << static_cast<unsigned>(i);
+        bits |= (row[x + i] != 0 ? 1U : 0U) << static_cast<unsigned>(i);
       }
-      *words++ = word;
+      *words++ = bits;
     }
   }
 }
 
-void unpack_bits(const std::uint32_t* words, Mask& mask) {
+void unpack_bits(const std::uint32_t* words, const BitWindow& window, Mask& mask) {
   static const auto pixels = make_pixels();
-  for (int y = 0; y < mask.height(); ++y) {
+  for (int y = window.first_row; y < window.first_row + window.rows; ++y) {
     std::uint8_t* const row = mask.row(y);
-    for (int x = 0; x < mask.width(); x += 32, ++words) {
+    for (int word = window.first_word; word < window.first_word + window.words; ++word, ++words) {
+      const int x = 32 * word;
       const int count = std::min(32, mask.width() - x);
       for (int i = 0; i < count; i += 8) {
         const auto bits = static_cast<std::uint8_t>(*words >> static_cast<unsigned>(i));

@@ -2,18 +2,30 @@
 
 #include <cstdint>
 
+#include "detect/mask_drawer.h"
 #include "diminish/image.h"
 
 namespace diminish::gl {
 
-/// Words of 32 pixels that a row of a mask takes.
-inline int words_of_row(int width) {
-  return (width + 31) / 32;
-}
+// Masks as a bit a pixel: words of 32 pixels of a row, the leftmost in the lowest bit.
 
-/// A mask as a bit a pixel: rows of whole words, the leftmost pixel in a word's lowest bit.
-void pack_bits(const Mask& mask, std::uint32_t* words);
-/// Writes 0 and 255; the mask has its size.
-void unpack_bits(const std::uint32_t* words, Mask& mask);
+/// A part of a mask, in rows and words of a row.
+struct BitWindow {
+  int first_word = 0, first_row = 0;
+  int words = 0, rows = 0;
+
+  BitWindow() = default;
+  /// The whole words that hold a part of the picture.
+  explicit BitWindow(const Rect& part);
+  int size() const { return words * rows; }
+};
+
+/// What a drawing may set: where its polygons are, and what is set already, grown by `margin_px`.
+BitWindow window_of(const MaskDrawing& drawing, int margin_px);
+
+/// Row by row.
+void pack_bits(const Mask& mask, const BitWindow& window, std::uint32_t* words);
+/// Writes 0 and 255 in the window.
+void unpack_bits(const std::uint32_t* words, const BitWindow& window, Mask& mask);
 
 }  // namespace diminish::gl

@@ -18,11 +18,13 @@ constexpr std::size_t parts_across = 32768;
 
 // What masks.glsl declares.
 
+/// A window of an image's mask, and where it begins in the arrays.
 struct ImageBlock {
-  std::int32_t width, height, row_words, margin_px;
+  BitWindow window;
+  std::int32_t width, margin_px;  ///< of the whole image
   std::uint32_t first_word, padding;
 };
-static_assert(sizeof(ImageBlock) == 24);
+static_assert(sizeof(ImageBlock) == 32);
 
 /// Rows of a polygon.
 struct PartBlock {
@@ -46,6 +48,13 @@ struct Range {
 void bind(GLuint binding, GLuint buffer, const Range& range) {
   glBindBufferRange(GL_SHADER_STORAGE_BUFFER, binding, buffer, static_cast<GLintptr>(range.begin),
                     static_cast<GLsizeiptr>(std::max<std::size_t>(range.bytes, 4)));
+}
+
+void clear(GLuint buffer, const Range& range) {
+  const GLuint zero = 0;
+  glClearNamedBufferSubData(buffer, GL_R32UI, static_cast<GLintptr>(range.begin),
+                            static_cast<GLsizeiptr>(range.bytes), GL_RED_INTEGER, GL_UNSIGNED_INT,
+                            &zero);
 }
 
 }  // namespace
@@ -83,17 +92,11 @@ void GpuMaskDrawer::Resources::list(std::span<const MaskDrawing> drawings) {
   for (std::size_t i = 0; i < drawings.size(); ++i) {
     const MaskDrawing& drawing = drawings[i];
     const int margin_px = drawing.margin_px <= most_margin_px ? drawing.margin_px : 0;
-    const int width = drawing.mask->width();
-    const ImageBlock image{width,
-                           drawing.mask->height(),
-                           words_of_row(width),
-                           margin_px,
-                           static_cast<std::uint32_t>(words),
-                           0};
-    images.push_back(image);
+    const BitWindow window = window_of(drawing, margin_px);
+    const auto image_words = static_cast<std::size_t>(window.size());
+    images.push_back(
+        {window, drawing.mask->width(), margin_px, static_cast<std::uint32_t>(words), 0});
     list_parts(drawing, i);
-    const std::size_t image_words =
-        static_cast<std::size_t>(image.row_words) * static_cast<std::size_t>(image.height);
     words += image_words;
     most_words = std::max(most_words, image_words);
     corners += drawing.polygons->corners.size();
@@ -125,9 +128,10 @@ void GpuMaskDrawer::Resources::upload(std::span<const MaskDrawing> drawings) {
       cover_range_.begin + std::max<std::size_t>(cover_range_.bytes, 4);
   // Outlines grow and shrink from frame to frame.
   if (input.reserve(bytes + bytes / 2)) uploaded.reserve(bytes + bytes / 2);
-  drawn.reserve(grown_range_.bytes);
-  output.reserve(output_bytes);
-  downloaded.reserve(output_bytes);
+  drawn.reserve(grown_range_.bytes + grown_range_.bytes / 2);
+  if (output.reserve(output_bytes + output_bytes / 2)) {
+    downloaded.reserve(output_bytes + output_bytes / 2);
+  }
 
   std::byte* const to = uploaded.data();
   std::memcpy(to, images.data(), image_range_.bytes);
@@ -139,23 +143,19 @@ void GpuMaskDrawer::Resources::upload(std::span<const MaskDrawing> drawings) {
     corner += of_image.size() * sizeof(Polygons::Corner);
     if (is_blank) continue;
     auto* const bits = reinterpret_cast<std::uint32_t*>(to + bit_range_.begin);
-    pack_bits(*drawings[i].mask, bits + images[i].first_word);
+    pack_bits(*drawings[i].mask, images[i].window, bits + images[i].first_word);
   }
   copy(uploaded.name(), input.name(), bytes);
 }
 
 void GpuMaskDrawer::Resources::run() const {
   if (is_blank) {
-    const GLuint zero = 0;
-    glClearNamedBufferData(drawn.name(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &zero);
+    clear(drawn.name(), grown_range_);
   } else {
     glCopyNamedBufferSubData(input.name(), drawn.name(), static_cast<GLintptr>(bit_range_.begin), 0,
                              static_cast<GLsizeiptr>(bit_range_.bytes));
   }
-  const GLuint zero = 0;
-  glClearNamedBufferSubData(output.name(), GL_R32UI, static_cast<GLintptr>(cover_range_.begin),
-                            static_cast<GLsizeiptr>(std::max<std::size_t>(cover_range_.bytes, 4)),
-                            GL_RED_INTEGER, GL_UNSIGNED_INT, &zero);
+  clear(output.name(), cover_range_);
   bind(0, input.name(), image_range_);
   bind(1, input.name(), part_range_);
   bind(2, input.name(), corner_range_);
@@ -184,7 +184,7 @@ void GpuMaskDrawer::Resources::read(std::span<MaskDrawing> drawings) const {
   const std::uint32_t* covers =
       reinterpret_cast<const std::uint32_t*>(downloaded.data() + cover_range_.begin);
   for (std::size_t i = 0; i < drawings.size(); ++i) {
-    unpack_bits(grown + images[i].first_word, *drawings[i].mask);
+    unpack_bits(grown + images[i].first_word, images[i].window, *drawings[i].mask);
     for (std::uint8_t& covered : drawings[i].covers) covered = *covers++ != 0 ? 1 : covered;
   }
 }
@@ -200,16 +200,15 @@ GpuMaskDrawer::~GpuMaskDrawer() {
 }
 
 void GpuMaskDrawer::draw(std::span<MaskDrawing> drawings) {
-  if (drawings.empty()) return;
   resources_->list(drawings);
-  {
+  if (resources_->words > 0) {
     const Current current(context_);
     resources_->upload(drawings);
     resources_->run();
     wait_until_done();
     context_.check("drawing masks");
   }
-  resources_->read(drawings);
+  if (resources_->words > 0) resources_->read(drawings);
   for (const MaskDrawing& drawing : drawings) {
     if (drawing.margin_px > most_margin_px) dilation_.dilate(*drawing.mask, drawing.margin_px);
   }

@@ -41,16 +41,16 @@ void main() {
   Part part = parts[index];
   MaskImage image = images[part.place / counts.y];
   int row = part.first_row + int(gl_LocalInvocationID.x);
-  if (row >= image.size.y) return;
+  if (row >= image.begin.y + image.size.y) return;
   int row_y = row * subpixels;
 
-  int first = image.size.x;
+  int first = image.width;
   int last = 0;
   ivec2 previous = corners[part.end - 1u];
   for (uint i = part.begin; i < part.end; ++i) {
     ivec2 corner = corners[i];
     if (crosses(previous, corner, row_y)) {
-      int column = clamp(first_column(previous, corner, row_y), 0, image.size.x);
+      int column = clamp(first_column(previous, corner, row_y), 0, image.width);
       first = min(first, column);
       last = max(last, column);
     }
@@ -58,20 +58,20 @@ void main() {
   }
 
   bool any = false;
-  uint row_begin = image.first_word + uint(row * image.row_words);
+  int row_begin = int(image.first_word) + (row - image.begin.y) * image.size.x - image.begin.x;
   for (int word = first / 32; word * 32 < last; ++word) {
     uint inside = 0u;
     previous = corners[part.end - 1u];
     for (uint i = part.begin; i < part.end; ++i) {
       ivec2 corner = corners[i];
       if (crosses(previous, corner, row_y)) {
-        int column = clamp(first_column(previous, corner, row_y), 0, image.size.x);
+        int column = clamp(first_column(previous, corner, row_y), 0, image.width);
         inside ^= pixels_from(column - 32 * word);
       }
       previous = corner;
     }
     if (inside == 0u) continue;
-    atomicOr(drawn[row_begin + uint(word)], inside);
+    atomicOr(drawn[row_begin + word], inside);
     any = true;
   }
   if (any) covers[part.place] = 1u;

@@ -28,16 +28,16 @@ uint spread(uint left, uint middle, uint right, int reach) {
 void main() {
   MaskImage image = images[gl_WorkGroupID.y];
   int index = int(gl_GlobalInvocationID.x);
-  if (index >= image.row_words * image.size.y) return;
-  int column = index % image.row_words;
-  int row = index / image.row_words;
+  if (index >= image.size.x * image.size.y) return;
+  int column = index % image.size.x;
+  int row = index / image.size.x;
   int margin = image.margin_px;
   uint result = 0u;
   for (int y = max(row - margin, 0); y <= min(row + margin, image.size.y - 1); ++y) {
-    uint at = image.first_word + uint(y * image.row_words + column);
+    uint at = image.first_word + uint(y * image.size.x + column);
     uint middle = drawn[at];
     uint left = column > 0 ? drawn[at - 1u] : 0u;
-    uint right = column + 1 < image.row_words ? drawn[at + 1u] : 0u;
+    uint right = column + 1 < image.size.x ? drawn[at + 1u] : 0u;
     if ((left | middle | right) == 0u) continue;
     int dy = y - row;
     result |= spread(left, middle, right, root_of(margin * margin - dy * dy));

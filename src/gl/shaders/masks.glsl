@@ -1,10 +1,11 @@
 // Masks of several images, a bit a pixel: src/gl/mask_drawer.cpp.
 
+// A window of an image's mask, in words of 32 pixels, the leftmost of which is the lowest bit, and rows.
 struct MaskImage {
-  ivec2 size;
-  int row_words;  // of 32 pixels; the leftmost is the lowest bit
+  ivec2 begin, size;
+  int width;  // of the whole image, pixels
   int margin_px;
-  uint first_word;
+  uint first_word;  // in the arrays
 };
 
 // Rows of a polygon.
