@@ -50,6 +50,12 @@ void bind(GLuint binding, GLuint buffer, const Range& range) {
                     static_cast<GLsizeiptr>(std::max<std::size_t>(range.bytes, 4)));
 }
 
+/// Outlines grow and shrink from frame to frame: where there is not enough room, half as much more.
+std::size_t room_for(std::size_t bytes, std::size_t& room) {
+  if (bytes > room) room = bytes + bytes / 2;
+  return room;
+}
+
 void clear(GLuint buffer, const Range& range) {
   const GLuint zero = 0;
   glClearNamedBufferSubData(buffer, GL_R32UI, static_cast<GLintptr>(range.begin),
@@ -79,8 +85,9 @@ struct GpuMaskDrawer::Resources {
  private:
   void list_parts(const MaskDrawing& drawing, std::size_t image);
 
-  Range image_range_, part_range_, corner_range_, bit_range_;  ///< of the input
-  Range grown_range_, cover_range_;                            ///< of the output
+  Range image_range_, part_range_, corner_range_, bit_range_;         ///< of the input
+  Range grown_range_, cover_range_;                                   ///< of the output
+  std::size_t input_bytes_ = 0, drawn_bytes_ = 0, output_bytes_ = 0;  ///< that there is room for
 };
 
 void GpuMaskDrawer::Resources::list(std::span<const MaskDrawing> drawings) {
@@ -126,12 +133,11 @@ void GpuMaskDrawer::Resources::upload(std::span<const MaskDrawing> drawings) {
   cover_range_ = Range::after(grown_range_, images.size() * objects * sizeof(std::uint32_t));
   const std::size_t output_bytes =
       cover_range_.begin + std::max<std::size_t>(cover_range_.bytes, 4);
-  // Outlines grow and shrink from frame to frame.
-  if (input.reserve(bytes + bytes / 2)) uploaded.reserve(bytes + bytes / 2);
-  drawn.reserve(grown_range_.bytes + grown_range_.bytes / 2);
-  if (output.reserve(output_bytes + output_bytes / 2)) {
-    downloaded.reserve(output_bytes + output_bytes / 2);
-  }
+  input.reserve(room_for(bytes, input_bytes_));
+  uploaded.reserve(input_bytes_);
+  drawn.reserve(room_for(grown_range_.bytes, drawn_bytes_));
+  output.reserve(room_for(output_bytes, output_bytes_));
+  downloaded.reserve(output_bytes_);
 
   std::byte* const to = uploaded.data();
   std::memcpy(to, images.data(), image_range_.bytes);

@@ -7,13 +7,10 @@
 
 namespace diminish {
 
-void FrameTexture::want(const std::optional<GlSharing>& application,
-                        [[maybe_unused]] const Intrinsics& color) {
-  texture_ = {};
-  output_.reset();
-  if (!application) return;
+std::unique_ptr<TextureOutput> make_texture_output([[maybe_unused]] const GlSharing& application,
+                                                   [[maybe_unused]] const Intrinsics& color) {
 #ifdef DIMINISH_HAS_GL
-  output_ = std::make_unique<gl::PictureTextures>(*application, color);
+  return std::make_unique<gl::PictureTextures>(application, color);
 #else
   throw Error("textures: this build of diminish has no OpenGL (DIMINISH_WITH_GL)");
 #endif

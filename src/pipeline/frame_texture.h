@@ -1,7 +1,7 @@
 #pragma once
 
 #include <memory>
-#include <optional>
+#include <utility>
 
 #include "composite/texture_output.h"
 #include "diminish/diminished_frame.h"
@@ -9,11 +9,19 @@
 
 namespace diminish {
 
+/// Textures that an application shares. Throws Error where there is no OpenGL, or the context
+/// cannot be shared.
+std::unique_ptr<TextureOutput> make_texture_output(const GlSharing& application,
+                                                   const Intrinsics& color);
+
 /// A frame's picture as a texture, where an application wants one.
 class FrameTexture {
  public:
-  /// nullopt: no longer. Throws Error where there is no OpenGL, or the context cannot be shared.
-  void want(const std::optional<GlSharing>& application, const Intrinsics& color);
+  /// output: null where nobody wants a texture any longer.
+  void put_to(std::unique_ptr<TextureOutput> output) {
+    texture_ = {};
+    output_ = std::move(output);
+  }
 
   /// Where a GPU puts the picture; null where nobody wants a texture.
   TextureOutput* output() const { return output_.get(); }

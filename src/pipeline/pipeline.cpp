@@ -220,7 +220,9 @@ void Pipeline::want_reconstruction(bool wanted) {
   implementation_->wants_reconstruction = wanted;
 }
 void Pipeline::want_texture(const std::optional<GlSharing>& application) {
-  implementation_->texture.want(application, implementation_->rig.color);
+  Implementation& self = *implementation_;
+  self.texture.put_to(nullptr);
+  if (application) self.texture.put_to(make_texture_output(*application, self.rig.color));
 }
 const GlTexture& Pipeline::texture() const {
   return implementation_->texture.texture();
