@@ -1,7 +1,6 @@
 #include "gl/mask_drawer.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include "gl/buffer.h"
 #include "gl/frame_block.h"
@@ -140,13 +139,12 @@ void GpuMaskDrawer::Resources::upload(std::span<const MaskDrawing> drawings) {
   downloaded.reserve(output_bytes_);
 
   std::byte* const to = uploaded.data();
-  std::memcpy(to, images.data(), image_range_.bytes);
-  std::memcpy(to + part_range_.begin, parts.data(), part_range_.bytes);
-  std::byte* corner = to + corner_range_.begin;
+  std::copy(images.begin(), images.end(), reinterpret_cast<ImageBlock*>(to));
+  std::copy(parts.begin(), parts.end(), reinterpret_cast<PartBlock*>(to + part_range_.begin));
+  auto* corner = reinterpret_cast<Polygons::Corner*>(to + corner_range_.begin);
   for (std::size_t i = 0; i < drawings.size(); ++i) {
     const std::vector<Polygons::Corner>& of_image = drawings[i].polygons->corners;
-    std::memcpy(corner, of_image.data(), of_image.size() * sizeof(Polygons::Corner));
-    corner += of_image.size() * sizeof(Polygons::Corner);
+    corner = std::copy(of_image.begin(), of_image.end(), corner);
     if (is_blank) continue;
     auto* const bits = reinterpret_cast<std::uint32_t*>(to + bit_range_.begin);
     pack_bits(*drawings[i].mask, images[i].window, bits + images[i].first_word);
@@ -187,7 +185,7 @@ void GpuMaskDrawer::Resources::run() const {
 
 void GpuMaskDrawer::Resources::read(std::span<MaskDrawing> drawings) const {
   const auto* const grown = reinterpret_cast<const std::uint32_t*>(downloaded.data());
-  const std::uint32_t* covers =
+  const auto* covers =
       reinterpret_cast<const std::uint32_t*>(downloaded.data() + cover_range_.begin);
   for (std::size_t i = 0; i < drawings.size(); ++i) {
     unpack_bits(grown + images[i].first_word, images[i].window, *drawings[i].mask);
