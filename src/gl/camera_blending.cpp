@@ -5,7 +5,6 @@
 #include "gl/definitions.h"
 #include "gl/result_pixel.h"
 #include "reconstruct/confidence_grid.h"
-#include "reconstruct/layers.h"
 
 namespace diminish::gl {
 namespace {
@@ -24,10 +23,15 @@ std::string blending_rules() {
 }
 
 Program pass(const std::vector<std::string>& seen_files, const char* last) {
-  std::vector<std::string> files = {"frame.glsl", "sdct.glsl", "texture.glsl", "work.glsl"};
-  files.insert(files.end(), seen_files.begin(), seen_files.end());
-  files.insert(files.end(), {"seen.glsl", "blending.glsl", last});
+  std::vector<std::string> files = files_before(seen_files);
+  files.insert(files.end(), {"blending.glsl", last});
   return compute_program(std::move(files), blending_rules());
+}
+
+Program color_pass(const std::vector<std::string>& seen_files) {
+  std::vector<std::string> files = files_before(seen_files);
+  files.emplace_back("color.comp");
+  return compute_program(std::move(files), "#define BLENDED\n");
 }
 
 /// blending.glsl's grid_size().
@@ -45,12 +49,20 @@ void dispatch(const Program& program, const Rect& size, std::size_t depth = 1) {
 
 }  // namespace
 
+std::vector<std::string> files_before(const std::vector<std::string>& seen_files) {
+  std::vector<std::string> files = {"frame.glsl", "sdct.glsl", "texture.glsl", "work.glsl"};
+  files.insert(files.end(), seen_files.begin(), seen_files.end());
+  files.emplace_back("seen.glsl");
+  return files;
+}
+
 CameraBlending::CameraBlending(const Rig& rig, const std::vector<std::string>& seen_files)
     : seen_(pass(seen_files, "blend_seen.comp")),
       cells_(pass(seen_files, "blend_cells.comp")),
       trust_(pass(seen_files, "blend_trust.comp")),
       smooth_(pass(seen_files, "blend_smooth.comp")),
-      choose_(pass(seen_files, "blend_choose.comp")) {
+      choose_(pass(seen_files, "blend_choose.comp")),
+      color_(color_pass(seen_files)) {
   constexpr std::size_t cell_bytes = 4 * sizeof(float);
   const Rect whole = rig.color.bounds();
   seen_by_.reserve(pixels_of(whole) * sizeof(std::uint32_t));
@@ -92,6 +104,13 @@ void CameraBlending::run(const FrameUpload& upload, const Rect& region, const Bu
   });
   timer.measure("blend", [&] {
     dispatch(choose_, region);
+    finish();
+  });
+  timer.measure("color", [&] {
+    for (int k = 0; k < upload.cameras(); ++k) {
+      upload.bind_camera(k);
+      dispatch(color_, region);
+    }
     finish();
   });
 }

@@ -8,8 +8,13 @@
 #include "gl/frame_upload.h"
 #include "gl/pass_timer.h"
 #include "gl/program.h"
+#include "reconstruct/layers.h"
 
 namespace diminish::gl {
+
+/// The files of a pass over what a Rasterizer has found, before its own. seen_files: the
+/// Rasterizer's.
+std::vector<std::string> files_before(const std::vector<std::string>& seen_files);
 
 /// Blends what several RGB-D cameras show by the rules of layers.h: what CameraBlender does, in
 /// compute passes over pixels and over the cells of a ConfidenceGrid. Nothing is taken out of the
@@ -26,12 +31,18 @@ class CameraBlending {
 
   /// Adds the cameras' places to the upload, which has packed the frame; needs no context.
   void pack(FrameUpload& upload);
-  /// Which cameras the region's pixels are taken from. work: the cameras' WorkBlocks, in order.
-  /// What the Rasterizer has found, and both buffers of results (ResultBuffers), are bound.
+  /// Whether so few cameras take part that `run` blends them however many see something. Else it
+  /// may leave the result to the pass that chooses one, which must come before.
+  static bool surely_blends(const FrameUpload& upload) {
+    return static_cast<std::size_t>(upload.cameras()) <= blending::most_cameras;
+  }
+  /// Which cameras the region's pixels are taken from, and their colours. work: the cameras'
+  /// WorkBlocks, in order. What the Rasterizer has found, and both buffers of results
+  /// (ResultBuffers), are bound.
   void run(const FrameUpload& upload, const Rect& region, const Buffer& work, PassTimer& timer);
 
  private:
-  Program seen_, cells_, trust_, smooth_, choose_;
+  Program seen_, cells_, trust_, smooth_, choose_, color_;
   Buffer seen_by_, cell_values_;
   std::size_t places_begin_ = 0;
 };

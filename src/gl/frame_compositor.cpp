@@ -12,9 +12,9 @@
 namespace diminish::gl {
 namespace {
 
-Program pass(std::vector<std::string> files) {
+Program pass(std::vector<std::string> files, const char* define = "") {
   files.insert(files.begin(), {"frame.glsl", "composition.glsl"});
-  return compute_program(std::move(files), composition_rules());
+  return compute_program(std::move(files), composition_rules() + define);
 }
 
 std::string mode_file(const std::string& mode) {
@@ -88,6 +88,8 @@ FrameCompositor::FrameCompositor(const Rig& rig)
       membrane_sums_(pass({"membrane_nodes.glsl", "color_map.glsl", "membrane_sums.comp"})),
       membrane_solve_(pass({"membrane_nodes.glsl", "membrane_solve.comp"})),
       map_colors_(pass({"membrane_nodes.glsl", "color_map.glsl", "map_colors.comp"})),
+      mix_second_(pass({"membrane_nodes.glsl", "color_map.glsl", "map_colors.comp"},
+                       "#define SECOND_VIEW\n")),
       lift_(pass({"lift.comp"})),
       smooth_guide_(pass({"smoothing.glsl", "smooth_guide.comp"})),
       smooth_colors_(pass({"smoothing.glsl", "smooth_colors.comp"})),
@@ -208,6 +210,7 @@ void FrameCompositor::correct_colors(PassTimer& timer) const {
     });
   }
   timer.measure("map", [&] { run_pass(map_colors_); });
+  if (block_.mixes_second != 0) timer.measure("mix", [&] { run_pass(mix_second_); });
 }
 
 /// What comes after the pixels that cameras see.

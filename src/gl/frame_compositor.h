@@ -60,8 +60,8 @@ class FrameCompositor {
   std::size_t block_begin_ = 0;
   Rect region_;
 
-  Program label_, light_, sort_, membrane_sums_, membrane_solve_, map_colors_, lift_, smooth_guide_,
-      smooth_colors_, row_distances_, restore_, rim_;
+  Program label_, light_, sort_, membrane_sums_, membrane_solve_, map_colors_, mix_second_, lift_,
+      smooth_guide_, smooth_colors_, row_distances_, restore_, rim_;
   std::map<std::string, Program> shows_;  ///< by view mode
   SurfaceFilling filling_;
   Buffer picture_, values_, state_, surface_, distances_, counts_, nodes_;

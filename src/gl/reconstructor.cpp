@@ -14,9 +14,8 @@ namespace diminish::gl {
 namespace {
 
 std::vector<std::string> files(const Rasterizer& rasterizer, const char* last) {
-  std::vector<std::string> names = {"frame.glsl", "sdct.glsl", "texture.glsl", "work.glsl"};
-  for (std::string& name : rasterizer.seen_files()) names.push_back(std::move(name));
-  names.insert(names.end(), {"seen.glsl", last});
+  std::vector<std::string> names = files_before(rasterizer.seen_files());
+  names.emplace_back(last);
   return names;
 }
 
@@ -221,6 +220,7 @@ void GlReconstructor::draw(const Rect& region) {
                       static_cast<GLuint>(region.height), 1);
   };
   const int cameras = r.upload.cameras();
+  const bool blends = r.upload.blends();
   r.timer.begin_frame();
   r.timer.measure("upload", [&] {
     r.upload.send();
@@ -253,11 +253,12 @@ void GlReconstructor::draw(const Rect& region) {
       glDispatchCompute(1, 1, 1);
       glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     }
+    if (blends && CameraBlending::surely_blends(r.upload)) return;
     r.merge.use();
     dispatch();
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   });
-  if (r.upload.blends()) r.blending->run(r.upload, region, r.work, r.timer);
+  if (blends) return r.blending->run(r.upload, region, r.work, r.timer);
   r.timer.measure("color", [&] {
     r.color.use();
     for (int k = 0; k < cameras; ++k) {

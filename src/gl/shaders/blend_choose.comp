@@ -27,7 +27,7 @@ void main() {
   if (place.x >= region.z) return;
   int index = place.y * region.z + place.x;
   second[index] = uvec2(0);
-  if (blended_cameras() == 0u) return;
+  if (blended_cameras() == 0u) return;  // merge.comp has written the result
   uint seen = seen_by[index];
   if (seen == 0u) {
     result[index] = uvec2(0);

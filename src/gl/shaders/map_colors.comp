@@ -1,5 +1,5 @@
 // Writes the mapped colours, with the membrane's correction, where an object is removed and something
-// is seen. One pixel of the region each.
+// is seen. SECOND_VIEW: mixes in the second camera's, likewise. One pixel of the region each.
 
 layout(local_size_x = 64) in;
 
@@ -14,18 +14,22 @@ vec3 correction(ivec2 place) {
              mix(nodes[upper + 1].xyz, nodes[lower + 1].xyz, f.y), f.x);
 }
 
+#ifdef SECOND_VIEW
+uint seen_at(int index) { return second[index].x; }
+#else
+uint seen_at(int index) { return result[index].x; }
+#endif
+
 void main() {
   ivec2 place = ivec2(gl_GlobalInvocationID.xy);
   if (place.x >= region.z) return;
   int index = index_of(place);
-  uint seen = result[index].x;
+  uint seen = seen_at(index);
   if (seen <= color_bits || !is_object(index)) return;
-  vec3 added = correction(place);
-  uint color = word_of_channels(mapped_color(seen, region.xy + place) + added);
-  if (mixes_second && second[index].y > 0u) {
-    uint other = word_of_channels(mapped_color(second[index].x, region.xy + place) + added);
-    color = word_of_channels(
-        mix(vec3(levels_of(color)), vec3(levels_of(other)), second_share(index)));
-  }
+  uint color = word_of_channels(mapped_color(seen, region.xy + place) + correction(place));
+#ifdef SECOND_VIEW
+  vec3 first = vec3(levels_of(picture[index]));
+  color = word_of_channels(mix(first, vec3(levels_of(color)), second_share(index)));
+#endif
   picture[index] = color;
 }

@@ -17,5 +17,6 @@ void main() {
     works[place].turn = camera;
     if (works[camera].drawn_pixels > 0u) ++seeing;
   }
-  works[0].blended = seeing > 1u && seeing <= most_blended ? seeing : 0u;
+  bool blends = most_blended > 0u && seeing <= most_blended;
+  works[0].blended = blends ? max(seeing, 1u) : 0u;
 }
