@@ -17,11 +17,10 @@ void masks(benchmark::State& state, const char* name) {
                              {first.rig(), first.recording.scene}};
   stages[0].draw_by("gl");
   const FrameReport& report = first.result.report;
-  OcclusionMasks drawn;
   std::vector<OccluderReport> reports;
   const auto milliseconds_of = [&](OccluderStage& stage) {
     return milliseconds([&] {
-      stage.detect({first.frame, report.markers, report.poses, first.options}, drawn, reports);
+      stage.detect({first.frame, report.markers, report.poses, first.options}, reports);
     });
   };
   std::vector<double> times[2];

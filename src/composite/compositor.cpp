@@ -40,40 +40,37 @@ Counts sort_row(const std::uint8_t* mask, const std::uint8_t* source, int begin,
   return {static_cast<std::size_t>(mask_pixels), static_cast<std::size_t>(missing_pixels)};
 }
 
-/// Clears `missing`. objects: the last mask's bounding box, outside of which nothing of it is set;
-/// becomes this one's.
-void begin_missing(const Mask& occlusion, Mask& missing, Rect& objects) {
+/// Clears `missing`. objects: the last mask's bounding box, outside of which nothing of it is set.
+void clear_missing(const Mask& occlusion, const Rect& objects, Mask& missing) {
   if (missing.width() == occlusion.width() && missing.height() == occlusion.height()) {
     missing.fill(objects, 0);
   } else {
     missing.resize(occlusion.width(), occlusion.height(), 0);
   }
-  objects = bounding_box(occlusion);
 }
 
 /// Copies the camera's picture and sorts the mask's pixels into seen and missing.
-/// missing, objects: as begin_missing has them.
-void sort_pixels(const Image<Bgr>& camera, const OcclusionMasks& masks, DiminishedFrame& result,
-                 Mask& missing, Rect& objects) {
+/// objects: the mask's bounding box. missing: nothing of it is set.
+void sort_pixels(const Image<Bgr>& camera, const Mask& occlusion, const Rect& objects,
+                 DiminishedFrame& result, Mask& missing) {
   const int width = camera.width();
   const int height = camera.height();
   result.picture.resize(width, height);
   result.mask.resize(width, height);
   result.provenance.resize(width, height);
-  begin_missing(masks.color, missing, objects);
   const Rect drawn = intersect(objects, result.reconstruction.region);
   const Counts counts = sum_over_rows(height, [&](Rows rows) {
     Counts sum;
     for (int y = rows.first; y < rows.last; ++y) {
       std::copy_n(camera.row(y), width, result.picture.row(y));
-      std::copy_n(masks.color.row(y), width, result.mask.row(y));
+      std::copy_n(occlusion.row(y), width, result.mask.row(y));
       std::fill_n(result.provenance.row(y), width, provenance::camera);
       if (y < objects.y || y >= objects.bottom()) continue;
       const bool is_drawn = y >= drawn.y && y < drawn.bottom();
-      sum = sum + sort_row(masks.color.row(y),
-                           is_drawn ? result.reconstruction.source.row(y) : nullptr, objects.x,
-                           objects.right(), is_drawn ? drawn.x : 0, is_drawn ? drawn.right() : 0,
-                           result.provenance.row(y), missing.row(y));
+      sum =
+          sum + sort_row(occlusion.row(y), is_drawn ? result.reconstruction.source.row(y) : nullptr,
+                         objects.x, objects.right(), is_drawn ? drawn.x : 0,
+                         is_drawn ? drawn.right() : 0, result.provenance.row(y), missing.row(y));
     }
     return sum;
   });
@@ -113,29 +110,32 @@ void on_gpu_or_processor(const std::string& name,
 
 }  // namespace
 
-void Compositor::composite(const Image<Bgr>& camera, const OcclusionMasks& masks,
+void Compositor::composite(const Image<Bgr>& camera, const Mask& occlusion, const Rect& objects,
                            const Options& options, DiminishedFrame& result) {
   StageTimes& milliseconds = result.report.milliseconds;
   {
     const ScopedTimer timer(milliseconds, Stage::compositing);
-    sort_pixels(camera, masks, result, missing_, objects_);
+    clear_missing(occlusion, objects_, missing_);
+    objects_ = objects;
+    sort_pixels(camera, occlusion, objects, result, missing_);
   }
   if (result.report.valid_pixels > 0) {
     const ScopedTimer timer(milliseconds, Stage::color_correction);
-    correct_colors(camera, masks.color, options.color_correct, result);
+    correct_colors(camera, occlusion, options.color_correct, result);
   }
   if (!result.reconstruction.light.empty()) {
     const ScopedTimer timer(milliseconds, Stage::color_correction);
     shadow_lifting_.lift(result.reconstruction, result.picture);
   }
-  show(camera, masks, options, result);
+  show(camera, occlusion, options, result);
 }
 
-void Compositor::complete(const Image<Bgr>& camera, const OcclusionMasks& masks,
+void Compositor::complete(const Image<Bgr>& camera, const Mask& occlusion, const Rect& objects,
                           const Options& options, DiminishedFrame& result) {
   {
     const ScopedTimer timer(result.report.milliseconds, Stage::compositing);
-    begin_missing(masks.color, missing_, objects_);
+    clear_missing(occlusion, objects_, missing_);
+    objects_ = objects;
     for (int y = objects_.y; y < objects_.bottom(); ++y) {
       const std::uint8_t* origin = result.provenance.row(y);
       std::uint8_t* missing = missing_.row(y);
@@ -144,18 +144,18 @@ void Compositor::complete(const Image<Bgr>& camera, const OcclusionMasks& masks,
       }
     }
   }
-  show(camera, masks, options, result);
+  show(camera, occlusion, options, result);
 }
 
 /// Inpainting and what comes after it. (What is missing is filled from pixels as they were seen:
 /// that is 0.1 dB better than from smoothed ones.)
-void Compositor::show(const Image<Bgr>& camera, const OcclusionMasks& masks, const Options& options,
+void Compositor::show(const Image<Bgr>& camera, const Mask& occlusion, const Options& options,
                       DiminishedFrame& result) {
   StageTimes& milliseconds = result.report.milliseconds;
   const bool has_shadows = !result.reconstruction.light.empty();
   if (result.report.missing_pixels > 0) {
     const ScopedTimer timer(milliseconds, Stage::inpainting);
-    if (!inpaint({missing_, masks.color, result.reconstruction}, options, result)) {
+    if (!inpaint({missing_, occlusion, result.reconstruction}, options, result)) {
       std::replace(result.provenance.begin(), result.provenance.end(), provenance::inpainted,
                    provenance::unknown);
     }
@@ -167,12 +167,12 @@ void Compositor::show(const Image<Bgr>& camera, const OcclusionMasks& masks, con
   }
   if (has_shadows && !options.remove_shadows) {
     const ScopedTimer timer(milliseconds, Stage::color_correction);
-    shadow_lifting_.restore_outside(camera, masks.color, result.reconstruction, result.picture);
+    shadow_lifting_.restore_outside(camera, occlusion, result.reconstruction, result.picture);
   }
   if (result.report.mask_pixels > 0) {
     const ScopedTimer timer(milliseconds, Stage::compositing);
     const int width_px = soft_rim_width_px(options, has_shadows);
-    soft_rim_.blend(camera, masks.color, objects_, width_px, result.picture);
+    soft_rim_.blend(camera, occlusion, objects_, width_px, result.picture);
     view_mode(options.mode).show(camera, options, result);
   }
 }

@@ -21,19 +21,20 @@ class Compositor {
   /// result.reconstruction has been drawn. Fills picture, mask, provenance, the pixel counts and
   /// the times of the stages. Outside the mask the picture is `camera`, bit for bit; inside, pixels
   /// that were reconstructed are colour-corrected, and the others are inpainted.
-  void composite(const Image<Bgr>& camera, const OcclusionMasks& masks, const Options& options,
-                 DiminishedFrame& result);
+  /// objects: the mask's bounding box.
+  void composite(const Image<Bgr>& camera, const Mask& occlusion, const Rect& objects,
+                 const Options& options, DiminishedFrame& result);
 
   /// The rest, where all that `composite` does before inpainting is done: a GPU has filled picture,
   /// mask, provenance and pixel counts.
-  void complete(const Image<Bgr>& camera, const OcclusionMasks& masks, const Options& options,
-                DiminishedFrame& result);
+  void complete(const Image<Bgr>& camera, const Mask& occlusion, const Rect& objects,
+                const Options& options, DiminishedFrame& result);
 
   /// Whether the reconstruction's `surface` is used.
   bool uses_surfaces(const Options& options);
 
  private:
-  void show(const Image<Bgr>& camera, const OcclusionMasks& masks, const Options& options,
+  void show(const Image<Bgr>& camera, const Mask& occlusion, const Options& options,
             DiminishedFrame& result);
   void correct_colors(const Image<Bgr>& camera, const Mask& occlusion, const std::string& name,
                       DiminishedFrame& result);

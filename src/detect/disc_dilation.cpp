@@ -2,33 +2,47 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace diminish {
 namespace {
+
+/// The first pixel of a row from x on that `is_set`, or is not, as `wanted`; `end` if there is
+/// none.
+template <class IsSet>
+int find(const std::uint8_t* row, int x, int end, const IsSet& is_set, bool wanted) {
+  constexpr int step = sizeof(std::uint64_t);
+  // Most pixels have neighbours that are the same.
+  for (; x + step <= end && is_set(row[x]) != wanted; x += step) {
+    std::uint64_t pixels = 0;
+    std::memcpy(&pixels, row + x, sizeof(pixels));
+    if (pixels != row[x] * 0x0101010101010101U) break;
+  }
+  while (x < end && is_set(row[x]) != wanted) ++x;
+  return x;
+}
 
 /// Calls visit(begin, end) for each run of pixels in [begin, end) of a row that `is_set`.
 template <class IsSet, class Visit>
 void for_each_run(const std::uint8_t* row, int begin, int end, const IsSet& is_set, Visit&& visit) {
   for (int x = begin; x < end;) {
-    while (x < end && !is_set(row[x])) ++x;
-    const int run = x;
-    while (x < end && is_set(row[x])) ++x;
+    const int run = find(row, x, end, is_set, true);
+    x = find(row, run, end, is_set, false);
     if (x > run) visit(run, x);
   }
 }
 
 }  // namespace
 
-void DiscDilation::dilate(Mask& mask, int radius) {
-  const Rect box = bounding_box(mask);
-  copy_part(mask, box);
+void DiscDilation::dilate(Mask& mask, const Rect& part, int radius) {
+  copy_part(mask, part);
   const auto is_set = [](std::uint8_t value) { return value != 0; };
-  spread_runs(box, radius, is_set, 255, mask);
+  spread_runs(part, radius, is_set, 255, mask);
 }
 
 void DiscDilation::close(Mask& mask, int radius) {
   const Rect box = bounding_box(mask);
-  dilate(mask, radius);
+  dilate(mask, box, radius);
   // What the dilation left empty eats back as far. Beyond the picture's border is nothing that
   // would.
   const Rect part = intersect(grow(box, 2 * radius + 1), mask.bounds());

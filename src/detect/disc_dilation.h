@@ -12,7 +12,9 @@ class DiscDilation {
  public:
   /// Sets every pixel of `mask` at most `radius` pixels (Euclidean, between centres) from a
   /// non-zero pixel to 255, and the others to 0.
-  void dilate(Mask& mask, int radius);
+  void dilate(Mask& mask, int radius) { dilate(mask, bounding_box(mask), radius); }
+  /// Likewise. part: outside of which nothing is set.
+  void dilate(Mask& mask, const Rect& part, int radius);
 
   /// Fills gaps and holes that a disc of `radius` pixels does not fit in: dilation, then erosion.
   void close(Mask& mask, int radius);

@@ -17,7 +17,8 @@ struct MaskDrawing {
   const Polygons* polygons = nullptr;  ///< to be drawn
   int margin_px = 0;                   ///< by which the mask grows then
   bool is_blank = true;                ///< nothing is set in it yet
-  Mask* mask = nullptr;                ///< 0 and 255; of the image's size
+  Rect part;             ///< outside of which nothing is set, or will be before it grows
+  Mask* mask = nullptr;  ///< 0 and 255; of the image's size
   /// By object, 0: becomes 1 where a polygon of its covers a pixel.
   std::vector<std::uint8_t> covers;
 };

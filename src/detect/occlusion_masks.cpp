@@ -8,10 +8,6 @@
 namespace diminish {
 namespace {
 
-void clear(const Intrinsics& intrinsics, Mask& mask) {
-  mask.resize(intrinsics.width, intrinsics.height, 0);
-}
-
 /// The depth sensor's margin that covers the same angle as `margin_px` does in the colour sensor.
 int depth_margin_px(const RgbdCamera& camera, int margin_px) {
   return static_cast<int>(std::ceil(margin_px * camera.depth.fx / camera.color.fx));
@@ -30,6 +26,12 @@ OccluderStage::OccluderStage(const Rig& rig, const Scene& scene) : rig_(rig) {
     names_.push_back(spec.name);
   }
   drawings_.resize(1 + 2 * rig.rgbd.size());
+  masks_.color.resize(rig.color.width, rig.color.height, 0);
+  for (const RgbdCamera& camera : rig.rgbd) {
+    masks_.rgbd_color.emplace_back(camera.color.width, camera.color.height);
+    masks_.rgbd_depth.emplace_back(camera.depth.width, camera.depth.height);
+  }
+  parts_.resize(drawings_.size());
   processor_ = Registry<MaskDrawer>::get("cpu")();
 }
 
@@ -44,9 +46,8 @@ void OccluderStage::draw_by(const std::string& drawer) {
   drawer_.reset();
 }
 
-void OccluderStage::detect(const Observation& observation, OcclusionMasks& masks,
-                           std::vector<OccluderReport>& reports) {
-  clear(masks);
+void OccluderStage::detect(const Observation& observation, std::vector<OccluderReport>& reports) {
+  clear();
   outlines_.clear(rig_.rgbd.size());
   is_blank_ = true;
   reports.clear();
@@ -58,22 +59,26 @@ void OccluderStage::detect(const Observation& observation, OcclusionMasks& masks
     } else if (auto* const shape = dynamic_cast<ShapeDetector*>(detectors_[i].get())) {
       reports.push_back(shape->outline(observation, static_cast<std::uint32_t>(i), outlines_));
     } else {
-      reports.push_back(detectors_[i]->detect(observation, masks));
+      reports.push_back(detectors_[i]->detect(observation, masks_));
       is_blank_ = false;
     }
   }
-  draw(observation.options, masks, reports);
+  draw(observation.options, reports);
+  objects_ = bounding_box(masks_.color, parts_[0]);
 }
 
 /// What is outlined, and the margins.
-void OccluderStage::draw(const Options& options, OcclusionMasks& masks,
-                         std::vector<OccluderReport>& reports) {
+void OccluderStage::draw(const Options& options, std::vector<OccluderReport>& reports) {
   double deviation_px = 0;
   for (const OccluderReport& report : reports) {
     deviation_px = std::max(deviation_px, report.deviation_px);
   }
-  list_drawings(options, deviation_px, masks);
+  list_drawings(options, deviation_px);
   draw_by_chosen();
+  for (std::size_t i = 0; i < drawings_.size(); ++i) {
+    const MaskDrawing& drawing = drawings_[i];
+    parts_[i] = intersect(grow(drawing.part, drawing.margin_px), drawing.mask->bounds());
+  }
   for (std::size_t i = 0; i < reports.size(); ++i) {
     const auto covers = [&](std::size_t image) { return drawings_[image].covers[i] != 0; };
     if (covers(0)) reports[i].in_color = true;
@@ -83,18 +88,18 @@ void OccluderStage::draw(const Options& options, OcclusionMasks& masks,
   }
 }
 
-void OccluderStage::clear(OcclusionMasks& masks) const {
-  masks.rgbd_color.resize(rig_.rgbd.size());
-  masks.rgbd_depth.resize(rig_.rgbd.size());
-  oneapi::tbb::parallel_for(std::size_t{0}, rig_.rgbd.size() + 1, [&](std::size_t i) {
-    if (i == 0) return diminish::clear(rig_.color, masks.color);
-    diminish::clear(rig_.rgbd[i - 1].color, masks.rgbd_color[i - 1]);
-    diminish::clear(rig_.rgbd[i - 1].depth, masks.rgbd_depth[i - 1]);
+/// Only where something may be set. Until the frame is done, that is anywhere.
+void OccluderStage::clear() {
+  oneapi::tbb::parallel_for(std::size_t{0}, parts_.size(), [&](std::size_t i) {
+    Mask& mask = i == 0       ? masks_.color
+                 : i % 2 == 1 ? masks_.rgbd_color[i / 2]
+                              : masks_.rgbd_depth[i / 2 - 1];
+    mask.fill(parts_[i], 0);
+    parts_[i] = mask.bounds();
   });
 }
 
-void OccluderStage::list_drawings(const Options& options, double deviation_px,
-                                  OcclusionMasks& masks) {
+void OccluderStage::list_drawings(const Options& options, double deviation_px) {
   // A marker that faces the camera leaves its own lean open; so much it does not matter.
   constexpr double most_px = 10;
   // Half the margin is for blur, half for what is usual.
@@ -107,15 +112,16 @@ void OccluderStage::list_drawings(const Options& options, double deviation_px,
     drawing.polygons = &polygons;
     drawing.margin_px = margin_px;
     drawing.is_blank = is_blank_;
+    drawing.part = join(polygons.bounds(mask.bounds()), is_blank_ ? Rect{} : bounding_box(mask));
     drawing.mask = &mask;
     drawing.covers.assign(detectors_.size(), 0);
   };
-  list(0, outlines_.color, options.mask_margin_px + more_px, masks.color);
+  list(0, outlines_.color, options.mask_margin_px + more_px, masks_.color);
   const int margin_px = options.rgbd_mask_margin_px + more_px;
   for (std::size_t k = 0; k < rig_.rgbd.size(); ++k) {
-    list(1 + 2 * k, outlines_.rgbd_color[k], margin_px, masks.rgbd_color[k]);
+    list(1 + 2 * k, outlines_.rgbd_color[k], margin_px, masks_.rgbd_color[k]);
     list(2 + 2 * k, outlines_.rgbd_depth[k], depth_margin_px(rig_.rgbd[k], margin_px),
-         masks.rgbd_depth[k]);
+         masks_.rgbd_depth[k]);
   }
 }
 

@@ -23,18 +23,21 @@ class OccluderStage {
   /// it begins anew in the next frame.
   void draw_by(const std::string& drawer);
 
-  /// Replaces `masks` by the union of all objects' masks in this frame, grown by the options'
+  /// Replaces the masks by the union of all objects' masks in this frame, grown by the options'
   /// margins, and `reports` by one report for each object. Those that the option `keep` names are
   /// not looked for.
-  void detect(const Observation& observation, OcclusionMasks& masks,
-              std::vector<OccluderReport>& reports);
+  void detect(const Observation& observation, std::vector<OccluderReport>& reports);
+
+  const OcclusionMasks& masks() const { return masks_; }
+  /// The colour camera's mask's bounding box.
+  const Rect& objects() const { return objects_; }
   /// Why the last frame's masks were not drawn as was chosen; empty where they were.
   const std::string& message() const { return message_; }
 
  private:
-  void clear(OcclusionMasks& masks) const;
-  void draw(const Options& options, OcclusionMasks& masks, std::vector<OccluderReport>& reports);
-  void list_drawings(const Options& options, double deviation_px, OcclusionMasks& masks);
+  void clear();
+  void draw(const Options& options, std::vector<OccluderReport>& reports);
+  void list_drawings(const Options& options, double deviation_px);
   void draw_by_chosen();
 
   Rig rig_;
@@ -43,6 +46,9 @@ class OccluderStage {
   OcclusionOutlines outlines_;
   bool is_blank_ = true;               ///< no detector has set pixels in this frame
   std::vector<MaskDrawing> drawings_;  ///< color, and of each RGB-D camera color and depth
+  OcclusionMasks masks_;
+  std::vector<Rect> parts_;  ///< in the order of drawings: outside of which masks are 0
+  Rect objects_;
   std::string drawer_name_ = "cpu";
   std::unique_ptr<MaskDrawer> drawer_, processor_;
   std::string message_;

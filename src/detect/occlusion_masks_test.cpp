@@ -42,10 +42,10 @@ TEST(OccluderStage, UnitesTheOccludersMasksAndGrowsThem) {
   OccluderStage stage(detection.rig, scene_with("[{name: a, detector: mask, color: x}, "
                                                 "{name: b, detector: mask, color: y}]"));
   EXPECT_FALSE(stage.needs_markers());
-  OcclusionMasks masks;
+  const OcclusionMasks& masks = stage.masks();
   std::vector<OccluderReport> reports;
   for (int frame = 0; frame < 2; ++frame) {  // the second one must not see the first one's masks
-    stage.detect(detection.observation(), masks, reports);
+    stage.detect(detection.observation(), reports);
     ASSERT_EQ(reports.size(), 2u);
     EXPECT_EQ(reports[1].name, "b");
     EXPECT_TRUE(reports[1].in_color && reports[1].in_rgbd[0]);
@@ -56,7 +56,7 @@ TEST(OccluderStage, UnitesTheOccludersMasksAndGrowsThem) {
     EXPECT_FALSE(any_set(masks.rgbd_depth[0]));
   }
   detection.options.mask_margin_px = 0;
-  stage.detect(detection.observation(), masks, reports);
+  stage.detect(detection.observation(), reports);
   EXPECT_EQ(count_nonzero(masks.color, masks.color.bounds()), 2u);
 }
 
@@ -67,11 +67,11 @@ TEST(OccluderStage, TheDepthMasksMarginCoversTheSameAngle) {
   const std::string box =
       "[{name: zone, detector: box, frame: rgbd0, min: [-5, -5, 0.5], max: [5, 5, 2]}]";
   OccluderStage stage(detection.rig, scene_with(box));
-  OcclusionMasks masks;
+  const OcclusionMasks& masks = stage.masks();
   std::vector<OccluderReport> reports;
   for (const auto& [margin_px, pixels] : {std::pair{0, 1}, {1, 5}, {3, 5}, {4, 13}, {6, 13}}) {
     detection.options.rgbd_mask_margin_px = margin_px;
-    stage.detect(detection.observation(), masks, reports);
+    stage.detect(detection.observation(), reports);
     EXPECT_EQ(count_nonzero(masks.rgbd_depth[0], masks.rgbd_depth[0].bounds()),
               static_cast<std::size_t>(pixels));
   }
@@ -92,17 +92,17 @@ TEST(OccluderStage, WhereTheGpuFailsTheProcessorDraws) {
   detection.options.mask_margin_px = 2;
   OccluderStage stage(detection.rig, scene_with("[{name: a, detector: mask, color: x}]"));
   stage.draw_by("broken");
-  OcclusionMasks masks;
+  const OcclusionMasks& masks = stage.masks();
   std::vector<OccluderReport> reports;
   for (int frame = 1; frame <= 2; ++frame) {
-    stage.detect(detection.observation(), masks, reports);
+    stage.detect(detection.observation(), reports);
     EXPECT_EQ(count_nonzero(masks.color, masks.color.bounds()), 13U);
     EXPECT_EQ(stage.message(),
               "the driver lost the context; masks were drawn by the processor instead");
     EXPECT_EQ(BrokenDrawer::made, frame);
   }
   stage.draw_by("cpu");
-  stage.detect(detection.observation(), masks, reports);
+  stage.detect(detection.observation(), reports);
   EXPECT_EQ(stage.message(), "");
 }
 
@@ -115,9 +115,9 @@ TEST(OccluderStage, AnUnknownDetectorIsNamed) {
 TEST(OccluderStage, AFrameWithoutAGivenMaskIsReported) {
   Detection detection(small_rig());
   OccluderStage stage(detection.rig, scene_with("[{name: a, detector: mask, color: x}]"));
-  OcclusionMasks masks;
+  const OcclusionMasks& masks = stage.masks();
   std::vector<OccluderReport> reports;
-  stage.detect(detection.observation(), masks, reports);
+  stage.detect(detection.observation(), reports);
   EXPECT_EQ(reports.at(0).message, "a: no mask for the colour image of this frame");
   EXPECT_FALSE(any_set(masks.color));
 }

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "diminish/image.h"
+
 namespace diminish {
 
 /// Polygons in a picture, and by whole numbers which pixels they cover, so that any implementation
@@ -47,6 +49,23 @@ struct Polygons {
 
   std::uint32_t begin_of(std::size_t polygon) const {
     return polygon > 0 ? polygons[polygon - 1].end : 0;
+  }
+
+  /// A part of the picture, outside of which no pixel is inside.
+  Rect bounds(const Rect& picture) const {
+    // Corners may be far outside.
+    int left = picture.right();
+    int top = picture.bottom();
+    int right = picture.x;
+    int bottom = picture.y;
+    for (const Corner& corner : corners) {
+      left = std::min(left, corner.x / subpixels - 1);
+      top = std::min(top, corner.y / subpixels - 1);
+      right = std::max(right, corner.x / subpixels + 1);
+      bottom = std::max(bottom, corner.y / subpixels + 1);
+    }
+    if (left >= right || top >= bottom) return {};
+    return intersect({left, top, right - left, bottom - top}, picture);
   }
 };
 

@@ -14,7 +14,8 @@ class ProcessorMaskDrawer : public MaskDrawer {
     oneapi::tbb::parallel_for(std::size_t{0}, drawings.size(), [&](std::size_t i) {
       MaskDrawing& drawing = drawings[i];
       tools_[i].filler.fill(*drawing.polygons, *drawing.mask, drawing.covers);
-      if (drawing.margin_px > 0) tools_[i].dilation.dilate(*drawing.mask, drawing.margin_px);
+      if (drawing.margin_px == 0) return;
+      tools_[i].dilation.dilate(*drawing.mask, drawing.part, drawing.margin_px);
     });
   }
 

@@ -26,7 +26,8 @@ class Composition : public ::testing::Test, protected testing::DiminishedWall {
     } else {
       made.light.resize(0, 0);
     }
-    compositor.composite(frame.frame.color, masks, options, expected);
+    compositor.composite(frame.frame.color, masks.color, bounding_box(masks.color), options,
+                         expected);
   }
 
   template <class Pixel, class PixelAt>

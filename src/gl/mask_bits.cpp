@@ -26,31 +26,6 @@ BitWindow::BitWindow(const Rect& part) {
   rows = part.height;
 }
 
-BitWindow window_of(const MaskDrawing& drawing, int margin_px) {
-  const Mask& mask = *drawing.mask;
-  // Corners may be far outside.
-  int left = mask.width();
-  int top = mask.height();
-  int right = 0;
-  int bottom = 0;
-  constexpr int subpixels = Polygons::subpixels;
-  for (const Polygons::Corner& corner : drawing.polygons->corners) {
-    left = std::min(left, corner.x / subpixels - 1);
-    top = std::min(top, corner.y / subpixels - 1);
-    right = std::max(right, corner.x / subpixels + 1);
-    bottom = std::max(bottom, corner.y / subpixels + 1);
-  }
-  left = std::max(left, 0);
-  top = std::max(top, 0);
-  right = std::min(right, mask.width());
-  bottom = std::min(bottom, mask.height());
-  Rect part;
-  if (left < right && top < bottom) part = {left, top, right - left, bottom - top};
-  if (!drawing.is_blank) part = join(part, bounding_box(mask));
-  if (part.empty()) return {};
-  return BitWindow(intersect(grow(part, margin_px), mask.bounds()));
-}
-
 void pack_bits(const Mask& mask, const BitWindow& window, std::uint32_t* words) {
   for (int y = window.first_row; y < window.first_row + window.rows; ++y) {
     const std::uint8_t* const row = mask.row(y);

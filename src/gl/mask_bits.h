@@ -2,7 +2,6 @@
 
 #include <cstdint>
 
-#include "detect/mask_drawer.h"
 #include "diminish/image.h"
 
 namespace diminish::gl {
@@ -19,9 +18,6 @@ struct BitWindow {
   explicit BitWindow(const Rect& part);
   int size() const { return words * rows; }
 };
-
-/// What a drawing may set: where its polygons are, and what is set already, grown by `margin_px`.
-BitWindow window_of(const MaskDrawing& drawing, int margin_px);
 
 /// Row by row.
 void pack_bits(const Mask& mask, const BitWindow& window, std::uint32_t* words);

@@ -98,7 +98,8 @@ void GpuMaskDrawer::Resources::list(std::span<const MaskDrawing> drawings) {
   for (std::size_t i = 0; i < drawings.size(); ++i) {
     const MaskDrawing& drawing = drawings[i];
     const int margin_px = drawing.margin_px <= most_margin_px ? drawing.margin_px : 0;
-    const BitWindow window = window_of(drawing, margin_px);
+    const BitWindow window(
+        intersect(diminish::grow(drawing.part, margin_px), drawing.mask->bounds()));
     const auto image_words = static_cast<std::size_t>(window.size());
     images.push_back(
         {window, drawing.mask->width(), margin_px, static_cast<std::uint32_t>(words), 0});
@@ -214,7 +215,8 @@ void GpuMaskDrawer::draw(std::span<MaskDrawing> drawings) {
   }
   if (resources_->words > 0) resources_->read(drawings);
   for (const MaskDrawing& drawing : drawings) {
-    if (drawing.margin_px > most_margin_px) dilation_.dilate(*drawing.mask, drawing.margin_px);
+    if (drawing.margin_px > most_margin_px)
+      dilation_.dilate(*drawing.mask, drawing.part, drawing.margin_px);
   }
 }
 

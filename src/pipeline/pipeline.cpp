@@ -88,6 +88,7 @@ struct Pipeline::Implementation {
   }
 
   void clean_depths(const FrameSet& frame) {
+    const OcclusionMasks& masks = occluders.masks();
     oneapi::tbb::parallel_for(std::size_t{0}, rig.rgbd.size(), [&](std::size_t k) {
       const RgbdFrame& rgbd = frame.rgbd[k];
       if (!rgbd.available()) return;
@@ -97,7 +98,9 @@ struct Pipeline::Implementation {
   }
 
   /// What is behind the objects; how far that went towards the picture.
-  Reach reconstruct(const FrameSet& frame, const Rect& objects, DiminishedFrame& result) {
+  Reach reconstruct(const FrameSet& frame, DiminishedFrame& result) {
+    const OcclusionMasks& masks = occluders.masks();
+    const Rect& objects = occluders.objects();
     Poses& poses = result.report.poses;
     Reconstruction& reconstruction = result.reconstruction;
     const Rect whole = rig.color.bounds();
@@ -155,7 +158,7 @@ struct Pipeline::Implementation {
 
   void fit_color_maps(const Image<Bgr>& camera, const Reconstruction& reconstruction) {
     if (const MappedMethod* const method = find_mapped_method(options.color_correct)) {
-      color_maps.fit(camera, masks.color, reconstruction.samples, method->model);
+      color_maps.fit(camera, occluders.masks().color, reconstruction.samples, method->model);
     } else {
       color_maps.clear();
     }
@@ -197,7 +200,6 @@ struct Pipeline::Implementation {
   CastShadows cast_shadows;
   ColorMaps color_maps;
   Compositor compositor;
-  OcclusionMasks masks;
   bool wants_reconstruction = true;
   FrameTexture texture;
 };
@@ -247,21 +249,23 @@ void Pipeline::process(const FrameSet& frame, DiminishedFrame& result) {
   }
   {  // 3.2 Objects to remove
     const ScopedTimer timer(report.milliseconds, Stage::detection);
-    self.occluders.detect({frame, report.markers, report.poses, self.options}, self.masks,
-                          report.occluders);
+    self.occluders.detect({frame, report.markers, report.poses, self.options}, report.occluders);
   }
   if (!self.occluders.message().empty()) report.messages.push_back(self.occluders.message());
   Reach reach = Reach::reconstruction;
   {  // 3.3 Reconstruction of what is behind them
     const ScopedTimer timer(report.milliseconds, Stage::reconstruction);
-    reach = self.reconstruct(frame, bounding_box(self.masks.color), result);
+    reach = self.reconstruct(frame, result);
   }
   if (!self.backend.message().empty()) report.messages.push_back(self.backend.message());
   // 3.4 Compositing, colour correction, inpainting
+  const Mask& occlusion = self.occluders.masks().color;
   if (reach == Reach::reconstruction) {
-    self.compositor.composite(frame.color, self.masks, self.options, result);
+    self.compositor.composite(frame.color, occlusion, self.occluders.objects(), self.options,
+                              result);
   } else if (reach == Reach::seen) {
-    self.compositor.complete(frame.color, self.masks, self.options, result);
+    self.compositor.complete(frame.color, occlusion, self.occluders.objects(), self.options,
+                             result);
   }
   self.texture.finish_frame(reach == Reach::picture, result);
 
