@@ -43,20 +43,6 @@ void pack_picture(const Image<Bgr>& camera, const Mask& mask, const Rect& region
   });
 }
 
-/// Where the parts of what is downloaded begin.
-struct Download {
-  std::size_t counts, result, surface, second, end;
-
-  explicit Download(const Rect& region) {
-    const std::size_t pixels = pixels_of(region);
-    counts = pixels * sizeof(std::uint32_t);
-    result = (counts + 8 + 15) / 16 * 16;
-    surface = result + pixels * sizeof(ResultPixel);
-    second = surface + pixels * sizeof(std::uint32_t);
-    end = second + pixels * sizeof(SecondPixel);
-  }
-};
-
 }  // namespace
 
 Reach FrameCompositor::reach(const Options& options) {
@@ -103,9 +89,8 @@ FrameCompositor::FrameCompositor(const Rig& rig)
   constexpr int cell = SoftMembrane::cell;
   const Rect nodes{0, 0, whole.width / cell + 2, whole.height / cell + 2};
   nodes_.reserve(2 * pixels_of(nodes) * 4 * sizeof(float));
-  counts_.reserve(sizeof(Counts));
-  const Download at(whole);
-  downloaded_.reserve(rig.rgbd.size() > 1 ? at.end : at.second);
+  counts_.reserve(sizeof(FrameDownload::Counts));
+  download_.reserve(whole, rig.rgbd.size() > 1);
 
   const RayGrid rays(rig.color);
   block_.ray_columns = rays.nodes().width();
@@ -194,7 +179,10 @@ void FrameCompositor::run(const FrameInputs& inputs, const FrameUpload& upload,
   if (to_the_end) finish(inputs, upload, reconstruction, timer);
   const Program& show_mode = show(to_the_end ? inputs.options.mode : "remove");
   timer.measure("show", [&] { run_pass(show_mode); });
-  timer.measure("download", [&] { download(inputs, upload, reconstruction); });
+  timer.measure("download", [&] {
+    download_.begin({picture_, counts_, surface_, reconstruction}, region_,
+                    {gives_picture(inputs), gives_reconstruction(inputs)}, upload);
+  });
 }
 
 void FrameCompositor::correct_colors(PassTimer& timer) const {
@@ -248,73 +236,6 @@ const Program& FrameCompositor::show(const std::string& mode) {
   const auto found = shows_.find(mode);
   if (found != shows_.end()) return found->second;
   return shows_.emplace(mode, pass({mode_file(mode), "show.comp"})).first->second;
-}
-
-void FrameCompositor::download(const FrameInputs& inputs, const FrameUpload& upload,
-                               const ResultBuffers& reconstruction) {
-  const std::size_t pixels = pixels_of(region_);
-  const Download at(region_);
-  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  if (gives_picture(inputs)) {
-    copy(picture_.name(), downloaded_.name(), pixels * sizeof(std::uint32_t));
-  }
-  copy(counts_.name(), downloaded_.name(), sizeof(Counts), at.counts);
-  if (gives_reconstruction(inputs)) {
-    copy(reconstruction.first.name(), downloaded_.name(), pixels * sizeof(ResultPixel), at.result);
-    if (upload.blends()) {
-      copy(reconstruction.second.name(), downloaded_.name(), pixels * sizeof(SecondPixel),
-           at.second);
-    }
-    copy(surface_.name(), downloaded_.name(), pixels * sizeof(std::uint32_t), at.surface);
-  }
-  glMemoryBarrier(GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT);
-}
-
-void FrameCompositor::read(const FrameInputs& inputs, const FrameUpload& upload,
-                           DiminishedFrame& result) const {
-  const Download at(region_);
-  const std::byte* const from = downloaded_.data();
-  Counts counts{};
-  std::memcpy(&counts, from + at.counts, sizeof(counts));
-  result.report.mask_pixels = counts.mask;
-  result.report.missing_pixels = counts.missing;
-  result.report.valid_pixels = counts.mask - counts.missing;
-  const auto* const words = reinterpret_cast<const std::uint32_t*>(from);
-  for_rows(gives_picture(inputs) ? region_.height : 0, [&](Rows rows) {
-    for (int y = rows.first; y < rows.last; ++y) {
-      const std::uint32_t* row = words + static_cast<std::ptrdiff_t>(y) * region_.width;
-      Bgr* colors = result.picture.row(region_.y + y) + region_.x;
-      std::uint8_t* origin = result.provenance.row(region_.y + y) + region_.x;
-      for (int x = 0; x < region_.width; ++x) {
-        colors[x] = {static_cast<std::uint8_t>(row[x]), static_cast<std::uint8_t>(row[x] >> 8),
-                     static_cast<std::uint8_t>(row[x] >> 16)};
-        origin[x] = static_cast<std::uint8_t>(row[x] >> 24);
-      }
-    }
-  });
-
-  Reconstruction& reconstruction = result.reconstruction;
-  const bool gives = gives_reconstruction(inputs);
-  const Rect size = gives ? inputs.frame.color.bounds() : Rect{};
-  if (gives) {
-    unpack(reinterpret_cast<const ResultPixel*>(from + at.result),
-           reinterpret_cast<const SecondPixel*>(from + at.second), upload, reconstruction);
-  }
-  const Rect planes = inputs.planes ? size : Rect{};
-  const Rect shaded = inputs.shadows.empty() ? Rect{} : size;
-  reconstruction.surface.resize(planes.width, planes.height);
-  reconstruction.light.resize(shaded.width, shaded.height);
-  const auto* surface = reinterpret_cast<const std::uint32_t*>(from + at.surface);
-  for (int y = region_.y; !planes.empty() && y < region_.bottom(); ++y) {
-    for (int x = region_.x; x < region_.right(); ++x, ++surface) {
-      const std::uint32_t word = *surface;
-      reconstruction.surface(x, y) = static_cast<std::uint8_t>(word);
-      if (shaded.empty()) continue;
-      reconstruction.light(x, y) = {static_cast<std::uint8_t>(word >> 8),
-                                    static_cast<std::uint8_t>(word >> 16),
-                                    static_cast<std::uint8_t>(word >> 24)};
-    }
-  }
 }
 
 }  // namespace diminish::gl

@@ -6,6 +6,7 @@
 #include "composite/composing_reconstructor.h"
 #include "gl/buffer.h"
 #include "gl/composition_block.h"
+#include "gl/frame_download.h"
 #include "gl/frame_upload.h"
 #include "gl/pass_timer.h"
 #include "gl/program.h"
@@ -38,22 +39,18 @@ class FrameCompositor {
            const ResultBuffers& reconstruction, PassTimer& timer);
   /// Fills what `run` has made, when it is done; needs no context. Outside the region result's
   /// images are the caller's.
-  void read(const FrameInputs& inputs, const FrameUpload& upload, DiminishedFrame& result) const;
+  void read(const FrameInputs& inputs, const FrameUpload& upload, DiminishedFrame& result) const {
+    download_.read(inputs, upload, result);
+  }
   /// The region's pixels, as `run` has made them: colour, and any byte.
   const Buffer& picture() const { return picture_; }
 
  private:
-  struct Counts {
-    std::uint32_t mask, missing;
-  };
-
   void bind(const FrameUpload& upload, const ResultBuffers& reconstruction) const;
   void run_pass(const Program& program) const;
   void correct_colors(PassTimer& timer) const;
   void finish(const FrameInputs& inputs, const FrameUpload& upload,
               const ResultBuffers& reconstruction, PassTimer& timer);
-  void download(const FrameInputs& inputs, const FrameUpload& upload,
-                const ResultBuffers& reconstruction);
   const Program& show(const std::string& mode);
 
   CompositionBlock block_{};
@@ -67,7 +64,7 @@ class FrameCompositor {
   Buffer picture_, values_, state_, surface_, distances_, counts_, nodes_;
   Buffer ray_nodes_;
   BufferTexture ray_texture_;
-  MappedBuffer downloaded_{MappedBuffer::Use::download};
+  FrameDownload download_;
 };
 
 }  // namespace diminish::gl
