@@ -121,11 +121,11 @@ void SmoothRow(const SmoothedRow& row, int width, std::uint8_t* picture) {
       result[c] = hn::IfThenElse(is_seen, mean(sum[c]), value);
     }
     if (x + lanes <= width) {
-      hn::StoreInterleaved3(result[0], result[1], result[2], bytes, picture + 3 * x);
+      hn::StoreInterleaved3(result[0], result[1], result[2], bytes, &picture[3 * x]);
     } else {
       std::uint8_t last[3 * padding];
       hn::StoreInterleaved3(result[0], result[1], result[2], bytes, last);
-      std::copy_n(last, 3 * (width - x), picture + 3 * x);
+      std::copy_n(last, 3 * (width - x), &picture[3 * x]);
     }
   }
 }
@@ -172,7 +172,7 @@ void SplitChannels(const std::uint8_t* pixels, int width, std::uint8_t* const* c
   int x = 0;
   for (; x + lanes <= width; x += lanes) {
     hn::Vec<Bytes> values[3];
-    hn::LoadInterleaved3(bytes, pixels + 3 * x, values[0], values[1], values[2]);
+    hn::LoadInterleaved3(bytes, &pixels[3 * x], values[0], values[1], values[2]);
     for (int c = 0; c < 3; ++c) hn::StoreU(values[c], bytes, channels[c] + x);
   }
   for (; x < width; ++x) {

@@ -65,9 +65,10 @@ static_assert(sizeof(CameraBlock) == 192);
 
 /// Where a camera is, in the colour camera's frame (blending.glsl): CameraPlace.
 struct CameraPlaceBlock {
-  float eye_m[4], forward[4];
+  float eye_m[4] = {};
+  float forward[4] = {};
 
-  explicit CameraPlaceBlock(const TransformBlock& color_from_depth) : eye_m{}, forward{} {
+  explicit CameraPlaceBlock(const TransformBlock& color_from_depth) {
     for (int i = 0; i < 3; ++i) {
       eye_m[i] = color_from_depth.rows[i][3];
       forward[i] = color_from_depth.rows[i][2];

@@ -150,7 +150,7 @@ void CameraBlender::measure_cells(int cell_row, Scratch& scratch) {
       const Rect cell = grid_.cell(column, cell_row);
       const auto seen = scratch.bytes.begin() + cell.x;
       const std::uint8_t covering =
-          std::accumulate(seen, seen + cell.width, std::uint8_t{255}, std::bit_and<std::uint8_t>());
+          std::accumulate(seen, seen + cell.width, std::uint8_t{255}, std::bit_and<>());
       if ((covering >> k & 1) == 0) {
         grid_.set(k, column, cell_row, 0, 0);
         continue;
