@@ -7,14 +7,16 @@ const ivec2 neighbours[] = SMOOTHING_NEIGHBOURS;
 
 void main() {
   ivec2 place = ivec2(gl_GlobalInvocationID.xy);
-  if (place.x >= region.z || !is_seen(place)) return;
+  if (place.x >= region.z) return;
   int index = index_of(place);
+  if (distances[index] == 0u) return;
   ivec3 own = ivec3(levels_of(distances[index]));
   uvec3 sum = uvec3(0);
   uint weights = 0u;
   for (int i = 0; i < neighbours.length(); ++i) {
-    if (!is_seen(place + neighbours[i])) continue;
+    if (!is_in_region(place + neighbours[i])) continue;
     int other = index_of(place + neighbours[i]);
+    if (distances[other] == 0u) continue;
     ivec3 apart = abs(ivec3(levels_of(distances[other])) - own);
     int left = SMOOTHING_LARGEST_DIFFERENCE - (apart.x + apart.y + apart.z);
     uint weight = uint(max(left, 0)) / SMOOTHING_WEIGHT_PART;

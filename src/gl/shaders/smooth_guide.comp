@@ -20,8 +20,9 @@ void main() {
   if (place.x >= region.z) return;
   int index = index_of(place);
   values[index] = picture[index];
+  distances[index] = 0u;
   if (!is_seen(place)) return;
   uvec3 own = row_mean(place);
-  distances[index] = word_of(mean_of_three(among_rows(place - ivec2(0, 1), own),
-                                           among_rows(place + ivec2(0, 1), own), own));
+  distances[index] = seen_guide | word_of(mean_of_three(among_rows(place - ivec2(0, 1), own),
+                                                        among_rows(place + ivec2(0, 1), own), own));
 }

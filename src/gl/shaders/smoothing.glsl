@@ -1,7 +1,10 @@
-// ColorSmoothing (color_smoothing.h): its guide takes the distances' place, before there are any.
+// ColorSmoothing (color_smoothing.h): its guide takes the distances' place, before there are any; 0
+// where nothing is seen.
 
 // The picture before smoothing.
 layout(std430, binding = 5) buffer Values { uint values[]; };
+
+const uint seen_guide = 0xFF000000u;
 
 bool is_seen(ivec2 place) {
   if (!is_in_region(place)) return false;
