@@ -17,9 +17,12 @@ class PolygonFiller {
   void fill(const Polygons& polygons, Mask& mask, std::span<std::uint8_t> covers);
 
  private:
-  bool fill_row(std::span<const Polygons::Corner> corners, int row, Mask& mask);
+  void list_columns(std::span<const Polygons::Corner> corners, const PolygonRows& rows,
+                    const Rect& picture);
+  bool fill_row(int row, std::uint8_t* pixels);
 
-  std::vector<int> columns_;  ///< the first at or right of each edge, in a row
+  std::vector<int> columns_;  ///< the first at or right of each edge, row by row
+  std::vector<int> ends_;     ///< of each row's columns
 };
 
 }  // namespace diminish
