@@ -112,7 +112,6 @@ void OccluderStage::list_drawings(const Options& options, double deviation_px) {
     drawing.polygons = &polygons;
     drawing.margin_px = margin_px;
     drawing.is_blank = is_blank_;
-    drawing.part = join(polygons.bounds(mask.bounds()), is_blank_ ? Rect{} : bounding_box(mask));
     drawing.mask = &mask;
     drawing.covers.assign(detectors_.size(), 0);
   };
@@ -123,6 +122,11 @@ void OccluderStage::list_drawings(const Options& options, double deviation_px) {
     list(2 + 2 * k, outlines_.rgbd_depth[k], depth_margin_px(rig_.rgbd[k], margin_px),
          masks_.rgbd_depth[k]);
   }
+  oneapi::tbb::parallel_for(std::size_t{0}, drawings_.size(), [&](std::size_t i) {
+    MaskDrawing& drawing = drawings_[i];
+    drawing.part = join(drawing.polygons->bounds(drawing.mask->bounds()),
+                        is_blank_ ? Rect{} : bounding_box(*drawing.mask));
+  });
 }
 
 void OccluderStage::draw_by_chosen() {

@@ -16,8 +16,8 @@ class Edge {
 
   Edge(Polygons::Corner a, Polygons::Corner b, int height) {
     if (a.y > b.y) std::swap(a, b);
-    first_row = std::clamp(row_from(a.y), 0, height);
-    last_row = std::clamp(row_from(b.y), first_row, height);
+    first_row = std::clamp(Polygons::row_from(a.y), 0, height);
+    last_row = std::clamp(Polygons::row_from(b.y), first_row, height);
     if (first_row == last_row) return;
     const std::int64_t dx = std::int64_t{b.x} - a.x;
     const std::int64_t dy = std::int64_t{b.y} - a.y;
@@ -44,11 +44,6 @@ class Edge {
   }
 
  private:
-  /// Rounded up: what ends at a row's centre does not cross it.
-  static int row_from(std::int32_t y) {
-    return static_cast<int>(-divide_down(-std::int64_t{y}, Polygons::subpixels));
-  }
-
   // x is (column + rest / unit) pixels.
   std::int64_t column_ = 0, rest_ = 0, unit_ = 1, step_ = 0, step_rest_ = 0;
 };

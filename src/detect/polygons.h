@@ -47,6 +47,12 @@ struct Polygons {
     polygons.push_back({static_cast<std::uint32_t>(corners.size()), object});
   }
 
+  /// The first row whose pixels' centres are at y, in subpixels, or below it.
+  static int row_from(std::int32_t y) {
+    static_assert(subpixels == 1 << 8);
+    return (y + subpixels - 1) >> 8;
+  }
+
   std::uint32_t begin_of(std::size_t polygon) const {
     return polygon > 0 ? polygons[polygon - 1].end : 0;
   }
@@ -75,17 +81,14 @@ struct PolygonRows {
   int last = 0;
 
   PolygonRows(const Polygons& all, std::size_t polygon, int height) {
-    constexpr int subpixels = Polygons::subpixels;
     const auto begin = all.corners.begin() + all.begin_of(polygon);
     const auto end = all.corners.begin() + all.polygons[polygon].end;
     if (begin == end) return;
     const auto by_y = [](const auto& a, const auto& b) { return a.y < b.y; };
     const auto [top, bottom] = std::minmax_element(begin, end, by_y);
-    // Rounded up: what ends at a row's centre does not cross it.
-    const auto row_from = [](std::int32_t y) { return (y + subpixels - 1) >> 8; };
-    static_assert(subpixels == 1 << 8);
-    first = std::clamp(row_from(top->y), 0, height);
-    last = std::clamp(row_from(bottom->y), first, height);
+    // What ends at a row's centre does not cross it.
+    first = std::clamp(Polygons::row_from(top->y), 0, height);
+    last = std::clamp(Polygons::row_from(bottom->y), first, height);
   }
 };
 

@@ -145,7 +145,7 @@ class WholeFrames : public ::testing::TestWithParam<const char*> {
   FrameSet frame;
   DiminishedFrame expected, result;
 
-  void process_both(Options options) {
+  void process_both(const Options& options) {
     Options on_gpu = options;
     on_gpu.backend = "gl";
     by_processor.set_options(options);

@@ -32,9 +32,7 @@ struct Surface {
     const auto slope = hn::MulAdd(hn::Iota(d, static_cast<float>(i)), hn::Set(d, row.depth_step),
                                   hn::Set(d, row.depth_slope));
     const auto depth = hn::Sub(hn::Mul(z, slope), hn::Set(d, row.depth_offset_m));
-    constexpr DepthNoise model;
-    noise = hn::MulAdd(hn::Mul(hn::Set(d, model.by_square), depth), depth,
-                       hn::Set(d, model.constant_m));
+    noise = NoiseAt(d, DepthNoise(), depth);
   }
 };
 
