@@ -19,9 +19,13 @@
 #include "reconstruct/cast_shadows.h"
 #include "reconstruct/depth_cleaner.h"
 #include "reconstruct/scene_sampler.h"
+#include "reconstruct/visible_blocks.h"
 
 namespace diminish {
 namespace {
+
+/// In the picture: what the refinement of poses may move.
+constexpr int refinement_margin_px = 24;
 
 template <class Pixel>
 void expect_size(const Image<Pixel>& image, const Intrinsics& intrinsics, const std::string& name) {
@@ -61,6 +65,7 @@ struct Pipeline::Implementation {
         cast_shadows(rig.color) {
     for (const RgbdCamera& camera : rig.rgbd) {
       rgbd_color_lenses.emplace_back(camera.color);
+      visible_depths.emplace_back(camera, rig.color);
       depth_cleaners.emplace_back(camera);
     }
     depths.resize(rig.rgbd.size());
@@ -87,13 +92,24 @@ struct Pipeline::Implementation {
     });
   }
 
+  /// Finds the parts of the depth images that will be drawn. Before poses are refined.
+  void find_visible_depths(const FrameSet& frame, const Poses& poses) {
+    oneapi::tbb::parallel_for(std::size_t{0}, rig.rgbd.size(), [&](std::size_t k) {
+      if (!frame.rgbd[k].available() || !poses.color_from_depth[k]) {
+        return visible_depths[k].clear();
+      }
+      visible_depths[k].find(frame.rgbd[k].depth, *poses.color_from_depth[k],
+                             grow(region, refinement_margin_px));
+    });
+  }
+
   void clean_depths(const FrameSet& frame) {
     const OcclusionMasks& masks = occluders.masks();
     oneapi::tbb::parallel_for(std::size_t{0}, rig.rgbd.size(), [&](std::size_t k) {
       const RgbdFrame& rgbd = frame.rgbd[k];
       if (!rgbd.available()) return;
       depth_cleaners[k].clean(rgbd.depth, {rgbd.color, masks.rgbd_color[k], masks.rgbd_depth[k]},
-                              sampler.part(k), options, depths[k]);
+                              visible_depths[k].part(), options, depths[k]);
     });
   }
 
@@ -107,6 +123,7 @@ struct Pipeline::Implementation {
     region.set(options.whole_view ? whole
                                   : intersect(grow(objects, options.surroundings_px), whole));
     sampler.sample(frame, poses, masks, options.remove_shadows ? whole : region, reconstruction);
+    find_visible_depths(frame, poses);
     const bool finds_surfaces = compositor.uses_surfaces(options);
     backend.begin_frame();
     const bool composes = backend.reach(options) != Reach::reconstruction;
@@ -192,6 +209,7 @@ struct Pipeline::Implementation {
   OccluderStage occluders;
   Backend backend;
   std::vector<DepthCleaner> depth_cleaners;
+  std::vector<VisibleBlocks> visible_depths;
   DepthImages depths;
   TiledRegion region;  ///< to be drawn
   SceneSampler sampler;

@@ -15,9 +15,9 @@ using depth_rows::reach;
 /// blurred.
 constexpr float margin_px = 1;
 
-/// The part that is `reach` away from the images' borders.
-Rect inside(const Rect& part, const Image<std::uint16_t>& depth) {
-  return intersect(part, {reach, reach, depth.width() - 2 * reach, depth.height() - 2 * reach});
+/// What is `reach` away from the image's borders.
+Rect inside(const Image<std::uint16_t>& depth) {
+  return {reach, reach, depth.width() - 2 * reach, depth.height() - 2 * reach};
 }
 
 }  // namespace
@@ -36,7 +36,8 @@ DepthCleaner::DepthCleaner(const RgbdCamera& camera) : camera_(camera), edge_sna
 }
 
 void DepthCleaner::clean(const Image<std::uint16_t>& depth, const EdgeSnapping::Images& images,
-                         const Rect& part, const Options& options, Image<std::uint16_t>& cleaned) {
+                         const DepthPart& part, const Options& options,
+                         Image<std::uint16_t>& cleaned) {
   cleaned = depth;
   if (options.remove_flying) remove_flying(depth, part, cleaned);
   if (options.smooth_depth) smooth(part, cleaned);
@@ -46,58 +47,55 @@ void DepthCleaner::clean(const Image<std::uint16_t>& depth, const EdgeSnapping::
   }
 }
 
-void DepthCleaner::remove_flying(const Image<std::uint16_t>& depth, const Rect& part,
+void DepthCleaner::remove_flying(const Image<std::uint16_t>& depth, const DepthPart& part,
                                  Image<std::uint16_t>& cleaned) const {
-  const Rect inner = inside(part, depth);
-  for_rows(inner.height, [&](Rows rows) {
-    for (int y = inner.y + rows.first; y < inner.y + rows.last; ++y) {
-      depth_rows::remove_flying(row(depth.row(y) + inner.x, inner.width), depth.width(),
-                                cleaned.row(y) + inner.x);
-    }
+  for_each_row(part, inside(depth), [&](int y, const DepthPart::Columns& columns) {
+    depth_rows::remove_flying(row(depth, y, columns), depth.width(),
+                              cleaned.row(y) + columns.first);
   });
 }
 
-void DepthCleaner::remove_hidden(const Rect& part, float threshold_m,
+void DepthCleaner::remove_hidden(const DepthPart& part, float threshold_m,
                                  Image<std::uint16_t>& cleaned) {
   const auto side_m = static_cast<float>(camera_.color_from_depth.translation.x());
   const auto ahead_m = static_cast<float>(camera_.color_from_depth.translation.z());
   const auto unit_m = static_cast<float>(camera_.depth_unit_m);
   const auto margin = margin_px / static_cast<float>(camera_.depth.fx);
-  for_rows(part.height, [&](Rows rows) {
+  const Rect& bounds = part.bounds();
+  for_rows(bounds.height, [&](Rows rows) {
     Scratch& scratch = scratch_[rows.first == 0 ? 0 : 1];
-    scratch.depth_m.resize(static_cast<std::size_t>(part.width + 16));
-    scratch.place.resize(static_cast<std::size_t>(part.width + 16));
-    for (int y = part.y + rows.first; y < part.y + rows.last; ++y) {
-      const depth_rows::Places places{ray_side_.row(y) + part.x, ray_ahead_.row(y) + part.x, side_m,
-                                      ahead_m};
-      depth_rows::remove_hidden(places, unit_m, margin, threshold_m, part.width,
-                                cleaned.row(y) + part.x, scratch.depth_m.data(),
+    scratch.depth_m.resize(static_cast<std::size_t>(bounds.width + 16));
+    scratch.place.resize(static_cast<std::size_t>(bounds.width + 16));
+    for (int y = bounds.y + rows.first; y < bounds.y + rows.last; ++y) {
+      const DepthPart::Columns& columns = part.columns(y);
+      const depth_rows::Places places{ray_side_.row(y) + columns.first,
+                                      ray_ahead_.row(y) + columns.first, side_m, ahead_m};
+      depth_rows::remove_hidden(places, unit_m, margin, threshold_m, columns.count(),
+                                cleaned.row(y) + columns.first, scratch.depth_m.data(),
                                 scratch.place.data());
     }
   });
 }
 
 /// First along rows, then along columns.
-void DepthCleaner::smooth(const Rect& part, Image<std::uint16_t>& cleaned) {
+void DepthCleaner::smooth(const DepthPart& part, Image<std::uint16_t>& cleaned) {
   half_smooth_ = cleaned;
-  const auto by_rows = [&](int first, int last, const auto& visit) {
-    for_rows(last - first, [&](Rows rows) {
-      for (int y = first + rows.first; y < first + rows.last; ++y) visit(y);
-    });
-  };
-  const Rect inner = inside(part, cleaned);
-  by_rows(part.y, part.bottom(), [&](int y) {
-    depth_rows::smooth(row(cleaned.row(y) + inner.x, inner.width), 1,
-                       half_smooth_.row(y) + inner.x);
-  });
-  by_rows(inner.y, inner.bottom(), [&](int y) {
-    depth_rows::smooth(row(half_smooth_.row(y) + inner.x, inner.width), cleaned.width(),
-                       cleaned.row(y) + inner.x);
+  const Rect inner = inside(cleaned);
+  for_each_row(part, {inner.x, 0, inner.width, cleaned.height()},
+               [&](int y, const DepthPart::Columns& columns) {
+                 depth_rows::smooth(row(cleaned, y, columns), 1,
+                                    half_smooth_.row(y) + columns.first);
+               });
+  for_each_row(part, inner, [&](int y, const DepthPart::Columns& columns) {
+    depth_rows::smooth(row(half_smooth_, y, columns), cleaned.width(),
+                       cleaned.row(y) + columns.first);
   });
 }
 
-depth_rows::Row DepthCleaner::row(const std::uint16_t* depth, int count) const {
-  return {depth, count, static_cast<float>(camera_.depth_unit_m), {}};
+depth_rows::Row DepthCleaner::row(const Image<std::uint16_t>& depth, int y,
+                                  const DepthPart::Columns& columns) const {
+  return {
+      depth.row(y) + columns.first, columns.count(), static_cast<float>(camera_.depth_unit_m), {}};
 }
 
 }  // namespace diminish

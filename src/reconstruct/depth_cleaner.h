@@ -6,6 +6,7 @@
 #include "diminish/image.h"
 #include "diminish/options.h"
 #include "diminish/rig.h"
+#include "reconstruct/depth_part.h"
 #include "reconstruct/depth_rows.h"
 #include "reconstruct/edge_snapping.h"
 
@@ -25,17 +26,18 @@ class DepthCleaner {
   /// images: what is masked in them is not used to move edges. Only in `part`; the rest is copied.
   /// Cost: 1 ns a pixel, besides EdgeSnapping's.
   void clean(const Image<std::uint16_t>& depth, const EdgeSnapping::Images& images,
-             const Rect& part, const Options& options, Image<std::uint16_t>& cleaned);
+             const DepthPart& part, const Options& options, Image<std::uint16_t>& cleaned);
 
  private:
   struct Scratch {
     std::vector<float> depth_m, place;
   };
-  void remove_flying(const Image<std::uint16_t>& depth, const Rect& part,
+  void remove_flying(const Image<std::uint16_t>& depth, const DepthPart& part,
                      Image<std::uint16_t>& cleaned) const;
-  void remove_hidden(const Rect& part, float threshold_m, Image<std::uint16_t>& cleaned);
-  void smooth(const Rect& part, Image<std::uint16_t>& cleaned);
-  depth_rows::Row row(const std::uint16_t* depth, int count) const;
+  void remove_hidden(const DepthPart& part, float threshold_m, Image<std::uint16_t>& cleaned);
+  void smooth(const DepthPart& part, Image<std::uint16_t>& cleaned);
+  depth_rows::Row row(const Image<std::uint16_t>& depth, int y,
+                      const DepthPart::Columns& columns) const;
 
   RgbdCamera camera_;
   /// A pixel's ray (x, y, 1), turned into the colour sensor's frame: its x and z.

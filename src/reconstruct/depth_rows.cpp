@@ -17,6 +17,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using diminish::HWY_NAMESPACE::ForEachVector;
 using diminish::HWY_NAMESPACE::most_lanes;
 using diminish::HWY_NAMESPACE::NoiseAt;
+using diminish::HWY_NAMESPACE::StoreBytes;
 
 template <class D>
 HWY_INLINE hn::Vec<D> Load(D d, const std::uint16_t* depth) {
@@ -165,6 +166,54 @@ void RemoveHidden(const Places& places, float unit_m, float margin, float thresh
   }
 }
 
+void FindJumps(const std::uint16_t* depth, int count, std::ptrdiff_t step, int steps,
+               std::uint16_t limit, std::uint8_t* has_jump) {
+  const hn::CappedTag<std::uint16_t, piece> d;
+  const auto lanes = static_cast<int>(hn::Lanes(d));
+  const auto zero = hn::Zero(d);
+  for (int first = 0; first + piece <= count; first += piece) {
+    auto widest = zero;
+    for (int x = first; x < first + piece; x += lanes) {
+      const auto own = hn::LoadU(d, depth + x);
+      for (int k = 1; k <= steps; ++k) {
+        const auto other = hn::LoadU(d, depth + x + k * step);
+        const auto apart = hn::Or(hn::SaturatedSub(own, other), hn::SaturatedSub(other, own));
+        // What is 0 is the lesser of both.
+        widest = hn::Max(widest, hn::IfThenZeroElse(hn::Eq(hn::Min(own, other), zero), apart));
+      }
+    }
+    const auto beyond = hn::SaturatedSub(widest, hn::Set(d, limit));
+    has_jump[first / piece] = hn::AllTrue(d, hn::Eq(beyond, zero)) ? 0 : 1;
+  }
+}
+
+void KeepGaps(const std::uint16_t* depth, std::ptrdiff_t pitch, int count, const Gap& gap,
+              std::uint8_t* flags) {
+  ForEachVector(count, [&](auto d, int x) HWY_ATTR {
+    const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
+    if (std::find(flags + x, flags + x + lanes, 1) == flags + x + lanes) return;
+    const auto none = hn::Set(d, 65535.F);
+    auto least = none;
+    auto most = hn::Zero(d);
+    for (int row = -reach; row <= reach; ++row) {
+      const int side = row == 0 ? reach : row == reach || row == -reach ? 0 : 1;
+      for (int column = -side; column <= side; ++column) {
+        const auto z = Load(d, depth + x + row * pitch + column);
+        least = hn::Min(least, hn::IfThenElse(hn::Gt(z, hn::Zero(d)), z, none));
+        most = hn::Max(most, z);
+      }
+    }
+    const auto wide = hn::Max(hn::Set(d, gap.least),
+                              hn::Add(hn::Set(d, gap.constant),
+                                      hn::Mul(hn::Mul(hn::Set(d, gap.by_square), least), least)));
+    const auto has_gap = hn::Gt(hn::Sub(most, least), wide);
+    const hn::RebindToSigned<decltype(d)> di;
+    const hn::Rebind<std::uint8_t, decltype(d)> d8;
+    const auto old = hn::PromoteTo(di, hn::LoadU(d8, flags + x));
+    StoreBytes(d, hn::IfThenElseZero(hn::RebindMask(di, has_gap), old), flags + x);
+  });
+}
+
 }  // namespace
 }  // namespace diminish::depth_rows::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -176,6 +225,8 @@ namespace {
 HWY_EXPORT(RemoveFlying);
 HWY_EXPORT(Smooth);
 HWY_EXPORT(RemoveHidden);
+HWY_EXPORT(FindJumps);
+HWY_EXPORT(KeepGaps);
 
 }  // namespace
 
@@ -189,6 +240,14 @@ void remove_hidden(const Places& places, float unit_m, float margin, float thres
                    std::uint16_t* depth, float* depth_m, float* place) {
   HWY_DYNAMIC_DISPATCH(RemoveHidden)
   (places, unit_m, margin, threshold_m, count, depth, depth_m, place);
+}
+void find_jumps(const std::uint16_t* depth, int count, std::ptrdiff_t step, int steps,
+                std::uint16_t limit, std::uint8_t* has_jump) {
+  HWY_DYNAMIC_DISPATCH(FindJumps)(depth, count, step, steps, limit, has_jump);
+}
+void keep_gaps(const std::uint16_t* depth, std::ptrdiff_t pitch, int count, const Gap& gap,
+               std::uint8_t* flags) {
+  HWY_DYNAMIC_DISPATCH(KeepGaps)(depth, pitch, count, gap, flags);
 }
 
 }  // namespace diminish::depth_rows

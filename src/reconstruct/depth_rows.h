@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 
 #include "reconstruct/depth_noise.h"
 
@@ -41,5 +43,29 @@ struct Places {
 /// depth_m, place: scratch of `count` + 16.
 void remove_hidden(const Places& places, float unit_m, float margin, float threshold_m, int count,
                    std::uint16_t* depth, float* depth_m, float* place);
+
+/// Rows are searched for gaps in pieces of so many pixels.
+inline constexpr int piece = 16;
+
+/// Of each whole piece of a row, whether two depths more than `limit` apart are at one of its
+/// pixels and one of the `steps` next ones, `step` apart.
+void find_jumps(const std::uint16_t* depth, int count, std::ptrdiff_t step, int steps,
+                std::uint16_t limit, std::uint8_t* has_jump);
+
+/// When two depths, in an image's units, are of two surfaces: so far apart, and by so much for
+/// their noise.
+struct Gap {
+  float least, constant, by_square;
+
+  int is_between(int a, int b) const {  // 1 or 0: plain enough for vectors
+    const auto nearer = static_cast<float>(std::min(a, b));
+    const float wide = std::max(least, constant + by_square * nearer * nearer);
+    return static_cast<float>(std::abs(a - b)) > wide ? 1 : 0;
+  }
+};
+/// Clears the flags, 0 or 1, of pixels which have no two depths with a gap between them within
+/// `reach`. depth: `reach` rows, `pitch` pixels apart, and `reach` columns more on each side.
+void keep_gaps(const std::uint16_t* depth, std::ptrdiff_t pitch, int count, const Gap& gap,
+               std::uint8_t* flags);
 
 }  // namespace diminish::depth_rows

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <random>
 #include <vector>
@@ -154,6 +156,70 @@ TEST(DepthRows, HiddenPixelsAreThoseOfThePlainVersion) {
     for (int x = 0; x < width; ++x) hidden += depth(x, y) != 0 && result[x] == 0 ? 1 : 0;
   }
   EXPECT_GT(hidden, 300);
+}
+
+TEST(DepthRows, JumpsAreThoseOfThePlainVersion) {
+  const Image<std::uint16_t> depth = room(151, 40);
+  constexpr int steps = 3;
+  constexpr int piece = depth_rows::piece;
+  int found = 0;
+  int pieces = 0;
+  for (const std::ptrdiff_t step : {1, 151}) {
+    for (const std::uint16_t limit : {std::uint16_t{20}, std::uint16_t{150}, std::uint16_t{900}}) {
+      for (int y = 0; y < 40 - steps; ++y) {
+        const int count = 151 - steps;
+        std::vector<std::uint8_t> has_jump(static_cast<std::size_t>(count / piece), 7);
+        depth_rows::find_jumps(depth.row(y), count, step, steps, limit, has_jump.data());
+        for (int x = 0; x + piece <= count; x += piece) {
+          bool expected = false;
+          for (int i = x; i < x + piece; ++i) {
+            for (int k = 1; k <= steps; ++k) {
+              const int a = depth.row(y)[i];
+              const int b = depth.row(y)[i + k * step];
+              expected |= a != 0 && b != 0 && std::abs(a - b) > limit;
+            }
+          }
+          ASSERT_EQ(has_jump[static_cast<std::size_t>(x / piece)] != 0, expected) << x << ' ' << y;
+          found += expected ? 1 : 0;
+          ++pieces;
+        }
+      }
+    }
+  }
+  EXPECT_GT(found, pieces / 5);
+  EXPECT_LT(found, pieces * 4 / 5);
+}
+
+TEST(DepthRows, GapsAreKeptAsByThePlainVersion) {
+  const Image<std::uint16_t> depth = room(151, 40);
+  const depth_rows::Gap gap{200, 40, 0.00006F};
+  int kept = 0;
+  int flagged = 0;
+  for (int y = 2; y < 38; ++y) {
+    std::vector<std::uint8_t> flags(147);
+    for (std::size_t i = 0; i < flags.size(); ++i) flags[i] = (i / 20 + i) % 3 == 0 ? 1 : 0;
+    std::vector<std::uint8_t> result = flags;
+    depth_rows::keep_gaps(depth.row(y) + 2, depth.width(), 147, gap, result.data());
+    for (int i = 0; i < 147; ++i) {
+      int least = 65535;
+      int most = 0;
+      for (int dy = -2; dy <= 2; ++dy) {
+        for (int dx = -2; dx <= 2; ++dx) {
+          const int value = depth(2 + i + dx, y + dy);
+          if (dx * dx + dy * dy > 4 || value == 0) continue;
+          least = std::min(least, value);
+          most = std::max(most, value);
+        }
+      }
+      const auto flag = static_cast<std::size_t>(i);
+      const bool expected = flags[flag] != 0 && most > least && gap.is_between(least, most) != 0;
+      ASSERT_EQ(result[flag], expected ? 1 : 0) << i << ' ' << y;
+      kept += result[flag];
+      flagged += flags[flag];
+    }
+  }
+  EXPECT_GT(kept, flagged / 5);
+  EXPECT_LT(kept, flagged * 4 / 5);
 }
 
 }  // namespace

@@ -14,7 +14,8 @@ namespace diminish {
 namespace {
 
 /// How far from an edge pixels are looked at, and which their neighbours are.
-constexpr int reach = 2;
+using depth_rows::reach;
+
 /// Pixels without depth between two surfaces.
 constexpr int longest_gap_px = 3;
 /// Two surfaces: at least so far apart, and by so many times the noise.
@@ -36,21 +37,8 @@ void for_each_set(const std::uint8_t* flags, int count, const Visit& visit) {
   }
 }
 
-/// Marks in `wider` what is marked in `flags`, and what is up to `by` pixels beside it, in `part`.
-void widen(const Image<std::uint8_t>& flags, const Rect& part, int by, Image<std::uint8_t>& wider) {
-  for_rows(part.height, [&](Rows rows) {
-    for (int y = part.y + rows.first; y < part.y + rows.last; ++y) {
-      std::uint8_t* result = wider.row(y) + part.x;
-      std::fill_n(result, part.width, std::uint8_t{0});
-      const int last = std::min(part.bottom() - 1, y + by);
-      for (int row = std::max(part.y, y - by); row <= last; ++row) {
-        for_each_set(flags.row(row) + part.x, part.width, [&](int x) {
-          std::fill(result + std::max(0, x - by), result + std::min(part.width, x + by + 1),
-                    std::uint8_t{1});
-        });
-      }
-    }
-  });
+void add_flags(const std::uint8_t* flags, std::size_t count, std::uint8_t* sum) {
+  for (std::size_t i = 0; i < count; ++i) sum[i] |= flags[i];
 }
 
 float distance(const Bgr3& a, const Bgr3& b) {
@@ -113,128 +101,123 @@ const std::array<EdgeSnapping::Offset, 13> EdgeSnapping::offsets = [] {
   return circle;
 }();
 
-EdgeSnapping::Gap::Gap(float unit_m)
-    : least(least_gap_m / unit_m),
-      constant(least_gap_noise * DepthNoise().constant_m / unit_m),
-      by_square(least_gap_noise * DepthNoise().by_square * unit_m) {}
-
 EdgeSnapping::EdgeSnapping(const RgbdCamera& camera)
     : rays_(Lens(camera.depth).rays()),
       to_color_(camera.color_from_depth),
       color_(Lens(camera.color)),
       unit_m_(static_cast<float>(camera.depth_unit_m)),
-      gap_(unit_m_) {
+      gap_{least_gap_m / unit_m_, least_gap_noise * DepthNoise().constant_m / unit_m_,
+           least_gap_noise * DepthNoise().by_square * unit_m_},
+      closer_than_gap_(static_cast<std::uint16_t>(std::min(gap_.least, 65535.F))) {
   is_edge_.resize(camera.depth.width, camera.depth.height, 0);
   beside_edge_.resize(camera.depth.width, camera.depth.height, 0);
   is_read_.resize(camera.depth.width, camera.depth.height, 0);
   colors_.resize(camera.depth.width, camera.depth.height);
 }
 
-void EdgeSnapping::snap(const Images& images, const Rect& part, Image<std::uint16_t>& depth) {
-  const Rect whole = intersect(part, depth.bounds());
-  if (whole.empty()) return;
-  depth_ = depth;
-  find_edges(whole);
-  read_colors(images, whole);
-  for_rows(whole.height, [&](Rows rows) {
-    for (int y = whole.y + rows.first; y < whole.y + rows.last; ++y) {
-      for_each_set(beside_edge_.row(y) + whole.x, whole.width,
-                   [&](int i) { snap_pixel(images, whole.x + i, y, depth); });
+void EdgeSnapping::snap(const Images& images, const DepthPart& part, Image<std::uint16_t>& depth) {
+  if (part.bounds().empty()) return;
+  depth_.resize(depth.width(), depth.height());
+  const Rect& bounds = part.bounds();
+  std::copy(depth.row(bounds.y), depth.row(bounds.bottom() - 1) + depth.width(),
+            depth_.row(bounds.y));
+  find_edges(part);
+  read_colors(images, bounds);
+  for_rows(bounds.height, [&](Rows rows) {
+    for (int y = bounds.y + rows.first; y < bounds.y + rows.last; ++y) {
+      for_each_set(beside_edge_.row(y) + bounds.x, bounds.width,
+                   [&](int i) { snap_pixel(images, bounds.x + i, y, depth); });
     }
   });
 }
 
 /// Marks the pixels around which there are two surfaces.
-void EdgeSnapping::find_edges(const Rect& part) {
-  for_rows(part.height, [&](Rows rows) {
-    for (int y = part.y + rows.first; y < part.y + rows.last; ++y) {
-      std::uint8_t* is_edge = is_edge_.row(y) + part.x;
-      std::fill_n(is_edge, part.width, std::uint8_t{0});
-      find_gaps_in_row(depth_.row(y) + part.x, part.width, is_edge);
+void EdgeSnapping::find_edges(const DepthPart& part) {
+  const Rect& bounds = part.bounds();
+  for_rows(bounds.height, [&](Rows rows) {
+    for (int y = bounds.y + rows.first; y < bounds.y + rows.last; ++y) {
+      std::fill_n(is_edge_.row(y) + bounds.x, bounds.width, std::uint8_t{0});
+      mark_gaps(part, bounds, y, false, scratch_[rows.first == 0 ? 0 : 1]);
     }
   });
   // Columns are divided between threads as rows are.
-  for_rows(part.width, [&](Rows columns) {
-    find_gaps_in_columns(
-        {part.x + columns.first, part.y, columns.last - columns.first, part.height},
-        columns_[columns.first == 0 ? 0 : 1]);
-  });
-  widen(is_edge_, part, 1, beside_edge_);
-  for_rows(part.height, [&](Rows rows) {
-    for (int y = part.y + rows.first; y < part.y + rows.last; ++y) {
-      for_each_set(beside_edge_.row(y) + part.x, part.width, [&](int i) {
-        if (!may_have_two_surfaces(part, part.x + i, y)) beside_edge_(part.x + i, y) = 0;
-      });
+  for_rows(bounds.width, [&](Rows columns) {
+    const Rect some{bounds.x + columns.first, bounds.y, columns.last - columns.first,
+                    bounds.height};
+    for (int y = bounds.y; y < bounds.bottom(); ++y) {
+      mark_gaps(part, some, y, true, scratch_[columns.first == 0 ? 0 : 1]);
     }
   });
-  widen(beside_edge_, part, reach, is_read_);
+  widen(is_edge_, bounds, 1, beside_edge_);
+  const Rect inner{bounds.x + reach, bounds.y + reach, bounds.width - 2 * reach,
+                   bounds.height - 2 * reach};
+  for_rows(bounds.height, [&](Rows rows) {
+    for (int y = bounds.y + rows.first; y < bounds.y + rows.last; ++y) {
+      std::uint8_t* flags = beside_edge_.row(y);
+      const DepthPart::Columns& columns = part.columns(y);
+      const bool is_inside = y >= inner.y && y < inner.bottom();
+      const int first = std::min(std::max(columns.first, inner.x), bounds.right());
+      const int last = is_inside ? std::max(first, std::min(columns.last, inner.right())) : first;
+      std::fill(flags + bounds.x, flags + first, std::uint8_t{0});
+      std::fill(flags + last, flags + bounds.right(), std::uint8_t{0});
+      depth_rows::keep_gaps(depth_.row(y) + first, depth_.width(), last - first, gap_,
+                            flags + first);
+    }
+  });
+  widen(beside_edge_, bounds, reach, is_read_);
 }
 
-bool EdgeSnapping::may_have_two_surfaces(const Rect& part, int x, int y) const {
-  const Rect inner{part.x + reach, part.y + reach, part.width - 2 * reach, part.height - 2 * reach};
-  if (!inner.contains(x, y)) return false;
-  int least = 65535;
-  int most = 0;
-  for (const Offset& offset : offsets) {
-    const int depth = depth_(x + offset.x, y + offset.y);
-    least = depth == 0 ? least : std::min(least, depth);
-    most = std::max(most, depth);
+/// Marks the pixels on both sides of a depth edge, and those without depth between them: from the
+/// pixels of a row on, to the right or downwards.
+void EdgeSnapping::mark_gaps(const DepthPart& part, const Rect& within, int y, bool downwards,
+                             Scratch& scratch) {
+  constexpr int piece = depth_rows::piece;
+  constexpr int most_steps = longest_gap_px + 1;
+  const DepthPart::Columns& columns = part.columns(y);
+  const int left = std::max(within.x, columns.first);
+  const int count = std::min(within.right(), columns.last) - left;
+  if (count <= 0) return;
+  const std::uint16_t* const depth = depth_.row(y) + left;
+  std::uint8_t* const is_edge = is_edge_.row(y) + left;
+  const std::ptrdiff_t step = downwards ? depth_.width() : 1;
+  const int rows_below = std::min(most_steps, within.bottom() - 1 - y);
+  // Most pieces are one surface.
+  scratch.has_jump.assign(static_cast<std::size_t>(count / piece + 1), 1);
+  depth_rows::find_jumps(depth, downwards ? count : count - most_steps, step,
+                         downwards ? rows_below : most_steps, closer_than_gap_,
+                         scratch.has_jump.data());
+  for (int first = 0; first < count; first += piece) {
+    if (scratch.has_jump[static_cast<std::size_t>(first / piece)] == 0) continue;
+    for (int x = first; x < std::min(first + piece, count); ++x) {
+      if (depth[x] == 0) continue;
+      const int steps = downwards ? rows_below : std::min(most_steps, count - 1 - x);
+      int next = 1;
+      while (next <= steps && depth[x + next * step] == 0) ++next;
+      if (next > steps || gap_.is_between(depth[x], depth[x + next * step]) == 0) continue;
+      for (int k = 0; k <= next; ++k) is_edge[x + k * step] = 1;
+    }
   }
-  return most > least && gap_.is_between(least, most) != 0;
 }
 
-/// Marks the pixels on both sides of a depth edge, and those without depth between them.
-void EdgeSnapping::find_gaps_in_row(const std::uint16_t* depth, int count,
-                                    std::uint8_t* is_edge) const {
-  constexpr int block = 32;
-  int last = -1;
-  for (int first = 0; first < count; first += block) {
-    const int end = std::min(first + block, count);
-    // Most blocks are one surface.
-    int breaks = end < count && last == first - 1 ? 0 : 1;
-    for (int i = std::max(first - 1, 0); i < end && end < count; ++i) {
-      breaks |= (depth[i] == 0 ? 1 : 0) | gap_.is_between(depth[i], depth[i + 1]);
-    }
-    if (breaks == 0) {
-      last = end - 1;
-      continue;
-    }
-    for (int i = first; i < end; ++i) {
-      if (depth[i] == 0) continue;
-      if (last >= 0 && i - last <= longest_gap_px + 1 &&
-          gap_.is_between(depth[i], depth[last]) != 0) {
-        std::fill(is_edge + last, is_edge + i + 1, std::uint8_t{1});
-      }
-      last = i;
-    }
-  }
-}
-
-/// The same along columns. Row by row, so that columns are worked on side by side.
-void EdgeSnapping::find_gaps_in_columns(const Rect& part, Columns& columns) {
+/// Marks in `wider` what is marked in `flags`, and what is up to `by` pixels beside it, in `part`.
+void EdgeSnapping::widen(const Image<std::uint8_t>& flags, const Rect& part, int by,
+                         Image<std::uint8_t>& wider) {
   const auto width = static_cast<std::size_t>(part.width);
-  columns.last_depth.assign(width, 0);
-  columns.age.assign(width, 0);
-  columns.has_gap.resize(width);
-  for (int y = part.y; y < part.bottom(); ++y) {
-    const std::uint16_t* depth = depth_.row(y) + part.x;
-    std::uint16_t* last = columns.last_depth.data();
-    std::uint16_t* age = columns.age.data();
-    std::uint8_t* has_gap = columns.has_gap.data();
-    for (std::size_t x = 0; x < width; ++x) {
-      const int is_measured = (depth[x] != 0 ? 1 : 0) & (last[x] != 0 ? 1 : 0);
-      has_gap[x] = static_cast<std::uint8_t>(is_measured & gap_.is_between(depth[x], last[x]));
+  const auto margin = static_cast<std::size_t>(by);
+  for_rows(part.height, [&](Rows rows) {
+    std::vector<std::uint8_t>& line = scratch_[rows.first == 0 ? 0 : 1].line;
+    line.assign(width + 2 * margin, 0);
+    for (int y = part.y + rows.first; y < part.y + rows.last; ++y) {
+      std::fill_n(line.data() + margin, width, std::uint8_t{0});
+      const int last = std::min(part.bottom() - 1, y + by);
+      for (int row = std::max(part.y, y - by); row <= last; ++row) {
+        add_flags(flags.row(row) + part.x, width, line.data() + margin);
+      }
+      std::uint8_t* result = wider.row(y) + part.x;
+      std::copy_n(line.data(), width, result);
+      for (std::size_t k = 1; k <= 2 * margin; ++k) add_flags(line.data() + k, width, result);
     }
-    for_each_set(has_gap, part.width, [&](int x) {
-      for (int row = y - age[x] - 1; row <= y; ++row) is_edge_(part.x + x, row) = 1;
-    });
-    for (std::size_t x = 0; x < width; ++x) {
-      const bool is_measured = depth[x] != 0;
-      const bool is_too_long = age[x] >= longest_gap_px;
-      last[x] = is_measured ? depth[x] : is_too_long ? std::uint16_t{0} : last[x];
-      age[x] = is_measured ? std::uint16_t{0} : static_cast<std::uint16_t>(age[x] + 1);
-    }
-  }
+  });
 }
 
 /// Reads the colours of the pixels that `is_read_` marks, and unmarks those that have none.

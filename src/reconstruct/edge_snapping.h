@@ -1,15 +1,15 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
-#include <cstdlib>
 #include <optional>
 #include <vector>
 
 #include "diminish/image.h"
 #include "diminish/rig.h"
 #include "geometry/projection.h"
+#include "reconstruct/depth_part.h"
+#include "reconstruct/depth_rows.h"
 
 namespace diminish {
 
@@ -35,7 +35,7 @@ class EdgeSnapping {
     const Mask& depth_mask;
   };
   /// Changes `depth` in `part`. Cost: 1 ns a pixel of the part, 0.5 us one beside an edge.
-  void snap(const Images& images, const Rect& part, Image<std::uint16_t>& depth);
+  void snap(const Images& images, const DepthPart& part, Image<std::uint16_t>& depth);
 
  private:
   /// A neighbour's place from a pixel, and its weight.
@@ -50,27 +50,15 @@ class EdgeSnapping {
     const Bgr3* color;  ///< null: not known
   };
   using Neighbours = std::array<Neighbour, 13>;
-  /// Whether two depths, in the image's units, are of two surfaces.
-  struct Gap {
-    float least, constant, by_square;
-
-    explicit Gap(float unit_m);
-    int is_between(int a, int b) const {  // 1 or 0: plain enough for vectors
-      const auto nearer = static_cast<float>(std::min(a, b));
-      const float wide = std::max(least, constant + by_square * nearer * nearer);
-      return static_cast<float>(std::abs(a - b)) > wide ? 1 : 0;
-    }
-  };
-  /// What is known of each column above a row.
-  struct Columns {
-    std::vector<std::uint16_t> last_depth, age;  ///< the last depth met, and rows since then
-    std::vector<std::uint8_t> has_gap;
+  struct Scratch {
+    std::vector<std::uint8_t> has_jump, line;
   };
 
-  void find_edges(const Rect& part);
-  void find_gaps_in_row(const std::uint16_t* depth, int count, std::uint8_t* is_edge) const;
-  void find_gaps_in_columns(const Rect& part, Columns& columns);
-  bool may_have_two_surfaces(const Rect& part, int x, int y) const;
+  void find_edges(const DepthPart& part);
+  void mark_gaps(const DepthPart& part, const Rect& within, int y, bool downwards,
+                 Scratch& scratch);
+  void widen(const Image<std::uint8_t>& flags, const Rect& part, int by,
+             Image<std::uint8_t>& wider);
   void read_colors(const Images& images, const Rect& part);
   void snap_pixel(const Images& images, int x, int y, Image<std::uint16_t>& depth) const;
   std::optional<float> choose(const Images& images, int x, int y, const Neighbours& neighbours,
@@ -81,14 +69,15 @@ class EdgeSnapping {
   FloatTransform to_color_;
   Projection color_;
   float unit_m_;
-  Gap gap_;
+  depth_rows::Gap gap_;
 
   Image<std::uint16_t> depth_;       ///< as it comes
   Image<std::uint8_t> is_edge_;      ///< 1: at a depth edge
   Image<std::uint8_t> beside_edge_;  ///< 1: two surfaces may be within reach
   Image<std::uint8_t> is_read_;      ///< 1: `colors_` holds a depth pixel's colour
   Image<Bgr3> colors_;
-  Columns columns_[2];  ///< of each thread
+  std::uint16_t closer_than_gap_;  ///< depths this close have no gap between them
+  Scratch scratch_[2];             ///< of each thread
 };
 
 }  // namespace diminish

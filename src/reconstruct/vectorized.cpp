@@ -26,11 +26,20 @@ class CameraMesh {
  public:
   static constexpr int parts = 2;
 
-  CameraMesh(const RgbdCamera& camera, const Intrinsics& color) : rows_(camera, color) {
+  CameraMesh(const RgbdCamera& camera, const Intrinsics& color)
+      : visible_(camera, color), rows_(camera, color) {
     for (Part& part : parts_) {
       for (VertexRow& row : part.vertices) row.resize(rows_.width());
     }
   }
+
+  /// To be called before its parts are drawn.
+  void begin(const Image<std::uint16_t>& depth, const RigidTransform& color_from_depth,
+             const Rect& region) {
+    visible_.find(depth, color_from_depth, region);
+  }
+
+  const VisibleBlocks& visible() const { return visible_; }
 
   /// Two rows of vertices at a time; cells that cannot touch the region are left out by the block.
   void draw(const VertexRows::Frame& frame, const TiledRegion& region,
@@ -98,6 +107,7 @@ class CameraMesh {
     }
   }
 
+  VisibleBlocks visible_;
   VertexRows rows_;
   Part parts_[parts];
 };
@@ -122,15 +132,17 @@ class VectorizedReconstructor : public Reconstructor {
     for (std::size_t k = 0; k < meshes_.size(); ++k) {
       if (!frame.rgbd[k].available() || !poses.color_from_depth[k]) continue;
       drawn_.push_back({k, 0});
+      meshes_[k].begin(depths[k], *poses.color_from_depth[k], region);
     }
     const sdct::Threshold threshold(options.discontinuity_threshold_m,
                                     options.discontinuity_reach_m);
     oneapi::tbb::parallel_for(
         std::size_t{0}, CameraMesh::parts * drawn_.size(), [&](std::size_t i) {
           const std::size_t k = drawn_[i / CameraMesh::parts].camera;
-          meshes_[k].draw({depths[k], masks.rgbd_depth[k], masks.rgbd_color[k],
-                           FloatTransform(*poses.color_from_depth[k]), region},
-                          region, threshold, static_cast<int>(i % CameraMesh::parts));
+          meshes_[k].draw(
+              {depths[k], masks.rgbd_depth[k], masks.rgbd_color[k],
+               FloatTransform(*poses.color_from_depth[k]), region, meshes_[k].visible()},
+              region, threshold, static_cast<int>(i % CameraMesh::parts));
         });
     for_rows(region.height, [&](Rows rows) {
       for (const Drawn& drawn : drawn_) {

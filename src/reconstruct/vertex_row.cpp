@@ -54,8 +54,8 @@ HWY_INLINE LaneMask Distort(const Projection& p, Vector x, Vector y, Vector& u, 
 
 /// One row; the arrays are padded to whole blocks.
 void ProjectRow(const VertexRows::Constants& constants, const FloatTransform& to_color,
-                const Rect& region, const std::uint16_t* depth, const std::uint8_t* mask,
-                const float* ray_x, const float* ray_y, VertexRow& row) {
+                const Rect& region, const std::uint8_t* visible, const std::uint16_t* depth,
+                const std::uint8_t* mask, const float* ray_x, const float* ray_y, VertexRow& row) {
   const Floats d;
   const Ints di;
   const hn::Rebind<std::uint16_t, Floats> d16;
@@ -67,6 +67,14 @@ void ProjectRow(const VertexRows::Constants& constants, const FloatTransform& to
   const Vector top = Set(static_cast<float>(region.y - 1));
   const Vector bottom = Set(static_cast<float>(region.bottom() + 1));
   for (int start = 0; start < constants.width; start += VertexRow::block) {
+    const auto index = static_cast<std::size_t>(start / VertexRow::block);
+    row.has_colors[index] = 0;
+    if (visible[index] == 0) {
+      std::fill_n(row.inverse_z.data() + start, VertexRow::block, 0.F);
+      row.beyond[index] = 15;
+      row.bounds[index] = {};
+      continue;
+    }
     LaneMask not_left = hn::Lt(hn::Zero(d), hn::Zero(d));
     LaneMask not_right = not_left;
     LaneMask not_above = not_left;
@@ -125,7 +133,6 @@ void ProjectRow(const VertexRows::Constants& constants, const FloatTransform& to
     }
     const auto bit = [&](LaneMask mask_, int value)
                          HWY_ATTR { return hn::AllFalse(d, mask_) ? value : 0; };
-    const auto index = static_cast<std::size_t>(start / VertexRow::block);
     row.beyond[index] = static_cast<std::uint8_t>(bit(not_left, 1) | bit(not_right, 2) |
                                                   bit(not_above, 4) | bit(not_below, 8));
     const auto least = [&](Vector values) HWY_ATTR {
@@ -137,7 +144,6 @@ void ProjectRow(const VertexRows::Constants& constants, const FloatTransform& to
     const int first_x = least(least_x);
     const int first_y = least(least_y);
     row.bounds[index] = {first_x, first_y, size(greatest_x, first_x), size(greatest_y, first_y)};
-    row.has_colors[index] = 0;
   }
 }
 
@@ -234,8 +240,8 @@ VertexRows::VertexRows(const RgbdCamera& camera, const Intrinsics& color)
 void VertexRows::project(const Frame& frame, int row, VertexRow& vertices) const {
   const std::ptrdiff_t rays = static_cast<std::ptrdiff_t>(row) * padded_width_;
   HWY_DYNAMIC_DISPATCH(ProjectRow)
-  (constants_, frame.to_color, frame.region, frame.depth.row(row), frame.depth_mask.row(row),
-   ray_x_.data() + rays, ray_y_.data() + rays, vertices);
+  (constants_, frame.to_color, frame.region, frame.visible.row(row), frame.depth.row(row),
+   frame.depth_mask.row(row), ray_x_.data() + rays, ray_y_.data() + rays, vertices);
 }
 
 void VertexRows::find_colors(const Frame& frame, int row, int block, VertexRow& vertices) const {

@@ -7,13 +7,14 @@
 #include "diminish/image.h"
 #include "diminish/rig.h"
 #include "geometry/projection.h"
+#include "reconstruct/visible_blocks.h"
 
 namespace diminish {
 
 /// The vertices of one row of a depth image (see MeshVertex), an array for each value. Vertices are
-/// worked on in blocks of 16; there is one block more than the row has, of invalid vertices.
+/// worked on in blocks; there is one block more than the row has, of invalid vertices.
 struct VertexRow {
-  static constexpr int block = 16;
+  static constexpr int block = VisibleBlocks::width;
 
   std::vector<std::int32_t> x, y;         ///< in the colour camera's image, in 1/256 pixels
   std::vector<float> depth_m;             ///< z in the depth sensor's frame
@@ -40,6 +41,7 @@ class VertexRows {
     const Mask& color_mask;
     FloatTransform to_color;
     Rect region;
+    const VisibleBlocks& visible;  ///< what is not is left out
   };
   /// Everything but the colours' places.
   void project(const Frame& frame, int row, VertexRow& vertices) const;

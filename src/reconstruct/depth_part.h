@@ -1,0 +1,66 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "core/rows.h"
+#include "diminish/image.h"
+
+namespace diminish {
+
+/// A part of a depth image: in each row, some columns beside each other.
+class DepthPart {
+ public:
+  /// Columns [first, last).
+  struct Columns {
+    int first = 0, last = 0;
+
+    int count() const { return last - first; }
+  };
+
+  DepthPart() = default;
+  /// All of the rectangle.
+  DepthPart(const Rect& all)
+      : bounds_(all), band_(std::max(1, all.bottom())), columns_{{all.x, all.right()}} {}
+
+  /// Begins with nothing. The image's rows are taken in bands of this height.
+  void begin(int band_height) {
+    bounds_ = {};
+    band_ = band_height;
+    columns_.clear();
+  }
+  /// The columns of the next band, which ends before row `end`; none, if it is empty.
+  void add_band(const Columns& columns, int end) {
+    const int first = static_cast<int>(columns_.size()) * band_;
+    columns_.push_back(columns);
+    bounds_ = join(bounds_, {columns.first, first, columns.count(), end - first});
+  }
+
+  /// All is inside.
+  const Rect& bounds() const { return bounds_; }
+  /// Of a row of `bounds`.
+  const Columns& columns(int y) const { return columns_[static_cast<std::size_t>(y / band_)]; }
+
+ private:
+  Rect bounds_;
+  int band_ = 1;
+  std::vector<Columns> columns_;  ///< by band
+};
+
+/// Calls visit(y, columns) for each row of what part and rectangle have in common, in two threads
+/// if there are many.
+template <class Visit>
+void for_each_row(const DepthPart& part, const Rect& rectangle, const Visit& visit) {
+  const Rect bounds = intersect(part.bounds(), rectangle);
+  for_rows(bounds.height, [&](Rows rows) {
+    for (int y = bounds.y + rows.first; y < bounds.y + rows.last; ++y) {
+      const DepthPart::Columns& all = part.columns(y);
+      const DepthPart::Columns columns{std::max(all.first, bounds.x),
+                                       std::min(all.last, bounds.right())};
+      if (columns.count() > 0) visit(y, columns);
+    }
+  });
+}
+
+}  // namespace diminish
