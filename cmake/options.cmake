@@ -8,6 +8,9 @@ target_compile_options(diminish_build_options INTERFACE
   # Nobody reads errno or floating-point exceptions: rounding is an instruction, comparisons are
   # vectorised. No result depends on it.
   -fno-math-errno -fno-trapping-math)
+# The library's functions call each other, not what another library may call by the same name.
+target_compile_options(diminish_build_options INTERFACE -fno-semantic-interposition)
+target_link_options(diminish_build_options INTERFACE -Wl,-Bsymbolic-functions)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 sees overlaps in std::string's operator+ that are not there (GCC bug 105651).
   target_compile_options(diminish_build_options INTERFACE -Wno-restrict)
