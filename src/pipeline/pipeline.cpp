@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/parallel_invoke.h>
+#include <oneapi/tbb/task_group.h>
 
 #include <vector>
 
@@ -128,12 +129,16 @@ struct Pipeline::Implementation {
     backend.begin_frame();
     const bool composes = backend.reach(options) != Reach::reconstruction;
     cast_shadows.clear();
+    const auto find_surfaces = [&] {
+      if (finds_surfaces) find_background(objects, reconstruction);
+    };
+    const bool surfaces_first = composes || options.remove_shadows;  // what is drawn needs them
     oneapi::tbb::parallel_invoke(
         [&] {
           if (options.refine_poses) {
             pose_refinement.refine(frame, masks.color, reconstruction, poses);
           }
-          if (finds_surfaces) find_background(objects, reconstruction);
+          if (surfaces_first) find_surfaces();
           if (composes) fit_color_maps(frame.color, reconstruction);
         },
         [&] { clean_depths(frame); });
@@ -150,8 +155,11 @@ struct Pipeline::Implementation {
           result);
       if (reach != Reach::reconstruction) return reach;
     }
+    oneapi::tbb::task_group beside;
+    if (!surfaces_first) beside.run(find_surfaces);
     backend.reconstruct(frame, depths, poses, masks, region, options, reconstruction,
                         result.report.drawing);
+    beside.wait();
     if (finds_surfaces) {
       background_planes.label(reconstruction);
     } else {
