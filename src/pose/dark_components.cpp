@@ -19,25 +19,6 @@ constexpr int min_contrast = 2;
 
 }  // namespace
 
-void decimate(const Image<Bgr>& image, Image<std::uint8_t>& small) {
-  small.resize(image.width() / decimation, image.height() / decimation);
-  for (int y = 0; y < small.height(); ++y) {
-    // Two of the four rows: half the memory, and noise is no worry here.
-    const std::uint8_t* upper =
-        reinterpret_cast<const std::uint8_t*>(image.row(decimation * y + 1));
-    const std::uint8_t* lower =
-        reinterpret_cast<const std::uint8_t*>(image.row(decimation * y + 2));
-    std::uint8_t* to = small.row(y);
-    for (int x = 0; x < small.width(); ++x) {
-      // The green channel of four pixels; the others add little.
-      const int at = 3 * decimation * x + 1;
-      const int sum = upper[at] + upper[at + 3] + upper[at + 6] + upper[at + 9] + lower[at] +
-                      lower[at + 3] + lower[at + 6] + lower[at + 9];
-      to[x] = static_cast<std::uint8_t>((sum + 4) >> 3);
-    }
-  }
-}
-
 void DarkComponents::find(const Image<std::uint8_t>& small) {
   threshold(small);
   connect();

@@ -7,11 +7,6 @@
 
 namespace diminish {
 
-/// The picture's brightness at a quarter of the resolution: each pixel the mean of 4x2 of the
-/// picture's. Enough to see a marker, and little memory to touch.
-inline constexpr int decimation = 4;
-void decimate(const Image<Bgr>& image, Image<std::uint8_t>& small);
-
 /// The connected parts of a picture that are darker than what is around them.
 class DarkComponents {
  public:

@@ -5,6 +5,7 @@
 
 #include "pose/corner_refinement.h"
 #include "pose/dark_components.h"
+#include "pose/decimation.h"
 #include "pose/marker_code.h"
 #include "pose/marker_dictionary.h"
 #include "pose/quad_candidates.h"

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "pose/decimation.h"
+
 namespace diminish {
 namespace {
 

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <cstdint>
+
+#include "diminish/image.h"
+
+namespace diminish {
+
+/// The picture's brightness at a quarter of the resolution: each pixel the mean of 4x2 of the
+/// picture's. Enough to see a marker, and little memory to touch.
+inline constexpr int decimation = 4;
+void decimate(const Image<Bgr>& image, Image<std::uint8_t>& small);
+
+}  // namespace diminish
