@@ -180,7 +180,7 @@ void Coarsen(const MembraneLevel& fine, Rows rows, MembraneLevel& coarse) {
   const std::ptrdiff_t pitch = coarse.pitch;
   CoarseCells cells;
   for (int y = rows.first; y < rows.last; ++y) {
-    ForEachBlock(coarse.stored, coarse.stored_rows, y, [&](int column) {
+    ForEachBlock(coarse.stored, y, [&](int column) {
       const std::ptrdiff_t at = coarse.at(y, 0, column);
       const Block kind = coarse.block(y, column);
       if (kind == Block::empty) return;
@@ -192,12 +192,12 @@ void Coarsen(const MembraneLevel& fine, Rows rows, MembraneLevel& coarse) {
       for (int half = 0; half < 2; ++half) {
         const int fine_column = 2 * column + half;
         const Tile state = StateOf(fine, 2 * y, fine_column);
-        if (state == Tile::active || state == Tile::ghost) {
+        if (state == Tile::active) {
           CoarsenHalf(fine, 2 * y, fine_column, half * lanes, cells);
           continue;
         }
         // Inside a smooth tile every weight is 1, as on the finer level.
-        const float weight = state == Tile::smooth ? 1.F : 0.F;
+        const float weight = state == Tile::empty ? 0.F : 1.F;
         const int offset = half * lanes;
         std::fill_n(cells.right + offset, lanes, weight);
         std::fill_n(cells.down + offset, lanes, weight);

@@ -28,6 +28,7 @@ void MembraneCoarsest::build(const MembraneLevel& level) {
   find_groups(level);
   find_edges(level);
   factorize();
+  find_red(level);
 }
 
 void MembraneCoarsest::find_groups(const MembraneLevel& level) {
@@ -72,7 +73,8 @@ void MembraneCoarsest::find_groups(const MembraneLevel& level) {
       int& number = numbers[part[k]];
       if (number == none) number = group_count_++;
       group(places[k][0], places[k][1]) = number;
-      cells_.push_back({at[k], level.cell_at(places[k][0], places[k][1], 0), number});
+      cells_.push_back({at[k], level.cell_at(places[k][0], places[k][1], 0), number,
+                        (places[k][0] + places[k][1]) % 2 == 0});
     }
   };
   // Along the shorter side first: the matrix's band is as wide as that is long.
@@ -150,27 +152,43 @@ void MembraneCoarsest::factorize() {
   }
 }
 
+void MembraneCoarsest::find_red(const MembraneLevel& level) {
+  red_.clear();
+  const float* right = level.right.data();
+  const float* down = level.down.data();
+  for (const Cell& cell : cells_) {
+    if (!cell.red) continue;
+    // The columns beside are of the other parity: one place on, or none.
+    const bool odd = (cell.single / level.pitch) % 2 == 1;
+    Equation equation;
+    equation.triple = cell.triple;
+    equation.to_left = odd ? -level.pitch : level.pitch - 1;
+    equation.to_right = odd ? 1 - level.pitch : level.pitch;
+    equation.left = right[cell.single + equation.to_left];
+    equation.right = right[cell.single];
+    equation.up = down[cell.single - level.row_step()];
+    equation.down = down[cell.single];
+    equation.total = equation.left + equation.right + equation.up + equation.down;
+    equation.group = cell.group;
+    red_.push_back(equation);
+  }
+}
+
 void MembraneCoarsest::correct(const MembraneLevel& level, const float* right_side, float* values) {
   if (group_count_ == 0) return;
   std::fill(solution_.begin(), solution_.end(), Eigen::Array4f::Zero());
-  const std::ptrdiff_t row_step = level.row_step();
-  const std::ptrdiff_t triple_row_step = level.channel_row_step();
-  for (const Cell& cell : cells_) {
-    // The columns beside are of the other parity: one place on, or none.
-    const bool odd = (cell.single / level.pitch) % 2 == 1;
-    const std::ptrdiff_t left = odd ? -level.pitch : level.pitch - 1;
-    const std::ptrdiff_t right = odd ? 1 - level.pitch : level.pitch;
-    const float weights[] = {
-        level.right.data()[cell.single + left], level.right.data()[cell.single],
-        level.down.data()[cell.single - row_step], level.down.data()[cell.single]};
-    const std::ptrdiff_t beside[] = {left, right, -triple_row_step, triple_row_step};
-    Eigen::Array4f& sum = solution_[static_cast<std::size_t>(cell.group)];
+  for (const Equation& equation : red_) {
+    float residual[channels];
     for (int c = 0; c < channels; ++c) {
-      const std::ptrdiff_t at = cell.triple + c * level.channel_step();
-      float residual = right_side[at];
-      for (int k = 0; k < 4; ++k) residual += weights[k] * (values[at + beside[k]] - values[at]);
-      sum[c] += residual;
+      const std::ptrdiff_t at = equation.triple + c * level.channel_step();
+      const float* const own = values + at;
+      residual[c] = right_side[at] + equation.left * own[equation.to_left] +
+                    equation.right * own[equation.to_right] +
+                    equation.up * own[-level.channel_row_step()] +
+                    equation.down * own[level.channel_row_step()] - equation.total * own[0];
     }
+    solution_[static_cast<std::size_t>(equation.group)] +=
+        Eigen::Array4f(residual[0], residual[1], residual[2], 0);
   }
   const auto row_size = static_cast<std::ptrdiff_t>(bandwidth_) + 1;
   const auto count = static_cast<std::ptrdiff_t>(group_count_);
@@ -178,9 +196,16 @@ void MembraneCoarsest::correct(const MembraneLevel& level, const float* right_si
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     const float* const factor = row(i);
     Eigen::Array4f* const own = solution_.data() + i;
-    Eigen::Array4f sum = *own;
-    for (std::ptrdiff_t j = -std::min(i, row_size - 1); j < 0; ++j) sum -= factor[j] * own[j];
-    *own = sum * factor[0];
+    // Two sums: one would wait for itself.
+    Eigen::Array4f even = *own;
+    Eigen::Array4f odd = Eigen::Array4f::Zero();
+    std::ptrdiff_t j = -std::min(i, row_size - 1);
+    for (; j + 1 < 0; j += 2) {
+      even -= factor[j] * own[j];
+      odd += factor[j + 1] * own[j + 1];
+    }
+    if (j < 0) even -= factor[j] * own[j];
+    *own = (even - odd) * factor[0];
   }
   for (std::ptrdiff_t i = count; i-- > 0;) {
     const float* const factor = row(i);

@@ -23,7 +23,7 @@ void ExtendOverFixed(const MembraneLevel& level, float* values) {
     return hn::IfThenElseZero(hn::Gt(weight, Zero()), Set(1.F));
   };
   for (int y = 0; y < level.height; ++y) {
-    ForEachBlock(level.active, level.active_rows, y, [&](int column) HWY_ATTR {
+    ForEachBlock(level.active, y, [&](int column) HWY_ATTR {
       if (level.block(y, column) != Block::general) return;
       for (int parity = 0; parity < 2; ++parity) {
         for (std::ptrdiff_t i = 0; i < lanes; i += VectorSize()) {
@@ -49,126 +49,214 @@ void ExtendOverFixed(const MembraneLevel& level, float* values) {
   }
 }
 
-/// Coarse values around one fine row, blended vertically, in the order of the columns.
-struct BlendedRow {
-  // A cell before and one after the block's own; 16 for alignment.
-  HWY_ALIGN float values[channels][4 * lanes];
-  HWY_ALIGN float presence[4 * lanes];
+// As many coarse cells of one parity as half a block of fine ones lies in.
+using Halves = hn::CappedTag<float, lanes / 2>;
+using Half = hn::Vec<Halves>;
 
-  /// Of cells that all exist.
-  HWY_INLINE void SetPlain(const MembraneLevel& coarse, const float* coarse_values, int y,
-                           int fine_column) {
-    const int near_y = y / 2;
-    const int far_y = y % 2 == 0 ? near_y - 1 : near_y + 1;
-    const std::ptrdiff_t offset = fine_column % 2 * (lanes / 2) - 1;
-    for (std::ptrdiff_t i = 0; i < lanes / 2 + 2; i += VectorSize()) {
-      for (int c = 0; c < channels; ++c) {
-        Vector blended[2];
-        for (int parity = 0; parity < 2; ++parity) {
-          const Vector near =
-              Load(coarse_values + coarse.at(near_y, c, parity, fine_column / 2) + offset + i);
-          const Vector far =
-              Load(coarse_values + coarse.at(far_y, c, parity, fine_column / 2) + offset + i);
-          blended[parity] =
-              hn::MulAdd(hn::Set(Floats(), 0.75F), near, hn::Mul(hn::Set(Floats(), 0.25F), far));
-        }
-        hn::StoreInterleaved2(blended[0], blended[1], Floats(), values[c] + 2 * i);
-      }
-    }
+HWY_INLINE std::ptrdiff_t HalfSize() {
+  return static_cast<std::ptrdiff_t>(hn::Lanes(Halves()));
+}
+
+/// Three quarters of one, one quarter of the other.
+HWY_INLINE Half Mix(Half near, Half far) {
+  return hn::MulAdd(hn::Set(Halves(), 0.75F), near, hn::Mul(hn::Set(Halves(), 0.25F), far));
+}
+
+/// Of a row of coarse cells: some even ones, the odd ones beside them, the odd ones before and the
+/// even ones after these.
+struct CoarseRow {
+  Half even, odd, before, after;
+
+  /// Of two rows, `far` further away.
+  HWY_INLINE CoarseRow(const float* near, const float* far, std::ptrdiff_t pitch) {
+    const auto mix = [&](std::ptrdiff_t i) HWY_ATTR {
+      return Mix(hn::LoadU(Halves(), near + i), hn::LoadU(Halves(), far + i));
+    };
+    even = mix(0);
+    odd = mix(pitch);
+    before = mix(pitch - 1);
+    after = mix(1);
+  }
+  HWY_INLINE CoarseRow(Half even_, Half odd_, Half before_, Half after_)
+      : even(even_), odd(odd_), before(before_), after(after_) {}
+};
+
+/// What lies in each fourth of a row of fine cells, from the first, second, third and fourth on.
+struct FineRow {
+  Half first, second, third, fourth;
+
+  HWY_INLINE explicit FineRow(const CoarseRow& row)
+      : first(Mix(row.even, row.before)),
+        second(Mix(row.even, row.odd)),
+        third(Mix(row.odd, row.even)),
+        fourth(Mix(row.odd, row.after)) {}
+};
+
+/// Which coarse cells exist: how much the two rows count, and what that sums up to.
+struct Presence {
+  CoarseRow near, far;
+  FineRow total;
+
+  HWY_INLINE Presence(const float* near_inverse, const float* far_inverse, std::ptrdiff_t pitch)
+      : near(Existing(near_inverse, pitch, 0.75F)),
+        far(Existing(far_inverse, pitch, 0.25F)),
+        total(CoarseRow(hn::Add(near.even, far.even), hn::Add(near.odd, far.odd),
+                        hn::Add(near.before, far.before), hn::Add(near.after, far.after))) {}
+
+  HWY_INLINE CoarseRow Blend(const float* near_values, const float* far_values,
+                             std::ptrdiff_t pitch) const {
+    const auto blend = [&](Half near_weight, Half far_weight, std::ptrdiff_t i) HWY_ATTR {
+      return hn::MulAdd(near_weight, hn::LoadU(Halves(), near_values + i),
+                        hn::Mul(far_weight, hn::LoadU(Halves(), far_values + i)));
+    };
+    return {blend(near.even, far.even, 0), blend(near.odd, far.odd, pitch),
+            blend(near.before, far.before, pitch - 1), blend(near.after, far.after, 1)};
   }
 
-  /// Of cells some of which may not exist; sets `presence`, too.
-  HWY_INLINE void Set(const MembraneLevel& coarse, const float* coarse_values, int y,
-                      int fine_column) {
-    const int near_y = y / 2;
-    const int far_y = y % 2 == 0 ? near_y - 1 : near_y + 1;
-    const int column = fine_column / 2;
-    // The 16 coarse cells wanted are 8 of each parity, from `offset`; one more on both sides.
-    const std::ptrdiff_t offset = fine_column % 2 * (lanes / 2) - 1;
-    const hn::CappedTag<float, lanes> d;
-    for (std::ptrdiff_t i = 0; i < lanes / 2 + 2; i += VectorSize()) {
-      Vector near_weight[2], far_weight[2];
-      for (int parity = 0; parity < 2; ++parity) {
-        near_weight[parity] = hn::IfThenElseZero(
-            hn::Ne(Load(coarse.inverse.data() + coarse.at(near_y, parity, column) + offset + i),
-                   Zero()),
-            hn::Set(d, 0.75F));
-        far_weight[parity] = hn::IfThenElseZero(
-            hn::Ne(Load(coarse.inverse.data() + coarse.at(far_y, parity, column) + offset + i),
-                   Zero()),
-            hn::Set(d, 0.25F));
-      }
-      hn::StoreInterleaved2(hn::Add(near_weight[0], far_weight[0]),
-                            hn::Add(near_weight[1], far_weight[1]), d, presence + 2 * i);
-      for (int c = 0; c < channels; ++c) {
-        Vector blended[2];
-        for (int parity = 0; parity < 2; ++parity) {
-          const Vector near =
-              Load(coarse_values + coarse.at(near_y, c, parity, column) + offset + i);
-          const Vector far = Load(coarse_values + coarse.at(far_y, c, parity, column) + offset + i);
-          blended[parity] = hn::MulAdd(near_weight[parity], near, hn::Mul(far_weight[parity], far));
-        }
-        hn::StoreInterleaved2(blended[0], blended[1], d, values[c] + 2 * i);
-      }
-    }
+  /// The mean of those that exist.
+  HWY_INLINE void Normalize(FineRow& row) const {
+    const auto normalize = [](Half& values, Half weight) HWY_ATTR {
+      values = hn::Div(values, hn::Max(weight, hn::Set(Halves(), 1e-6F)));
+    };
+    normalize(row.first, total.first);
+    normalize(row.second, total.second);
+    normalize(row.third, total.third);
+    normalize(row.fourth, total.fourth);
+  }
+
+ private:
+  static HWY_INLINE CoarseRow Existing(const float* inverse, std::ptrdiff_t pitch, float weight) {
+    const auto existing = [&](std::ptrdiff_t i) HWY_ATTR {
+      const Halves d;
+      return hn::IfThenElseZero(hn::Ne(hn::LoadU(d, inverse + i), hn::Zero(d)), hn::Set(d, weight));
+    };
+    return {existing(0), existing(pitch), existing(pitch - 1), existing(1)};
   }
 };
 
-/// Three quarters of the coarse cell that a fine one lies in and one of the cell beside it.
-HWY_INLINE Vector BlendColumns(const float* row, std::ptrdiff_t i, int parity) {
-  // Two cells of `row` precede the block's own.
-  const Vector own = Load(row + 2 + i);
-  const Vector beside = Load(row + 2 + i + (parity == 0 ? -1 : 1));
-  return hn::MulAdd(Set(0.75F), own, hn::Mul(Set(0.25F), beside));
+/// Where the coarse rows lie that a fine row lies between.
+struct RowsAround {
+  int near, far;
+
+  explicit RowsAround(int y) : near(y / 2), far(y % 2 == 0 ? y / 2 - 1 : y / 2 + 1) {}
+};
+
+/// Where the coarse cells of a fine block begin, from the beginning of the row's cells.
+HWY_INLINE std::ptrdiff_t CoarseStart(int fine_column) {
+  return std::ptrdiff_t{lanes / 2} * fine_column;
+}
+
+/// Alternately from both: the lower and the upper half of that.
+HWY_INLINE void Interleave(Half a, Half b, Half& lower, Half& upper) {
+#if HWY_TARGET == HWY_SCALAR
+  lower = a;
+  upper = b;
+#else
+  const Halves d;
+  lower = hn::InterleaveLower(d, a, b);
+  upper = hn::InterleaveUpper(d, a, b);
+  if constexpr (hn::MaxLanes(Halves()) > 4) {  // it was done in each half of 128 bits
+    const Half first = lower;
+    lower = hn::ConcatLowerLower(d, upper, first);
+    upper = hn::ConcatUpperUpper(d, upper, first);
+  }
+#endif
+}
+
+/// Replaces values or adds to them.
+template <bool add>
+HWY_INLINE void Put(Half step, float* target, Half& squares) {
+  const Halves d;
+  hn::StoreU(add ? hn::Add(hn::LoadU(d, target), step) : step, d, target);
+  if (add) squares = hn::MulAdd(step, step, squares);
+}
+template <bool add>
+HWY_INLINE void PutToCells(Half step, const float* inverse, float* target, Half& squares) {
+  const Halves d;
+  const auto cell = hn::Gt(hn::LoadU(d, inverse), hn::Zero(d));
+  const Half old = hn::LoadU(d, target);
+  hn::StoreU(hn::IfThenElse(cell, add ? hn::Add(old, step) : step, old), d, target);
+  if (add) squares = hn::MulAdd(hn::IfThenElseZero(cell, step), step, squares);
+}
+
+/// The blocks [first, last) of a row, where all cells and all coarse cells around them exist.
+template <bool add>
+HWY_INLINE void ProlongPlain(const MembraneLevel& coarse, const float* coarse_values, int y,
+                             int first, int last, const MembraneLevel& fine, float* values,
+                             Half& squares) {
+  const RowsAround rows(y);
+  const std::ptrdiff_t count = CoarseStart(last - first);
+  for (int c = 0; c < channels; ++c) {
+    const float* near = coarse_values + coarse.at(rows.near, c, 0, 0) + CoarseStart(first);
+    const float* far = coarse_values + coarse.at(rows.far, c, 0, 0) + CoarseStart(first);
+    float* even = values + fine.at(y, c, 0, first);
+    float* odd = even + fine.pitch;
+    for (std::ptrdiff_t i = 0; i < count; i += HalfSize()) {
+      const FineRow row(CoarseRow(near + i, far + i, coarse.pitch));
+      Half lower, upper;
+      Interleave(row.first, row.third, lower, upper);
+      Put<add>(lower, even + 2 * i, squares);
+      Put<add>(upper, even + 2 * i + HalfSize(), squares);
+      Interleave(row.second, row.fourth, lower, upper);
+      Put<add>(lower, odd + 2 * i, squares);
+      Put<add>(upper, odd + 2 * i + HalfSize(), squares);
+    }
+  }
+}
+
+template <bool add>
+HWY_INLINE void ProlongGeneral(const MembraneLevel& coarse, const float* coarse_values, int y,
+                               int column, const MembraneLevel& fine, float* values,
+                               Half& squares) {
+  const RowsAround rows(y);
+  const float* inverse = fine.inverse.data() + fine.at(y, 0, column);
+  for (std::ptrdiff_t i = 0; i < lanes / 2; i += HalfSize()) {
+    const std::ptrdiff_t start = CoarseStart(column) + i;
+    const Presence presence(coarse.inverse.data() + coarse.at(rows.near, 0, 0) + start,
+                            coarse.inverse.data() + coarse.at(rows.far, 0, 0) + start,
+                            coarse.pitch);
+    for (int c = 0; c < channels; ++c) {
+      FineRow row(presence.Blend(coarse_values + coarse.at(rows.near, c, 0, 0) + start,
+                                 coarse_values + coarse.at(rows.far, c, 0, 0) + start,
+                                 coarse.pitch));
+      presence.Normalize(row);
+      float* target = values + fine.at(y, c, 0, column) + 2 * i;
+      const Half* parts[2][2] = {{&row.first, &row.third}, {&row.second, &row.fourth}};
+      for (int parity = 0; parity < 2; ++parity) {
+        const std::ptrdiff_t to = parity * fine.pitch;
+        Half lower, upper;
+        Interleave(*parts[parity][0], *parts[parity][1], lower, upper);
+        PutToCells<add>(lower, inverse + to + 2 * i, target + to, squares);
+        PutToCells<add>(upper, inverse + to + 2 * i + HalfSize(), target + to + HalfSize(),
+                        squares);
+      }
+    }
+  }
 }
 
 template <bool add>
 HWY_INLINE double ProlongRows(const MembraneLevel& coarse, const float* coarse_values, Rows rows,
                               const MembraneLevel& fine, float* values) {
-  // Two, in turn, so that none is read just after it was written.
-  BlendedRow blended[2];
-  int turn = 0;
-  Vector squares = Zero();
-  const auto finish = [&](const BlendedRow& row, int y, int column) HWY_ATTR {
-    const bool plain = fine.block(y, column) == Block::plain;
-    for (int parity = 0; parity < 2; ++parity) {
-      for (std::ptrdiff_t i = 0; i < lanes; i += VectorSize()) {
-        const Vector inverse = Load(fine.inverse.data() + fine.at(y, parity, column) + i);
-        const Mask cell = hn::Gt(inverse, Zero());
-        if (hn::AllFalse(Floats(), cell)) continue;
-        Vector scale = Set(1.F);
-        if (!plain) {
-          scale = hn::Div(scale, hn::Max(BlendColumns(row.presence, i, parity), Set(1e-6F)));
-        }
-        for (int c = 0; c < channels; ++c) {
-          float* target = values + fine.at(y, c, parity, column) + i;
-          const Vector old = Load(target);
-          const Vector step =
-              hn::IfThenElseZero(cell, hn::Mul(BlendColumns(row.values[c], i, parity), scale));
-          Store(add ? hn::Add(old, step) : hn::IfThenElse(cell, step, old), target);
-          if (add) squares = hn::MulAdd(step, step, squares);
-        }
-      }
-    }
-  };
+  Half squares = hn::Zero(Halves());
   for (int y = rows.first; y < rows.last; ++y) {
-    int pending = -1;
-    ForEachBlock(fine.stored, fine.stored_rows, y, [&](int column) HWY_ATTR {
-      const Block kind = fine.block(y, column);
-      if (kind == Block::empty) return;
+    const RowsAround around(y);
+    ForEachRun(fine, fine.stored, y, [&](Block kind, int first, int last) HWY_ATTR {
       // Where there is no cell, an error is 0.
       if (add && kind == Block::plain) {
-        blended[turn].SetPlain(coarse, coarse_values, y, column);
-      } else {
-        blended[turn].Set(coarse, coarse_values, y, column);
+        ProlongPlain<add>(coarse, coarse_values, y, first, last, fine, values, squares);
+        return;
       }
-      if (pending >= 0) finish(blended[1 - turn], y, pending);
-      turn = 1 - turn;
-      pending = column;
+      for (int column = first; column < last; ++column) {
+        if (kind == Block::plain && coarse.block(around.near, column / 2) == Block::plain &&
+            coarse.block(around.far, column / 2) == Block::plain) {
+          ProlongPlain<add>(coarse, coarse_values, y, column, column + 1, fine, values, squares);
+        } else {
+          ProlongGeneral<add>(coarse, coarse_values, y, column, fine, values, squares);
+        }
+      }
     });
-    if (pending >= 0) finish(blended[1 - turn], y, pending);
   }
-  return static_cast<double>(hn::GetLane(hn::SumOfLanes(Floats(), squares)));
+  return static_cast<double>(hn::GetLane(hn::SumOfLanes(Halves(), squares)));
 }
 
 double Prolong(const MembraneLevel& coarse, const float* coarse_values, bool add, Rows rows,
@@ -179,7 +267,7 @@ double Prolong(const MembraneLevel& coarse, const float* coarse_values, bool add
 
 void AddError(MembraneLevel& level) {
   for (int y = 0; y < level.rows(); ++y) {
-    ForEachBlock(level.stored, level.stored_rows, y, [&](int column) {
+    ForEachBlock(level.stored, y, [&](int column) {
       if (level.block(y, column) == Block::empty) return;
       for (int c = 0; c < channels; ++c) {
         for (int parity = 0; parity < 2; ++parity) {
@@ -195,19 +283,13 @@ void AddError(MembraneLevel& level) {
 }
 
 void FillSmooth(MembraneLevel& level, const MembraneLevel& coarse) {
-  BlendedRow row;
+  Half unused = hn::Zero(Halves());
   for (int y = 0; y < level.height; ++y) {
     for (int column = 0; column < level.tile_columns; ++column) {
-      if (level.state(column, y / tile_height) != Tile::smooth) continue;
-      row.SetPlain(coarse, coarse.x.data(), y, column);
-      for (int c = 0; c < channels; ++c) {
-        for (int parity = 0; parity < 2; ++parity) {
-          float* x = level.x.data() + level.at(y, c, parity, column);
-          for (std::ptrdiff_t i = 0; i < lanes; i += VectorSize()) {
-            Store(BlendColumns(row.values[c], i, parity), x + i);
-          }
-        }
-      }
+      const Tile state = level.state(column, y / tile_height);
+      if (state != Tile::smooth && state != Tile::ghost) continue;
+      ProlongPlain<false>(coarse, coarse.x.data(), y, column, column + 1, level, level.x.data(),
+                          unused);
     }
   }
 }
@@ -225,12 +307,14 @@ void ReadBlock(const MembraneLevel& level, const MembraneLevel& coarse, int y, i
     }
     return;
   }
-  BlendedRow row;
-  row.SetPlain(coarse, coarse.x.data(), y, column);
+  const RowsAround rows(y);
   for (int c = 0; c < channels; ++c) {
-    for (std::ptrdiff_t i = 0; i < lanes; i += VectorSize()) {
-      hn::StoreInterleaved2(BlendColumns(row.values[c], i, 0), BlendColumns(row.values[c], i, 1),
-                            Floats(), result + c * 2 * lanes + 2 * i);
+    const float* near = coarse.x.data() + coarse.at(rows.near, c, 0, 0) + CoarseStart(column);
+    const float* far = coarse.x.data() + coarse.at(rows.far, c, 0, 0) + CoarseStart(column);
+    for (std::ptrdiff_t i = 0; i < lanes / 2; i += HalfSize()) {
+      const FineRow row(CoarseRow(near + i, far + i, coarse.pitch));
+      hn::StoreInterleaved4(row.first, row.second, row.third, row.fourth, Halves(),
+                            result + c * 2 * lanes + 4 * i);
     }
   }
 }

@@ -22,8 +22,7 @@ void classify_row(const std::uint8_t* keys, std::ptrdiff_t keys_per_row, int wor
 
 /// Sets the weights of the stored blocks of the finest level: 1 between neighbouring cells and from
 /// cells to fixed pixels; marks the fixed pixels.
-/// cells, fixed: as from classify_row, with a margin of one word and one row of zeros. level.edges:
-/// of the right size.
+/// cells, fixed: as from classify_row, with a margin of one word and one row of zeros.
 void set_weights(const std::uint32_t* cells, const std::uint32_t* fixed,
                  std::ptrdiff_t words_per_row, Rows rows, MembraneLevel& level);
 

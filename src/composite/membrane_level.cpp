@@ -8,23 +8,8 @@
 namespace diminish {
 namespace {
 
-/// The runs of tiles for which `wanted` holds, row by row.
-template <class Wanted>
-void collect(const MembraneLevel& level, Wanted wanted, std::vector<MembraneLevel::Span>& spans,
-             std::vector<int>& rows) {
-  spans.clear();
-  rows.clear();
-  for (int row = 0; row < level.tile_rows; ++row) {
-    rows.push_back(static_cast<int>(spans.size()));
-    for (int column = 0; column < level.tile_columns; ++column) {
-      if (!wanted(level.state(column, row))) continue;
-      const int first = column;
-      while (column < level.tile_columns && wanted(level.state(column, row))) ++column;
-      spans.push_back({first, column});
-    }
-  }
-  rows.push_back(static_cast<int>(spans.size()));
-}
+/// Cells this near to irregular ones, or nearer, are not smooth.
+constexpr int margin = 4;
 
 /// More than needed, so that the next frame's window, a little larger or smaller, is laid out in
 /// the same way, and only what changes has to be cleared.
@@ -35,6 +20,22 @@ int tiles_for(int cells, int tile) {
 }
 
 }  // namespace
+
+void MembraneLevel::BlockRows::clear() {
+  spans_.clear();
+  begin_.assign(1, 0);
+}
+
+template <class Wanted>
+void MembraneLevel::BlockRows::append(int columns, const Wanted& wanted) {
+  for (int column = 0; column < columns; ++column) {
+    if (!wanted(column)) continue;
+    const int first = column;
+    while (column < columns && wanted(column)) ++column;
+    spans_.push_back({first, column});
+  }
+  begin_.push_back(spans_.size());
+}
 
 void AlignedFloats::require(std::size_t count) {
   if (count <= capacity_) return;
@@ -48,12 +49,11 @@ void MembraneLevel::begin(int width_, int height_) {
   const int tiles_high = tiles_for(height_, tile_height);
   std::swap(blocks, old_blocks_);
   std::swap(stored, old_stored_);
-  std::swap(stored_rows, old_stored_rows_);
   old_sources_ = has_sources;
   if (columns != tile_columns || tiles_high != tile_rows) {
     // Everything will be elsewhere.
     clear_old([](int, int) { return true; });
-    old_stored_rows_.clear();
+    old_stored_.clear();
   }
   width = width_;
   height = height_;
@@ -68,26 +68,22 @@ void MembraneLevel::begin(int width_, int height_) {
   }
   blocks.assign(static_cast<std::size_t>(rows()) * static_cast<std::size_t>(tile_columns),
                 Block::empty);
+  rough.assign(static_cast<std::size_t>(rows()) * static_cast<std::size_t>(tile_columns + 2), 0U);
   tiles.assign(static_cast<std::size_t>(tile_rows + 2) * static_cast<std::size_t>(tile_columns + 2),
                Tile::empty);
 }
 
 template <class IsLeft>
 void MembraneLevel::clear_old(const IsLeft& is_left) {
-  const int count = static_cast<int>(old_stored_rows_.size()) - 1;
-  for_rows(std::max(count, 0) * tile_height, [&](Rows part) {
-    for (int row = part.first / tile_height; row < part.last / tile_height; ++row) {
-      const auto from = static_cast<std::size_t>(old_stored_rows_[static_cast<std::size_t>(row)]);
-      const auto to = static_cast<std::size_t>(old_stored_rows_[static_cast<std::size_t>(row) + 1]);
-      for (std::size_t i = from; i < to; ++i) {
-        for (int y = row * tile_height; y < (row + 1) * tile_height; ++y) {
-          for (int column = old_stored_[i].first; column < old_stored_[i].last; ++column) {
-            if (old_blocks_[block_index(y, column)] == Block::empty) continue;
-            if (is_left(y, column)) {
-              clear_block(y, column);
-            } else if (old_sources_) {
-              clear_right_side(y, column);
-            }
+  for_rows(old_stored_.rows(), [&](Rows part) {
+    for (int y = part.first; y < part.last; ++y) {
+      for (const Span span : old_stored_.row(y)) {
+        for (int column = span.first; column < span.last; ++column) {
+          if (old_blocks_[block_index(y, column)] == Block::empty) continue;
+          if (is_left(y, column)) {
+            clear_block(y, column);
+          } else if (old_sources_) {
+            clear_right_side(y, column);
           }
         }
       }
@@ -115,50 +111,77 @@ void MembraneLevel::clear_right_side(int y, int column) {
   }
 }
 
-void MembraneLevel::spread(Tile from, Tile to) {
-  for (int row = 0; row < tile_rows; ++row) {
-    for (int column = 0; column < tile_columns; ++column) {
-      if (state(column, row) != Tile::smooth) continue;
-      bool beside = false;
-      for (int dy = -1; dy <= 1; ++dy) {
-        for (int dx = -1; dx <= 1; ++dx) beside |= state(column + dx, row + dy) == from;
-      }
-      if (beside) state(column, row) = to;
+bool MembraneLevel::touches_active(int column, int row, int part) const {
+  const int above = part == 0 ? -1 : 0;
+  const int below = part == BlockRows::parts - 1 ? 1 : 0;
+  for (int dy = above; dy <= below; ++dy) {
+    for (int dx = -1; dx <= 1; ++dx) {
+      if (state(column + dx, row + dy) == Tile::active) return true;
     }
   }
+  return false;
 }
 
-void MembraneLevel::choose_tiles(bool may_be_smooth) {
+void MembraneLevel::choose_tiles(const MembraneLevel* finer, bool may_be_smooth) {
+  const auto is_left_by_finer = [&](int column, int row) {
+    if (!finer || column >= finer->tile_columns || row >= finer->tile_rows) return true;
+    const Tile tile = finer->state(column, row);
+    return tile == Tile::smooth || tile == Tile::empty;
+  };
+  gathered_.resize(static_cast<std::size_t>(tile_columns) + 2);
   for (int row = 0; row < tile_rows; ++row) {
+    const int top = row * tile_height;
+    std::fill(gathered_.begin(), gathered_.end(), 0U);
+    for (int y = std::max(top - margin, 0); y < std::min(top + tile_height + margin, height); ++y) {
+      const std::uint32_t* cells = rough_row(y) - 1;
+      for (std::size_t i = 0; i < gathered_.size(); ++i) gathered_[i] |= cells[i];
+    }
     for (int column = 0; column < tile_columns; ++column) {
+      const std::uint32_t* cells = gathered_.data() + column + 1;
+      const bool near_rough =
+          (cells[0] | cells[-1] >> (tile_width - margin) | cells[1] << (tile_width - margin)) != 0;
       int plain = 0;
       int empty = 0;
-      for (int y = row * tile_height; y < (row + 1) * tile_height; ++y) {
+      for (int y = top; y < top + tile_height; ++y) {
         plain += block(y, column) == Block::plain ? 1 : 0;
         empty += block(y, column) == Block::empty ? 1 : 0;
       }
-      const bool smooth = may_be_smooth && plain == tile_height;
+      const bool smooth = may_be_smooth && plain == tile_height && !near_rough &&
+                          is_left_by_finer(2 * column, 2 * row) &&
+                          is_left_by_finer(2 * column + 1, 2 * row) &&
+                          is_left_by_finer(2 * column, 2 * row + 1) &&
+                          is_left_by_finer(2 * column + 1, 2 * row + 1);
       state(column, row) = empty == tile_height ? Tile::empty
                            : smooth             ? Tile::smooth
                                                 : Tile::active;
     }
   }
-  // Through `ghost`, so that a tile made active does not make its own neighbours active.
-  spread(Tile::active, Tile::ghost);
-  std::replace(tiles.begin(), tiles.end(), Tile::ghost, Tile::active);
-  spread(Tile::active, Tile::ghost);
-  has_smooth = std::any_of(tiles.begin(), tiles.end(), [](Tile state) {
-    return state == Tile::smooth || state == Tile::ghost;
-  });
-  collect(
-      *this, [](Tile state) { return state == Tile::active; }, active, active_rows);
-  collect(
-      *this, [](Tile state) { return state == Tile::active || state == Tile::ghost; }, stored,
-      stored_rows);
+  has_smooth = false;
+  active.clear();
+  stored.clear();
+  for (int row = 0; row < tile_rows; ++row) {
+    for (int column = 0; column < tile_columns; ++column) {
+      if (state(column, row) != Tile::smooth) continue;
+      has_smooth = true;
+      if (touches_active(column, row, 0) || touches_active(column, row, 2)) {
+        state(column, row) = Tile::ghost;
+      }
+    }
+    for (int part = 0; part < BlockRows::parts; ++part) {
+      const auto is_active = [&](int column) { return state(column, row) == Tile::active; };
+      active.append(tile_columns, is_active);
+      stored.append(tile_columns, [&](int column) {
+        return is_active(column) ||
+               (state(column, row) == Tile::ghost && touches_active(column, row, part));
+      });
+    }
+  }
   // The rest is going to be overwritten.
   clear_old([this](int y, int column) {
-    const Tile tile = state(column, y / tile_height);
-    const bool is_stored = tile == Tile::active || tile == Tile::ghost;
+    const auto spans = stored.row(y);
+    const bool is_stored = std::any_of(spans.begin(), spans.end(), [&](Span span) {
+      return column >= span.first && column < span.last;
+    });
     return !is_stored || block(y, column) == Block::empty;
   });
 }

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace diminish {
@@ -22,17 +23,18 @@ class AlignedFloats {
 
 /// One grid of MembraneSolver's hierarchy.
 ///
-/// Its cells lie in tiles of 32 columns and 16 rows; a row of a tile is a block. The even and the
+/// Its cells lie in tiles of 32 columns and 8 rows; a row of a tile is a block. The even and the
 /// odd columns of a row are stored apart (`parity` 0 and 1), so that relaxing every second cell,
 /// summing 2x2 cells and interpolating them are plain vector operations. Every array has a margin
 /// of one block and one row around it, and weights are zero wherever there is no cell, so that no
 /// kernel looks at borders, and empty blocks are not touched at all.
 ///
 /// Far from irregular cells the solution is smooth: such tiles are not relaxed here, but take their
-/// values from the next coarser level. Those that touch an active tile (`ghost`) are stored.
+/// values from the next coarser level. Of those that touch an active tile (`ghost`), the blocks
+/// right beside it are stored.
 struct MembraneLevel {
   static constexpr int tile_width = 32;
-  static constexpr int tile_height = 16;
+  static constexpr int tile_height = 8;
   static constexpr int lanes = tile_width / 2;  ///< cells of one parity in a block
   static constexpr int channels = 3;
 
@@ -42,9 +44,33 @@ struct MembraneLevel {
     plain     ///< all cells, each with four neighbours of weight 1
   };
   enum class Tile : std::uint8_t { empty, smooth, ghost, active };
-  /// Tiles [first, last) of one row of tiles.
+  /// Blocks [first, last) of a row.
   struct Span {
     int first, last;
+  };
+  /// Which blocks of each row. The rows of a row of tiles are alike, except for the first two and
+  /// the last, where more is stored: what lies below or above active tiles.
+  class BlockRows {
+   public:
+    static constexpr int parts = 3;
+    static int part(int y) {
+      const int within = y % tile_height;
+      return within < 2 ? 0 : within < tile_height - 1 ? 1 : 2;
+    }
+
+    void clear();
+    /// The runs of columns for which wanted(column) holds, for the next part.
+    template <class Wanted>
+    void append(int columns, const Wanted& wanted);
+    int rows() const { return static_cast<int>(begin_.size() - 1) / parts * tile_height; }
+    std::span<const Span> row(int y) const {
+      const auto at = static_cast<std::size_t>(y / tile_height * parts + part(y));
+      return {spans_.data() + begin_[at], spans_.data() + begin_[at + 1]};
+    }
+
+   private:
+    std::vector<Span> spans_;
+    std::vector<std::size_t> begin_ = {0};
   };
 
   int width = 0, height = 0;            ///< cells
@@ -56,21 +82,21 @@ struct MembraneLevel {
   AlignedFloats x, right_side;    ///< three channels: the solution, and what it solves for
   AlignedFloats error, residual;  ///< likewise, of a correction cycle
 
-  /// Only on the finest level, where all weights are 0 or 1: a bit for each cell of one parity of a
-  /// block, for its left, right, upper and lower edge. A sixteenth of what the weights take.
-  std::vector<std::uint16_t> edges;
   bool has_sources = true;  ///< right_side is not 0 everywhere
 
-  std::vector<Block> blocks;                  ///< of each row, tile_columns of them
-  std::vector<Tile> tiles;                    ///< with a margin of one empty tile all around
-  std::vector<Span> active, stored;           ///< stored: active or ghost
-  std::vector<int> active_rows, stored_rows;  ///< where each row of tiles begins in them
-  bool has_smooth = false;                    ///< some tiles are left to the coarser level
+  std::vector<Block> blocks;  ///< of each row, tile_columns of them
+  std::vector<Tile> tiles;    ///< with a margin of one empty tile all around
+  BlockRows active, stored;
+  bool has_smooth = false;  ///< some tiles are left to the coarser level
+
+  /// A bit for each cell that is not plain, 32 a word; a word's margin on both sides.
+  std::vector<std::uint32_t> rough;
 
   /// Makes room for width x height cells and forgets the last problem.
   void begin(int width, int height);
-  /// From the blocks, decides the tiles' states; some are smooth only if they may be.
-  void choose_tiles(bool may_be_smooth);
+  /// From the blocks and the rough cells, decides the tiles' states; some are smooth only if they
+  /// may be. finer: null on the finest level.
+  void choose_tiles(const MembraneLevel* finer, bool may_be_smooth);
 
   /// Where a block's cells of one parity begin in arrays of one value a cell, and of three.
   std::ptrdiff_t at(int y, int parity, int column) const {
@@ -91,13 +117,9 @@ struct MembraneLevel {
   std::ptrdiff_t channel_step() const { return 2 * pitch; }
   std::ptrdiff_t channel_row_step() const { return 2 * pitch * channels; }
 
-  std::uint16_t* edges_at(int y, int parity, int column) {
-    return edges.data() + 4 * (2 * block_index(y, column) + static_cast<std::size_t>(parity));
-  }
-  const std::uint16_t* edges_at(int y, int parity, int column) const {
-    return edges.data() + 4 * (2 * block_index(y, column) + static_cast<std::size_t>(parity));
-  }
   int rows() const { return tile_rows * tile_height; }
+  std::uint32_t* rough_row(int y) { return rough.data() + y * (tile_columns + 2) + 1; }
+  const std::uint32_t* rough_row(int y) const { return rough.data() + y * (tile_columns + 2) + 1; }
   Block& block(int y, int column) { return blocks[block_index(y, column)]; }
   Block block(int y, int column) const { return blocks[block_index(y, column)]; }
   Tile& state(int column, int row) { return tiles[tile_index(column, row)]; }
@@ -112,7 +134,7 @@ struct MembraneLevel {
     return static_cast<std::size_t>(row + 1) * static_cast<std::size_t>(tile_columns + 2) +
            static_cast<std::size_t>(column + 1);
   }
-  void spread(Tile from, Tile to);
+  bool touches_active(int column, int row, int part) const;
   /// Zeroes what the last problem left in the blocks that `is_left` names.
   template <class IsLeft>
   void clear_old(const IsLeft& is_left);
@@ -120,8 +142,8 @@ struct MembraneLevel {
   void clear_right_side(int y, int column);
 
   std::vector<Block> old_blocks_;
-  std::vector<Span> old_stored_;
-  std::vector<int> old_stored_rows_;
+  BlockRows old_stored_;
+  std::vector<std::uint32_t> gathered_;
   bool old_sources_ = false;
 };
 

@@ -17,39 +17,53 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr int block = MembraneLevel::tile_width;
 using Floats = hn::CappedTag<float, block>;
-using Ints = hn::RebindToSigned<Floats>;
-using Bytes = hn::Rebind<std::uint8_t, Floats>;
+using Shorts = hn::CappedTag<std::int16_t, block>;
+using Bytes = hn::Rebind<std::uint8_t, Shorts>;
 
-HWY_INLINE hn::Vec<Floats> ToFloats(hn::Vec<Bytes> bytes) {
-  return hn::ConvertTo(Floats(), hn::PromoteTo(Ints(), bytes));
-}
-/// Rounds to the nearest level, clamps.
-HWY_INLINE hn::Vec<Bytes> ToBytes(hn::Vec<Floats> values) {
-  return hn::DemoteTo(Bytes(), hn::NearestInt(values));
-}
+/// The three channels of some pixels of a block, from pixel i on, rounded, with those of `base`
+/// added, if there is one; clamped.
+struct Result {
+  hn::Vec<Bytes> channel[3];
 
-/// One block of pixels. solution: three channels of 32. base: null for none.
-void WriteBlock(const float* solution, const std::uint8_t* keys, const Bgra* base, Bgr* picture) {
-  const Bytes d;
-  const auto lanes = static_cast<int>(hn::Lanes(d));
-  for (int i = 0; i < block; i += lanes) {
-    const auto key = hn::LoadU(d, keys + i);
-    const auto skipped =
-        hn::Or(hn::Eq(key, hn::Zero(d)), hn::Eq(key, hn::Set(d, MembraneSolver::fixed)));
-    if (hn::AllTrue(d, skipped)) continue;
-    auto* pixels = reinterpret_cast<std::uint8_t*>(picture + i);
-    hn::Vec<Bytes> old[3], result[3];
-    hn::LoadInterleaved3(d, pixels, old[0], old[1], old[2]);
-    hn::Vec<Floats> sum[3];
-    for (int c = 0; c < 3; ++c) sum[c] = hn::LoadU(Floats(), solution + c * block + i);
+  HWY_INLINE Result(const std::int16_t* solution, const Bgra* base, int i) {
+    const Bytes d;
+    hn::Vec<Shorts> sum[3];
+    for (int c = 0; c < 3; ++c) sum[c] = hn::Load(Shorts(), solution + c * block + i);
     if (base) {
       hn::Vec<Bytes> color[4];
       hn::LoadInterleaved4(d, reinterpret_cast<const std::uint8_t*>(base + i), color[0], color[1],
                            color[2], color[3]);
-      for (int c = 0; c < 3; ++c) sum[c] = hn::Add(sum[c], ToFloats(color[c]));
+      for (int c = 0; c < 3; ++c) sum[c] = hn::Add(sum[c], hn::PromoteTo(Shorts(), color[c]));
     }
-    for (int c = 0; c < 3; ++c) result[c] = hn::IfThenElse(skipped, old[c], ToBytes(sum[c]));
-    hn::StoreInterleaved3(result[0], result[1], result[2], d, pixels);
+    for (int c = 0; c < 3; ++c) channel[c] = hn::DemoteTo(d, sum[c]);
+  }
+};
+
+/// One block of pixels. solution: three channels of 32. keys: null if all pixels are to be written.
+/// base: null for none.
+void WriteBlock(const float* solution, const std::uint8_t* keys, const Bgra* base, Bgr* picture) {
+  const Bytes d;
+  const hn::Rebind<std::int16_t, Floats> rounded;
+  HWY_ALIGN std::int16_t levels[3 * block];
+  for (int i = 0; i < 3 * block; i += static_cast<int>(hn::Lanes(rounded))) {
+    const auto values = hn::NearestInt(hn::LoadU(Floats(), solution + i));
+    hn::Store(hn::DemoteTo(rounded, values), rounded, levels + i);
+  }
+  for (int i = 0; i < block; i += static_cast<int>(hn::Lanes(d))) {
+    Result result(levels, base, i);
+    auto* pixels = reinterpret_cast<std::uint8_t*>(picture + i);
+    if (keys) {
+      const auto key = hn::LoadU(d, keys + i);
+      const auto skipped =
+          hn::Or(hn::Eq(key, hn::Zero(d)), hn::Eq(key, hn::Set(d, MembraneSolver::fixed)));
+      if (hn::AllTrue(d, skipped)) continue;
+      hn::Vec<Bytes> old[3];
+      hn::LoadInterleaved3(d, pixels, old[0], old[1], old[2]);
+      for (int c = 0; c < 3; ++c) {
+        result.channel[c] = hn::IfThenElse(skipped, old[c], result.channel[c]);
+      }
+    }
+    hn::StoreInterleaved3(result.channel[0], result.channel[1], result.channel[2], d, pixels);
   }
 }
 
@@ -72,11 +86,12 @@ void write(const MembraneSolver& solver, const Rect& window, const Image<Bgra>* 
   HWY_ALIGN Bgr picture_end[block];
   for (int row = rows.first; row < rows.last; ++row) {
     for (int column = 0; column * block < window.width; ++column) {
-      if (!solver.any_in_block(row, column)) continue;
+      const std::uint32_t cells = solver.cells_in_block(row, column);
+      if (cells == 0) continue;
       solver.read_block(row, column, solution);
       const int x = window.x + column * block;
       const int count = std::min(block, window.right() - x);
-      const std::uint8_t* keys = solver.keys(row) + column * block;
+      const std::uint8_t* keys = cells == ~0U ? nullptr : solver.keys(row) + column * block;
       const Bgra* colors = base ? base->row(window.y + row) + x : nullptr;
       Bgr* pixels = picture.row(window.y + row) + x;
       if (count == block) {

@@ -14,59 +14,65 @@ namespace {
 /// side; or it goes on with an error; or the error is zero yet.
 enum class Start { x, error, zero };
 
+/// The blocks [first, last) of a row, all plain. has_neighbours: the cells beside them are not all
+/// zero.
+template <Start start, bool has_neighbours>
+HWY_INLINE void RelaxPlain(const MembraneLevel& level, const float* HWY_RESTRICT right_side,
+                           float* HWY_RESTRICT values, int y, int parity, int first, int last) {
+  const std::ptrdiff_t count = std::ptrdiff_t{lanes} * (last - first);
+  for (int c = 0; c < channels; ++c) {
+    const std::ptrdiff_t begin = level.at(y, c, parity, first);
+    for (std::ptrdiff_t at = begin; at < begin + count; at += VectorSize()) {
+      Vector sum = start == Start::x ? Zero() : Load(right_side + at);
+      if (has_neighbours) {
+        const Vector beside = Neighbours(level, values, at, parity).Total();
+        sum = start == Start::x ? beside : hn::Add(sum, beside);
+      }
+      Store(hn::Mul(sum, Set(0.25F)), values + at);
+    }
+  }
+}
+
+template <Start start, bool has_neighbours>
+HWY_INLINE void RelaxGeneral(const MembraneLevel& level, const float* HWY_RESTRICT right_side,
+                             float* HWY_RESTRICT values, int y, int parity, int column) {
+  for (std::ptrdiff_t i = 0; i < lanes; i += VectorSize()) {
+    const std::ptrdiff_t planes = level.at(y, 0, parity, column) + i;
+    const Vector inverse = Load(level.inverse.data() + level.at(y, parity, column) + i);
+    const Mask cell = hn::Gt(inverse, Zero());
+    if (hn::AllFalse(Floats(), cell)) {
+      if (start != Start::zero) continue;
+      for (int c = 0; c < channels; ++c) Store(Zero(), values + planes + c * level.channel_step());
+      continue;
+    }
+    const Weights weights(level, y, parity, column, i);
+    for (int c = 0; c < channels; ++c) {
+      const std::ptrdiff_t at = planes + c * level.channel_step();
+      Vector sum = start == Start::x && !level.has_sources ? Zero() : Load(right_side + at);
+      if (has_neighbours) sum = Neighbours(level, values, at, parity).Weighted(weights, sum);
+      const Vector relaxed = hn::Mul(sum, inverse);
+      if (start == Start::zero) {
+        Store(hn::IfThenElseZero(cell, relaxed), values + at);
+      } else {
+        Store(hn::IfThenElse(cell, relaxed, Load(values + at)), values + at);
+      }
+    }
+  }
+}
+
 /// Relaxes the cells of one parity of a row. first: nothing has been relaxed yet, so that with
 /// Start::zero all neighbours are 0.
 template <Start start, bool first>
 HWY_INLINE void RelaxParity(const MembraneLevel& level, const float* HWY_RESTRICT right_side,
                             float* HWY_RESTRICT values, int y, int parity) {
-  ForEachBlock(level.active, level.active_rows, y, [&](int column) {
-    const Block kind = level.block(y, column);
-    if (kind == Block::empty) return;
-    for (std::ptrdiff_t i = 0; i < lanes; i += VectorSize()) {
-      const std::ptrdiff_t planes = level.at(y, 0, parity, column) + i;
-      if (kind == Block::plain) {
-        for (int c = 0; c < channels; ++c) {
-          const std::ptrdiff_t at = planes + c * level.channel_step();
-          Vector sum = start == Start::x ? Zero() : Load(right_side + at);
-          if (!(start == Start::zero && first)) {
-            sum = hn::Add(sum, Neighbours(level, values, at, parity).Total());
-          }
-          Store(hn::Mul(sum, Set(0.25F)), values + at);
-        }
-        continue;
-      }
-      const Vector inverse = Load(level.inverse.data() + level.at(y, parity, column) + i);
-      const Mask cell = hn::Gt(inverse, Zero());
-      if (hn::AllFalse(Floats(), cell)) {
-        if (start != Start::zero) continue;
-        for (int c = 0; c < channels; ++c)
-          Store(Zero(), values + planes + c * level.channel_step());
-        continue;
-      }
-      if (start == Start::x && !level.edges.empty()) {
-        const EdgeMasks edges(level.edges_at(y, parity, column), i);
-        for (int c = 0; c < channels; ++c) {
-          const std::ptrdiff_t at = planes + c * level.channel_step();
-          Vector sum = edges.Sum(Neighbours(level, values, at, parity));
-          if (level.has_sources) sum = hn::Add(sum, Load(right_side + at));
-          Store(hn::IfThenElse(cell, hn::Mul(sum, inverse), Load(values + at)), values + at);
-        }
-        continue;
-      }
-      const Weights weights(level, y, parity, column, i);
-      for (int c = 0; c < channels; ++c) {
-        const std::ptrdiff_t at = planes + c * level.channel_step();
-        Vector sum = Load(right_side + at);
-        if (!(start == Start::zero && first)) {
-          sum = Neighbours(level, values, at, parity).Weighted(weights, sum);
-        }
-        const Vector relaxed = hn::Mul(sum, inverse);
-        if (start == Start::zero) {
-          Store(hn::IfThenElseZero(cell, relaxed), values + at);
-        } else {
-          Store(hn::IfThenElse(cell, relaxed, Load(values + at)), values + at);
-        }
-      }
+  constexpr bool has_neighbours = !(start == Start::zero && first);
+  ForEachRun(level, level.active, y, [&](Block kind, int begin, int end) HWY_ATTR {
+    if (kind == Block::plain) {
+      RelaxPlain<start, has_neighbours>(level, right_side, values, y, parity, begin, end);
+      return;
+    }
+    for (int column = begin; column < end; ++column) {
+      RelaxGeneral<start, has_neighbours>(level, right_side, values, y, parity, column);
     }
   });
 }
@@ -100,7 +106,7 @@ void Relax(const MembraneLevel& level, const float* right_side, float* values, b
   if (level.has_smooth || level.height < 2) {
     const int end = rows.last == level.height ? level.rows() : rows.last;
     for (int y = rows.first; y < end; ++y) {
-      ForEachBlock(level.stored, level.stored_rows, y, [&](int column) {
+      ForEachBlock(level.stored, y, [&](int column) {
         for (int c = 0; c < channels; ++c) {
           Fill(0.F, values + level.at(y, c, 0, column), level.pitch);
         }

@@ -12,40 +12,35 @@ HWY_BEFORE_NAMESPACE();
 namespace diminish::membrane::HWY_NAMESPACE {
 namespace {
 
-/// What is left of the equations of one parity of a row.
+/// What is left of the equations of some cells of one parity, all plain. Of x they have no sources.
+HWY_INLINE Vector PlainResidual(const MembraneLevel& level, const float* right_side,
+                                const float* values, std::ptrdiff_t at, int parity) {
+  Vector sum = Neighbours(level, values, at, parity).Total();
+  if (values != level.x.data()) sum = hn::Add(sum, Load(right_side + at));
+  return hn::NegMulAdd(Set(4.F), Load(values + at), sum);
+}
+
+/// Likewise of any cells.
 HWY_INLINE void Residual(const MembraneLevel& level, const float* right_side, const float* values,
                          int y, int parity, int column, std::ptrdiff_t i, Vector* result) {
   const std::ptrdiff_t single = level.at(y, parity, column) + i;
   const std::ptrdiff_t planes = level.at(y, 0, parity, column) + i;
   if (level.block(y, column) == Block::plain) {
     for (int c = 0; c < channels; ++c) {
-      const std::ptrdiff_t at = planes + c * level.channel_step();
-      Vector sum = Neighbours(level, values, at, parity).Total();
-      // In plain blocks of the finest level there are no sources.
-      if (level.edges.empty()) sum = hn::Add(sum, Load(right_side + at));
-      result[c] = hn::NegMulAdd(Set(4.F), Load(values + at), sum);
+      result[c] =
+          PlainResidual(level, right_side, values, planes + c * level.channel_step(), parity);
     }
     return;
   }
   const Mask cell = hn::Gt(Load(level.inverse.data() + single), Zero());
   if (hn::AllFalse(Floats(), cell)) return;  // `result` is 0 already
-  if (!level.edges.empty()) {
-    const EdgeMasks edges(level.edges_at(y, parity, column), i);
-    const Vector count = edges.Count();
-    for (int c = 0; c < channels; ++c) {
-      const std::ptrdiff_t at = planes + c * level.channel_step();
-      Vector sum = edges.Sum(Neighbours(level, values, at, parity));
-      if (level.has_sources) sum = hn::Add(sum, Load(right_side + at));
-      result[c] = hn::IfThenElseZero(cell, hn::NegMulAdd(count, Load(values + at), sum));
-    }
-    return;
-  }
   const Weights weights(level, y, parity, column, i);
   const Vector diagonal = weights.Total();
+  const bool has_right_side = level.has_sources || values != level.x.data();
   for (int c = 0; c < channels; ++c) {
     const std::ptrdiff_t at = planes + c * level.channel_step();
-    const Vector sum =
-        Neighbours(level, values, at, parity).Weighted(weights, Load(right_side + at));
+    const Vector right = has_right_side ? Load(right_side + at) : Zero();
+    const Vector sum = Neighbours(level, values, at, parity).Weighted(weights, right);
     result[c] = hn::IfThenElseZero(cell, hn::NegMulAdd(diagonal, Load(values + at), sum));
   }
 }
@@ -76,7 +71,7 @@ double RestrictResidual(const MembraneLevel& fine, const float* right_side, cons
   HWY_ALIGN float sums[channels][2 * lanes];
   Vector squares = Zero();
   for (int y = rows.first; y < rows.last; ++y) {
-    ForEachBlock(coarse.active, coarse.active_rows, y, [&](int column) HWY_ATTR {
+    ForEachBlock(coarse.active, y, [&](int column) HWY_ATTR {
       if (coarse.block(y, column) == Block::empty) return;
       Tile states[2];
       for (int half = 0; half < 2; ++half) {
@@ -85,9 +80,23 @@ double RestrictResidual(const MembraneLevel& fine, const float* right_side, cons
         const bool active = states[half] == Tile::active;
         const bool upper = active && fine.block(2 * y, fine_column) != Block::empty;
         const bool lower = active && fine.block(2 * y + 1, fine_column) != Block::empty;
+        // Black cells were relaxed last: nothing is left there. Red ones are in even columns of
+        // even rows and odd columns of odd rows.
+        if (active && fine.block(2 * y, fine_column) == Block::plain &&
+            fine.block(2 * y + 1, fine_column) == Block::plain) {
+          for (int c = 0; c < channels; ++c) {
+            const std::ptrdiff_t even = fine.at(2 * y, c, 0, fine_column);
+            const std::ptrdiff_t odd = fine.at(2 * y + 1, c, 1, fine_column);
+            for (std::ptrdiff_t i = 0; i < lanes; i += VectorSize()) {
+              const Vector sum = hn::Add(PlainResidual(fine, right_side, values, even + i, 0),
+                                         PlainResidual(fine, right_side, values, odd + i, 1));
+              squares = hn::MulAdd(sum, sum, squares);
+              Store(sum, sums[c] + half * lanes + i);
+            }
+          }
+          continue;
+        }
         for (std::ptrdiff_t i = 0; i < lanes; i += VectorSize()) {
-          // Black cells were relaxed last: nothing is left there. Red ones are in even columns of
-          // even rows and odd columns of odd rows.
           Vector even[channels] = {Zero(), Zero(), Zero()};
           Vector odd[channels] = {Zero(), Zero(), Zero()};
           if (upper) Residual(fine, right_side, values, 2 * y, 0, fine_column, i, even);
@@ -131,39 +140,49 @@ class FluxCorrection {
   }
 
  private:
-  static std::ptrdiff_t Index(const MembraneLevel& level, int x, int y, int c) {
-    // x may be -1 or one beyond the last tile: the margin's.
-    const int column = (x + MembraneLevel::tile_width) / MembraneLevel::tile_width - 1;
-    const int within = x - column * MembraneLevel::tile_width;
-    return level.at(y, c, within % 2, column) + within / 2;
+  /// A fine cell's difference to the one `step` further.
+  float FineDifference(std::ptrdiff_t at, std::ptrdiff_t step) const {
+    const float* x = fine_.x.data();
+    const float difference = x[at] - x[at + step];
+    return values_ ? difference + (values_[at] - values_[at + step]) : difference;
   }
-  float Fine(int x, int y, int c) const {
-    const std::ptrdiff_t at = Index(fine_, x, y, c);
-    return fine_.x.data()[at] + (values_ ? values_[at] : 0.F);
-  }
-  float Coarse(int x, int y, int c) const { return coarse_.x.data()[Index(coarse_, x, y, c)]; }
 
+  /// Of the side of a ghost tile that looks into a direction.
   void Side(int column, int row, int dx, int dy) {
-    constexpr int width = MembraneLevel::tile_width / 2;
-    constexpr int height = tile_height / 2;
-    const int count = dx == 0 ? width : height;
-    for (int i = 0; i < count; ++i) {
-      const int x = column * width + (dx == 0 ? i : dx < 0 ? 0 : width - 1);
-      const int y = row * height + (dy == 0 ? i : dy < 0 ? 0 : height - 1);
-      // The two fine cells of the coarse one that lie on this side.
-      const int fine_x = 2 * x + (dx > 0 ? 1 : 0);
-      const int fine_y = 2 * y + (dy > 0 ? 1 : 0);
-      for (int c = 0; c < channels; ++c) {
-        float flux = Coarse(x, y, c) - Coarse(x + dx, y + dy, c);
-        for (int k = 0; k < 2; ++k) {
-          const int px = fine_x + (dx == 0 ? k : 0);
-          const int py = fine_y + (dy == 0 ? k : 0);
-          flux -= Fine(px, py, c) - Fine(px + dx, py + dy, c);
-        }
-        coarse_.residual.data()[Index(coarse_, x, y, c)] += flux;
+    const int x = column * coarse_width + (dx > 0 ? coarse_width - 1 : 0);
+    const int y = row * coarse_height + (dy > 0 ? coarse_height - 1 : 0);
+    if (dx == 0) {
+      for (int i = 0; i < coarse_width; ++i) {
+        Cell(x + i, y, dy * coarse_.channel_row_step(),
+             fine_.cell_at(2 * (x + i), 2 * y + (dy > 0 ? 1 : 0), 0), fine_.pitch,
+             dy * fine_.channel_row_step());
+      }
+    } else {
+      // A column of the other parity.
+      const std::ptrdiff_t coarse_step = dx > 0 ? 1 - coarse_.pitch : coarse_.pitch - 1;
+      const std::ptrdiff_t fine_step = dx > 0 ? 1 - fine_.pitch : fine_.pitch - 1;
+      for (int i = 0; i < coarse_height; ++i) {
+        Cell(x, y + i, coarse_step, fine_.cell_at(2 * x + (dx > 0 ? 1 : 0), 2 * (y + i), 0),
+             fine_.channel_row_step(), fine_step);
       }
     }
   }
+
+  /// step: to the cell beyond the seam. fine_at, fine_next: the two fine cells this side of it.
+  void Cell(int x, int y, std::ptrdiff_t step, std::ptrdiff_t fine_at, std::ptrdiff_t fine_next,
+            std::ptrdiff_t fine_step) {
+    const std::ptrdiff_t at = coarse_.cell_at(x, y, 0);
+    for (int c = 0; c < channels; ++c) {
+      const std::ptrdiff_t own = at + c * coarse_.channel_step();
+      const std::ptrdiff_t fine = fine_at + c * fine_.channel_step();
+      coarse_.residual.data()[own] += coarse_.x.data()[own] - coarse_.x.data()[own + step] -
+                                      FineDifference(fine, fine_step) -
+                                      FineDifference(fine + fine_next, fine_step);
+    }
+  }
+
+  static constexpr int coarse_width = MembraneLevel::tile_width / 2;
+  static constexpr int coarse_height = tile_height / 2;
 
   const MembraneLevel& fine_;
   const float* values_;
@@ -179,7 +198,7 @@ void CollectFromFixed(MembraneLevel& level) {
     return hn::IfThenElseZero(from, hn::Max(hn::NegMulAdd(Set(0.75F), weight, Set(1.F)), Zero()));
   };
   for (int y = 0; y < level.height; ++y) {
-    ForEachBlock(level.active, level.active_rows, y, [&](int column) HWY_ATTR {
+    ForEachBlock(level.active, y, [&](int column) HWY_ATTR {
       if (level.block(y, column) != Block::general) return;
       for (int parity = 0; parity < 2; ++parity) {
         for (std::ptrdiff_t i = 0; i < lanes; i += VectorSize()) {

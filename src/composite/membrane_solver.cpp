@@ -15,16 +15,18 @@ constexpr int tile_width = MembraneLevel::tile_width;
 
 constexpr int max_cycles = 12;
 /// On the level that MembraneCoarsest corrects.
-constexpr int coarsest_sweeps = 4;
+constexpr int coarsest_sweeps = 2;
 /// Multiplications that its factorization may take.
 constexpr double most_work = 2e6;
 
 /// The squared error after a cycle, in terms of its squared change, if further ones reduce it at
-/// the rate at which it was reduced before. At least 1: what is said of the first cycle is a guess.
+/// the rate at which it was reduced before; at least as is usual, and as said of the first cycle.
 double left_of_error(double change_before, double change) {
-  if (change_before <= 0) return 1;
-  const double rate = std::min(0.95, std::sqrt(change / change_before));
-  return std::max(1.0, std::pow(rate / (1 - rate), 2));
+  constexpr double usual_rate = 0.4;
+  const double rate = change_before > 0
+                          ? std::clamp(std::sqrt(change / change_before), usual_rate, 0.95)
+                          : usual_rate;
+  return std::pow(rate / (1 - rate), 2);
 }
 
 void relax(const MembraneLevel& level, const float* right_side, float* values, bool from_zero) {
@@ -168,15 +170,16 @@ void MembraneSolver::build() {
     const std::uint32_t* cells = cells_.data() + word_index(y);
     const std::uint32_t* fixed_pixels = fixed_.data() + word_index(y);
     const std::uint32_t* irregular = irregular_.data() + word_index(y);
+    std::uint32_t* rough = finest.rough_row(y);
     for (int column = 0; column < tile_columns_; ++column) {
       if ((cells[column] | fixed_pixels[column]) == 0) continue;
+      rough[column] = irregular[column] | fixed_pixels[column];
       finest.block(y, column) =
           cells[column] == ~0U && irregular[column] == 0 ? Block::plain : Block::general;
     }
   }
-  finest.choose_tiles(level_count_ > 1);
+  finest.choose_tiles(nullptr, level_count_ > 1);
   finest.has_sources = !sources_.empty();
-  finest.edges.resize(finest.blocks.size() * 8);
   for_rows(finest.rows(), [&](Rows rows) {
     membrane::set_weights(cells_.data(), fixed_.data(), words_per_row_, rows, finest);
   });
@@ -198,7 +201,7 @@ void MembraneSolver::build() {
     coarse.begin(half(fine.width), half(fine.height));
     coarse.has_sources = fine.has_sources;
     coarsen_blocks(fine, coarse);
-    coarse.choose_tiles(l + 1 < level_count_);
+    coarse.choose_tiles(&fine, l + 1 < level_count_);
     for_rows(coarse.rows(), [&](Rows rows) { membrane::coarsen(fine, rows, coarse); });
     invert_diagonal(coarse);
   }
@@ -206,11 +209,25 @@ void MembraneSolver::build() {
 }
 
 void MembraneSolver::coarsen_blocks(const MembraneLevel& fine, MembraneLevel& coarse) const {
+  // A bit for each pair of bits, from the lowest on.
+  const auto pairs = [](std::uint32_t bits) {
+    bits = (bits | bits >> 1) & 0x55555555U;
+    bits = (bits | bits >> 1) & 0x33333333U;
+    bits = (bits | bits >> 2) & 0x0F0F0F0FU;
+    bits = (bits | bits >> 4) & 0x00FF00FFU;
+    return (bits | bits >> 8) & 0xFFFFU;
+  };
   const auto fine_block = [&](int y, int column) {
     return y < fine.rows() && column < fine.tile_columns ? fine.block(y, column) : Block::empty;
   };
   for (int y = 0; y < coarse.height; ++y) {
+    const std::uint32_t* upper = fine.rough_row(2 * y);
+    const std::uint32_t* lower = upper + fine.tile_columns + 2;
     for (int column = 0; column < coarse.tile_columns; ++column) {
+      const int left = std::min(2 * column, fine.tile_columns);
+      const int right = std::min(2 * column + 1, fine.tile_columns);
+      coarse.rough_row(y)[column] =
+          pairs(upper[left] | lower[left]) | pairs(upper[right] | lower[right]) << 16;
       const Block children[] = {fine_block(2 * y, 2 * column), fine_block(2 * y, 2 * column + 1),
                                 fine_block(2 * y + 1, 2 * column),
                                 fine_block(2 * y + 1, 2 * column + 1)};

@@ -74,8 +74,9 @@ class MembraneSolver {
   /// channels of 32. Unspecified where there is no pixel of the set.
   virtual void read_block(int y, int column, float* result) const;
 
-  bool any_in_block(int y, int column) const {
-    return cells_[static_cast<std::size_t>(word_index(y) + column)] != 0;
+  /// Which of these pixels are of the set, a bit each.
+  std::uint32_t cells_in_block(int y, int column) const {
+    return cells_[static_cast<std::size_t>(word_index(y) + column)];
   }
   /// The number of pixels to solve for.
   std::size_t size() const { return size_; }

@@ -8,8 +8,6 @@
 
 #include <hwy/highway.h>
 
-#include <vector>
-
 #include "composite/membrane_level.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -47,22 +45,25 @@ HWY_INLINE Vector Zero() {
   return hn::Zero(Floats());
 }
 
-/// The lanes whose bits are set, from bit i on.
-HWY_INLINE Mask LoadBits(unsigned bits, std::ptrdiff_t i) {
-  alignas(8) std::uint8_t bytes[8] = {};
-  bytes[0] = static_cast<std::uint8_t>(bits >> i);
-  bytes[1] = static_cast<std::uint8_t>(bits >> (i + 8));
-  return hn::LoadMaskBits(Floats(), bytes);
-}
-
 /// Calls visit(column) for each block of a row.
 template <class Visit>
-HWY_INLINE void ForEachBlock(const std::vector<MembraneLevel::Span>& spans,
-                             const std::vector<int>& rows, int y, const Visit& visit) {
-  const auto row = static_cast<std::size_t>(y / tile_height);
-  for (int i = rows[row]; i < rows[row + 1]; ++i) {
-    const MembraneLevel::Span span = spans[static_cast<std::size_t>(i)];
+HWY_INLINE void ForEachBlock(const MembraneLevel::BlockRows& rows, int y, const Visit& visit) {
+  for (const MembraneLevel::Span span : rows.row(y)) {
     for (int column = span.first; column < span.last; ++column) visit(column);
+  }
+}
+
+/// Calls visit(kind, first, last) for each run of blocks of the same kind, unless they are empty.
+template <class Visit>
+HWY_INLINE void ForEachRun(const MembraneLevel& level, const MembraneLevel::BlockRows& rows, int y,
+                           const Visit& visit) {
+  for (const MembraneLevel::Span span : rows.row(y)) {
+    for (int column = span.first; column < span.last;) {
+      const Block kind = level.block(y, column);
+      const int first = column;
+      while (column < span.last && level.block(y, column) == kind) ++column;
+      if (kind != Block::empty) visit(kind, first, column);
+    }
   }
 }
 
@@ -126,25 +127,6 @@ struct Neighbours {
         weights.left, left,
         hn::MulAdd(weights.right, right,
                    hn::MulAdd(weights.up, up, hn::MulAdd(weights.down, down, right_side))));
-  }
-};
-
-/// Which edges a vector of cells of the finest level has.
-struct EdgeMasks {
-  Mask left, right, up, down;
-
-  HWY_INLINE EdgeMasks(const std::uint16_t* edges, std::ptrdiff_t i)
-      : left(LoadBits(edges[0], i)),
-        right(LoadBits(edges[1], i)),
-        up(LoadBits(edges[2], i)),
-        down(LoadBits(edges[3], i)) {}
-  HWY_INLINE Vector Sum(const Neighbours& n) const {
-    return hn::Add(hn::Add(hn::IfThenElseZero(left, n.left), hn::IfThenElseZero(right, n.right)),
-                   hn::Add(hn::IfThenElseZero(up, n.up), hn::IfThenElseZero(down, n.down)));
-  }
-  HWY_INLINE Vector Count() const {
-    const auto one_if = [](Mask mask) HWY_ATTR { return hn::IfThenElseZero(mask, Set(1.F)); };
-    return hn::Add(hn::Add(one_if(left), one_if(right)), hn::Add(one_if(up), one_if(down)));
   }
 };
 

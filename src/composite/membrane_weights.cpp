@@ -66,6 +66,14 @@ HWY_INLINE unsigned EvenBits(std::uint32_t bits) {
   return (bits | (bits >> 8)) & 0xFFFFU;
 }
 
+/// The lanes whose bits are set, from bit i on.
+HWY_INLINE Mask LoadBits(unsigned bits, std::ptrdiff_t i) {
+  alignas(8) std::uint8_t bytes[8] = {};
+  bytes[0] = static_cast<std::uint8_t>(bits >> i);
+  bytes[1] = static_cast<std::uint8_t>(bits >> (i + 8));
+  return hn::LoadMaskBits(Floats(), bytes);
+}
+
 /// `value` where the bit is set, else 0; even and odd cells apart.
 HWY_INLINE void StoreBits(std::uint32_t bits, float value, float* even, std::ptrdiff_t pitch) {
   for (int parity = 0; parity < 2; ++parity) {
@@ -80,7 +88,7 @@ void SetWeights(const std::uint32_t* cells, const std::uint32_t* fixed,
                 std::ptrdiff_t words_per_row, Rows rows, MembraneLevel& level) {
   const std::ptrdiff_t pitch = level.pitch;
   for (int y = rows.first; y < rows.last; ++y) {
-    ForEachBlock(level.stored, level.stored_rows, y, [&](int column) {
+    ForEachBlock(level.stored, y, [&](int column) {
       const std::ptrdiff_t at = level.at(y, 0, column);
       if (level.block(y, column) == Block::empty) return;
       if (level.block(y, column) == Block::plain) {
@@ -102,25 +110,13 @@ void SetWeights(const std::uint32_t* cells, const std::uint32_t* fixed,
       StoreBits(to_right, 1.F, level.right.data() + at, pitch);
       StoreBits(down, 1.F, level.down.data() + at, pitch);
       StoreBits(fixed[word], -1.F, level.inverse.data() + at, pitch);
-      const std::uint32_t left_cell = (cell << 1) | (cells[word - 1] >> 31);
-      const std::uint32_t left_member = (member << 1) | ((cells[word - 1] | fixed[word - 1]) >> 31);
-      const std::uint32_t upper_cell = cells[word - words_per_row];
-      const std::uint32_t upper_member = upper_cell | fixed[word - words_per_row];
-      const std::uint32_t directions[] = {member & left_member & (cell | left_cell), to_right,
-                                          member & upper_member & (cell | upper_cell), down};
-      for (int parity = 0; parity < 2; ++parity) {
-        std::uint16_t* edges = level.edges_at(y, parity, column);
-        for (int k = 0; k < 4; ++k) {
-          edges[k] = static_cast<std::uint16_t>(EvenBits(directions[k] >> parity));
-        }
-      }
     });
   }
 }
 
 void InvertDiagonal(Rows rows, MembraneLevel& level) {
   for (int y = rows.first; y < rows.last; ++y) {
-    ForEachBlock(level.stored, level.stored_rows, y, [&](int column) {
+    ForEachBlock(level.stored, y, [&](int column) {
       if (level.block(y, column) == Block::empty) return;
       if (level.block(y, column) == Block::plain) {
         Fill(0.25F, level.inverse.data() + level.at(y, 0, column), level.pitch);
