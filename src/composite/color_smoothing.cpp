@@ -22,15 +22,12 @@ namespace diminish {
 struct SmoothedRow {
   static constexpr int rows = 2 * ColorSmoothing::reach + 1;
   const std::uint8_t* values[3][rows];
-  const std::int16_t* guide[3][rows];
-  const std::uint8_t* seen;
+  const std::uint8_t* guide[3][rows];
+  const std::uint8_t* seen[rows];
 };
 
 /// Beyond a row's last pixel.
 constexpr int padding = 64;
-
-/// Stands for a guide's colour where nothing is seen: further from all colours than counts.
-constexpr std::int16_t far = 1000;
 
 }  // namespace diminish
 #endif
@@ -47,6 +44,10 @@ constexpr int quotient_bits = std::countr_zero(ColorSmoothing::one) - 16;
 using Words = hn::CappedTag<std::int16_t, padding / 2>;
 using Bytes = hn::Rebind<std::uint8_t, Words>;
 using Floats = hn::CappedTag<float, padding / 4>;
+
+/// Pixels whose neighbours are compared together, in bytes; their colours are summed in words.
+constexpr int block = padding / 2;
+using AllBytes = hn::CappedTag<std::uint8_t, block>;
 
 /// ColorSmoothing::mean.
 struct Division {
@@ -81,40 +82,73 @@ struct Division {
   }
 };
 
+HWY_INLINE bool AnySeen(const SmoothedRow& row, int x) {
+  const AllBytes d;
+  auto any = hn::Zero(d);
+  for (int i = 0; i < block; i += static_cast<int>(hn::Lanes(d))) {
+    any = hn::Or(any, hn::LoadU(d, row.seen[ColorSmoothing::reach] + x + i));
+  }
+  return !hn::AllTrue(d, hn::Eq(any, hn::Zero(d)));
+}
+
+/// How alike the first neighbour of each pixel of the block that begins in column x is, then the
+/// second..; 0 for those that were not seen.
+HWY_INLINE void Compare(const SmoothedRow& row, int x, std::uint8_t* likeness) {
+  constexpr int reach = ColorSmoothing::reach;
+  const AllBytes d;
+  const auto largest = hn::Set(d, static_cast<std::uint8_t>(ColorSmoothing::largest_difference));
+  for (int i = 0; i < block; i += static_cast<int>(hn::Lanes(d))) {
+    hn::Vec<AllBytes> own[3];
+    for (int c = 0; c < 3; ++c) own[c] = hn::LoadU(d, row.guide[c][reach] + x + i);
+    std::uint8_t* to = likeness + i;
+    for (int dy = -reach; dy <= reach; ++dy) {
+      for (int dx = -reach; dx <= reach; ++dx) {
+        if (!ColorSmoothing::is_neighbour(dx, dy)) continue;
+        const int at = x + i + dx;
+        auto difference = hn::Zero(d);
+        for (int c = 0; c < 3; ++c) {
+          const auto other = hn::LoadU(d, row.guide[c][reach + dy] + at);
+          const auto step = hn::Sub(hn::Max(other, own[c]), hn::Min(other, own[c]));
+          difference = c == 0 ? step : hn::SaturatedAdd(difference, step);
+        }
+        const auto is_seen = hn::LoadU(d, row.seen[reach + dy] + at);
+        const auto left = hn::And(hn::SaturatedSub(largest, difference), is_seen);
+        hn::Store(left, d, to);
+        to += block;
+      }
+    }
+  }
+}
+
 void SmoothRow(const SmoothedRow& row, int width, std::uint8_t* picture) {
   constexpr int reach = ColorSmoothing::reach;
+  constexpr int square = (2 * reach + 1) * (2 * reach + 1);
   const Bytes bytes;
   const Words words;
   const auto lanes = static_cast<int>(hn::Lanes(bytes));
-  const auto largest = hn::Set(words, ColorSmoothing::largest_difference);
+  HWY_ALIGN std::uint8_t likeness[square * block];
   for (int x = 0; x < width; x += lanes) {
-    const auto is_seen = hn::Gt(hn::LoadU(bytes, row.seen + x), hn::Zero(bytes));
+    if (x % block == 0 && AnySeen(row, x)) Compare(row, x, likeness);
+    const auto is_seen = hn::Gt(hn::LoadU(bytes, row.seen[reach] + x), hn::Zero(bytes));
     if (hn::AllFalse(bytes, is_seen)) continue;
-    hn::Vec<Words> own[3], sum[3];
-    for (int c = 0; c < 3; ++c) {
-      own[c] = hn::LoadU(words, row.guide[c][reach] + x);
-      sum[c] = hn::Zero(words);
-    }
+    const std::uint8_t* own = likeness + x % block;
+    hn::Vec<Words> sum[3] = {hn::Zero(words), hn::Zero(words), hn::Zero(words)};
     auto weights = hn::Zero(words);
     for (int dy = -reach; dy <= reach; ++dy) {
       for (int dx = -reach; dx <= reach; ++dx) {
         if (!ColorSmoothing::is_neighbour(dx, dy)) continue;
-        const int at = x + dx;
-        auto difference = hn::Zero(words);
-        for (int c = 0; c < 3; ++c) {
-          const auto other = hn::LoadU(words, row.guide[c][reach + dy] + at);
-          difference = hn::Add(difference, hn::Abs(hn::Sub(other, own[c])));
-        }
-        const auto left = hn::Max(hn::Sub(largest, difference), hn::Zero(words));
-        const auto weight = hn::ShiftRight<weight_bits>(left);
+        const auto weight =
+            hn::ShiftRight<weight_bits>(hn::PromoteTo(words, hn::LoadU(bytes, own)));
+        own += block;
         weights = hn::Add(weights, weight);
         for (int c = 0; c < 3; ++c) {
-          const auto value = hn::LoadU(bytes, row.values[c][reach + dy] + at);
+          const auto value = hn::LoadU(bytes, row.values[c][reach + dy] + x + dx);
           sum[c] = hn::Add(sum[c], hn::Mul(weight, hn::PromoteTo(words, value)));
         }
       }
     }
-    const Division mean(weights);
+    // Pixels that were not seen may have none.
+    const Division mean(hn::Max(weights, hn::Set(words, 1)));
     hn::Vec<Bytes> result[3];
     for (int c = 0; c < 3; ++c) {
       const auto value = hn::LoadU(bytes, row.values[c][reach] + x);
@@ -132,10 +166,10 @@ void SmoothRow(const SmoothedRow& row, int width, std::uint8_t* picture) {
 
 /// The mean of two neighbours and the pixel itself, rounded upwards twice. In place of a neighbour
 /// that was not seen: the pixel itself.
-HWY_INLINE hn::Vec<Bytes> MeanOfThree(const std::uint8_t* first, const std::uint8_t* first_seen,
-                                      const std::uint8_t* second, const std::uint8_t* second_seen,
-                                      const std::uint8_t* own) {
-  const Bytes d;
+HWY_INLINE hn::Vec<AllBytes> MeanOfThree(const std::uint8_t* first, const std::uint8_t* first_seen,
+                                         const std::uint8_t* second,
+                                         const std::uint8_t* second_seen, const std::uint8_t* own) {
+  const AllBytes d;
   const auto value = hn::LoadU(d, own);
   const auto among = [&](const std::uint8_t* other, const std::uint8_t* is_seen) HWY_ATTR {
     return hn::IfVecThenElse(hn::LoadU(d, is_seen), hn::LoadU(d, other), value);
@@ -146,23 +180,20 @@ HWY_INLINE hn::Vec<Bytes> MeanOfThree(const std::uint8_t* first, const std::uint
 
 void AverageAlongRow(const std::uint8_t* values, const std::uint8_t* seen, int width,
                      std::uint8_t* means) {
-  for (int x = 0; x < width; x += static_cast<int>(hn::Lanes(Bytes()))) {
+  for (int x = 0; x < width; x += static_cast<int>(hn::Lanes(AllBytes()))) {
     const auto mean =
         MeanOfThree(values + x - 1, seen + x - 1, values + x + 1, seen + x + 1, values + x);
-    hn::StoreU(mean, Bytes(), means + x);
+    hn::StoreU(mean, AllBytes(), means + x);
   }
 }
 
 /// Rows: above, the one to guide and below.
 void MakeGuide(const std::uint8_t* const* means, const std::uint8_t* const* seen, int width,
-               std::int16_t* guide) {
-  for (int x = 0; x < width; x += static_cast<int>(hn::Lanes(Bytes()))) {
+               std::uint8_t* guide) {
+  for (int x = 0; x < width; x += static_cast<int>(hn::Lanes(AllBytes()))) {
     const auto mean =
         MeanOfThree(means[0] + x, seen[0] + x, means[2] + x, seen[2] + x, means[1] + x);
-    const auto is_seen = hn::PromoteTo(Words(), hn::LoadU(Bytes(), seen[1] + x));
-    const auto level = hn::IfThenElse(hn::Gt(is_seen, hn::Zero(Words())),
-                                      hn::PromoteTo(Words(), mean), hn::Set(Words(), far));
-    hn::StoreU(level, Words(), guide + x);
+    hn::StoreU(mean, AllBytes(), guide + x);
   }
 }
 
@@ -227,10 +258,6 @@ void ColorSmoothing::begin(const Rect& box) {
     const int begin = is_outside ? width : reach + box.width;
     std::fill_n(seen_.row(y), end, std::uint8_t{0});
     std::fill(seen_.row(y) + begin, seen_.row(y) + width, std::uint8_t{0});
-    for (Image<std::int16_t>& guide : guide_) {
-      std::fill_n(guide.row(y), end, far);
-      std::fill(guide.row(y) + begin, guide.row(y) + width, far);
-    }
   }
 }
 
@@ -266,12 +293,12 @@ void ColorSmoothing::guide_row(int y, int width) {
 void ColorSmoothing::smooth_row(const Rect& box, int y, Image<Bgr>& picture) const {
   SmoothedRow row{};
   for (int i = 0; i < SmoothedRow::rows; ++i) {
+    row.seen[i] = seen_.row(y + i) + reach;
     for (int c = 0; c < 3; ++c) {
       row.values[c][i] = values_[c].row(y + i) + reach;
       row.guide[c][i] = guide_[c].row(y + i) + reach;
     }
   }
-  row.seen = seen_.row(y + reach) + reach;
   HWY_DYNAMIC_DISPATCH(SmoothRow)
   (row, box.width, reinterpret_cast<std::uint8_t*>(picture.row(box.y + y) + box.x));
 }

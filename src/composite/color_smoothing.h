@@ -46,7 +46,7 @@ class ColorSmoothing {
   Mask seen_;                         ///< 255 or 0
   Image<std::uint8_t> values_[3];     ///< channels
   Image<std::uint8_t> row_means_[3];  ///< with the neighbours to the left and right
-  Image<std::int16_t> guide_[3];      ///< and above and below; far from all colours if not seen
+  Image<std::uint8_t> guide_[3];      ///< and above and below
 };
 
 }  // namespace diminish

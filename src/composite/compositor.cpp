@@ -21,23 +21,17 @@ struct Counts {
 
 /// Sorts columns [begin, end) of a row into camera, seen and missing. source: of the columns
 /// [drawn_begin, drawn_end); nothing is seen beyond.
-Counts sort_row(const std::uint8_t* mask, const std::uint8_t* source, int begin, int end,
-                int drawn_begin, int drawn_end, std::uint8_t* origin, std::uint8_t* missing) {
+void sort_row(const std::uint8_t* mask, const std::uint8_t* source, int begin, int end,
+              int drawn_begin, int drawn_end, std::uint8_t* origin, std::uint8_t* missing) {
   for (int x = begin; x < end; ++x) {
     origin[x] = mask[x] != 0 ? provenance::inpainted : provenance::camera;
   }
   for (int x = drawn_begin; x < drawn_end; ++x) {
     origin[x] = mask[x] != 0 && source[x] != 0 ? source[x] : origin[x];
   }
-  int mask_pixels = 0;
-  int missing_pixels = 0;
   for (int x = begin; x < end; ++x) {
-    const bool is_missing = origin[x] == provenance::inpainted;
-    missing[x] = is_missing ? 255 : 0;
-    missing_pixels += is_missing ? 1 : 0;
-    mask_pixels += mask[x] != 0 ? 1 : 0;
+    missing[x] = origin[x] == provenance::inpainted ? 255 : 0;
   }
-  return {static_cast<std::size_t>(mask_pixels), static_cast<std::size_t>(missing_pixels)};
 }
 
 /// Clears `missing`. objects: the last mask's bounding box, outside of which nothing of it is set.
@@ -60,19 +54,19 @@ void sort_pixels(const Image<Bgr>& camera, const Mask& occlusion, const Rect& ob
   result.provenance.resize(width, height);
   const Rect drawn = intersect(objects, result.reconstruction.region);
   const Counts counts = sum_over_rows(height, [&](Rows rows) {
-    Counts sum;
     for (int y = rows.first; y < rows.last; ++y) {
       std::copy_n(camera.row(y), width, result.picture.row(y));
       std::copy_n(occlusion.row(y), width, result.mask.row(y));
       std::fill_n(result.provenance.row(y), width, provenance::camera);
       if (y < objects.y || y >= objects.bottom()) continue;
       const bool is_drawn = y >= drawn.y && y < drawn.bottom();
-      sum =
-          sum + sort_row(occlusion.row(y), is_drawn ? result.reconstruction.source.row(y) : nullptr,
-                         objects.x, objects.right(), is_drawn ? drawn.x : 0,
-                         is_drawn ? drawn.right() : 0, result.provenance.row(y), missing.row(y));
+      sort_row(occlusion.row(y), is_drawn ? result.reconstruction.source.row(y) : nullptr,
+               objects.x, objects.right(), is_drawn ? drawn.x : 0, is_drawn ? drawn.right() : 0,
+               result.provenance.row(y), missing.row(y));
     }
-    return sum;
+    const Rect sorted =
+        intersect({objects.x, rows.first, objects.width, rows.last - rows.first}, objects);
+    return Counts{count_nonzero(occlusion, sorted), count_nonzero(missing, sorted)};
   });
   FrameReport& report = result.report;
   report.mask_pixels = counts.mask;

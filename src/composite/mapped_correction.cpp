@@ -25,7 +25,9 @@ class MappedCorrection : public ColorCorrector {
       std::vector<float>& corrections = corrections_[rows.first == 0 ? 0 : 1];
       corrections.resize(3 * static_cast<std::size_t>(region.width));
       for (int y = region.y + rows.first; y < region.y + rows.last; ++y) {
-        membrane_.row(y, corrections.data());
+        const Rect wanted = bounding_box(occlusion, {region.x, y, region.width, 1});
+        if (wanted.empty()) continue;
+        membrane_.row(y, wanted.x - region.x, wanted.right() - region.x, corrections.data());
         map_colors(maps_.by_source(), reconstruction, occlusion, y, corrections.data(), picture);
       }
     });

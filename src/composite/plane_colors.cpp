@@ -33,15 +33,22 @@ void PlaneColors::collect(const Mask& occlusion, const Reconstruction& reconstru
 void PlaneColors::find_objects(const Mask& occlusion) {
   has_object_.resize(columns_, rows_, 0);
   near_object_.resize(columns_, rows_, 0);
+  const int columns = columns_;
   for (int y = 0; y < region_.height; y += step) {
     const std::uint8_t* mask = occlusion.row(region_.y + y) + region_.x;
     std::uint8_t* has = has_object_.row(y / cell);
     for (int x = 0; x < region_.width; x += step) has[x / cell] |= mask[x];
   }
   for (int row = 0; row < rows_; ++row) {
-    for (int column = 0; column < columns_; ++column) {
-      if (has_object_(column, row) == 0) continue;
-      near_object_.fill(intersect(grow({column, row, 1, 1}, gap), near_object_.bounds()), 255);
+    const std::uint8_t* const has = has_object_.row(row);
+    for (int other = std::max(row - gap, 0); other <= std::min(row + gap, rows_ - 1); ++other) {
+      std::uint8_t* const near = near_object_.row(other);
+      for (int shift = -gap; shift <= gap; ++shift) {
+        const int end = columns - std::max(shift, 0);
+        for (int column = std::max(-shift, 0); column < end; ++column) {
+          near[column + shift] |= has[column];
+        }
+      }
     }
   }
 }

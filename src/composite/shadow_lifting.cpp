@@ -30,6 +30,21 @@ void lift_row(const std::uint8_t* light, int count, std::uint8_t* levels) {
   }
 }
 
+/// Calls visit(x) for each of the columns [begin, end) that is nearer than `fading_px`.
+template <class Visit>
+void for_each_within(const std::uint8_t* distances, int begin, int end, const Visit& visit) {
+  constexpr int step = 16;
+  for (int first = begin; first < end; first += step) {
+    const int last = std::min(first + step, end);
+    std::uint8_t least = fading_px;
+    for (int x = first; x < last; ++x) least = std::min(least, distances[x]);
+    if (least == fading_px) continue;
+    for (int x = first; x < last; ++x) {
+      if (distances[x] < fading_px) visit(x);
+    }
+  }
+}
+
 /// The rows of the region with less than all light.
 Rect shaded_part(const Reconstruction& reconstruction) {
   const Rect& region = reconstruction.region;
@@ -86,11 +101,11 @@ void ShadowLifting::restore_outside(const Image<Bgr>& camera, const Mask& occlus
       const Bgr* light = reconstruction.light.row(y);
       const std::uint8_t* distances = distances_.row(y - part.y) - part.x;
       Bgr* colors = picture.row(y);
-      for (int x = part.x; x < part.right(); ++x) {
-        if (distances[x] >= fading_px || light[x] == all_light) continue;
+      for_each_within(distances, part.x, part.right(), [&](int x) {
+        if (light[x] == all_light) return;
         if (distances[x] == 0) {
           colors[x] = camera(x, y);
-          continue;
+          return;
         }
         const auto shaded = [&](int level, int light_level) {
           const int dark = (255 - light_level) * (fading_px - distances[x]);
@@ -99,7 +114,7 @@ void ShadowLifting::restore_outside(const Image<Bgr>& camera, const Mask& occlus
         };
         colors[x] = {shaded(colors[x].b, light[x].b), shaded(colors[x].g, light[x].g),
                      shaded(colors[x].r, light[x].r)};
-      }
+      });
     }
   });
 }

@@ -16,15 +16,18 @@ Rect coarser_box(const Rect& box) {
 /// Calls visit(i) for each of `count` bytes that is not 0.
 template <class Visit>
 void for_each_set(const std::uint8_t* bytes, int count, const Visit& visit) {
-  constexpr int step = 8;
-  for (int i = 0; i < count; i += step) {
-    const int end = std::min(i + step, count);
-    std::uint8_t any = 0;
-    for (int k = i; k < end; ++k) any |= bytes[k];
-    if (any == 0) continue;
-    for (int k = i; k < end; ++k) {
+  std::uint64_t some = 0;
+  constexpr int step = sizeof some;
+  int i = 0;
+  for (; i + step <= count; i += step) {
+    std::memcpy(&some, bytes + i, sizeof some);
+    if (some == 0) continue;
+    for (int k = i; k < i + step; ++k) {
       if (bytes[k] != 0) visit(k);
     }
+  }
+  for (; i < count; ++i) {
+    if (bytes[i] != 0) visit(i);
   }
 }
 

@@ -49,7 +49,7 @@ void SoftMembrane::solve() {
   }
 }
 
-void SoftMembrane::row(int y, float* correction) const {
+void SoftMembrane::row(int y, int first, int last, float* correction) const {
   const int above = (y - region_.y) / cell;
   const float below_share = static_cast<float>((y - region_.y) % cell) / cell;
   const auto at = [&](int column) -> Eigen::Array3f {
@@ -57,8 +57,9 @@ void SoftMembrane::row(int y, float* correction) const {
     const auto lower = upper + static_cast<std::size_t>(columns_);
     return (1 - below_share) * values_[upper] + below_share * values_[lower];
   };
-  Eigen::Array3f left = at(0);
-  for (int column = 0; column * cell < region_.width; ++column) {
+  if (first >= last) return;
+  Eigen::Array3f left = at(first / cell);
+  for (int column = first / cell; column * cell < last; ++column) {
     const Eigen::Array3f right = at(column + 1);
     const int count = std::min(cell, region_.width - column * cell);
     for (int c = 0; c < 3; ++c) {

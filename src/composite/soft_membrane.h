@@ -29,9 +29,9 @@ class SoftMembrane {
   /// difference: in levels.
   void add(int x, int y, const Eigen::Array3f& difference);
   void solve();
-  /// The correction of pixels [region.x, region.right()) of a row: three channels, each
-  /// `region.width` long.
-  void row(int y, float* correction) const;
+  /// The correction of a row of the region: three channels, each `region.width` long. Columns
+  /// before `first` and from `last` on, counted from the region's left, are not needed.
+  void row(int y, int first, int last, float* correction) const;
 
  private:
   Rect region_;

@@ -12,7 +12,7 @@ const Rect region{40, 20, 400, 300};
 
 std::vector<float> row_of(const SoftMembrane& membrane, int y) {
   std::vector<float> correction(3 * static_cast<std::size_t>(region.width));
-  membrane.row(y, correction.data());
+  membrane.row(y, 0, region.width, correction.data());
   return correction;
 }
 
