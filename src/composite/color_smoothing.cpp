@@ -21,7 +21,7 @@ namespace diminish {
 /// above it; there are `ColorSmoothing::reach` pixels to the left and a vector to the right.
 struct SmoothedRow {
   static constexpr int rows = 2 * ColorSmoothing::reach + 1;
-  const std::uint8_t* values[3][rows];
+  const std::int16_t* values[3][rows];
   const std::uint8_t* guide[3][rows];
   const std::uint8_t* seen[rows];
 };
@@ -142,8 +142,8 @@ void SmoothRow(const SmoothedRow& row, int width, std::uint8_t* picture) {
         own += block;
         weights = hn::Add(weights, weight);
         for (int c = 0; c < 3; ++c) {
-          const auto value = hn::LoadU(bytes, row.values[c][reach + dy] + x + dx);
-          sum[c] = hn::Add(sum[c], hn::Mul(weight, hn::PromoteTo(words, value)));
+          const auto value = hn::LoadU(words, row.values[c][reach + dy] + x + dx);
+          sum[c] = hn::Add(sum[c], hn::Mul(weight, value));
         }
       }
     }
@@ -151,7 +151,7 @@ void SmoothRow(const SmoothedRow& row, int width, std::uint8_t* picture) {
     const Division mean(hn::Max(weights, hn::Set(words, 1)));
     hn::Vec<Bytes> result[3];
     for (int c = 0; c < 3; ++c) {
-      const auto value = hn::LoadU(bytes, row.values[c][reach] + x);
+      const auto value = hn::DemoteTo(bytes, hn::LoadU(words, row.values[c][reach] + x));
       result[c] = hn::IfThenElse(is_seen, mean(sum[c]), value);
     }
     if (x + lanes <= width) {
@@ -197,17 +197,22 @@ void MakeGuide(const std::uint8_t* const* means, const std::uint8_t* const* seen
   }
 }
 
-void SplitChannels(const std::uint8_t* pixels, int width, std::uint8_t* const* channels) {
-  const Bytes bytes;
-  const auto lanes = static_cast<int>(hn::Lanes(bytes));
+/// Into bytes and into words.
+void SplitChannels(const std::uint8_t* pixels, int width, std::uint8_t* const* bytes,
+                   std::int16_t* const* words) {
+  const Bytes d;
+  const auto lanes = static_cast<int>(hn::Lanes(d));
   int x = 0;
   for (; x + lanes <= width; x += lanes) {
     hn::Vec<Bytes> values[3];
-    hn::LoadInterleaved3(bytes, &pixels[3 * x], values[0], values[1], values[2]);
-    for (int c = 0; c < 3; ++c) hn::StoreU(values[c], bytes, channels[c] + x);
+    hn::LoadInterleaved3(d, &pixels[3 * x], values[0], values[1], values[2]);
+    for (int c = 0; c < 3; ++c) {
+      hn::StoreU(values[c], d, bytes[c] + x);
+      hn::StoreU(hn::PromoteTo(Words(), values[c]), Words(), words[c] + x);
+    }
   }
   for (; x < width; ++x) {
-    for (int c = 0; c < 3; ++c) channels[c][x] = pixels[3 * x + c];
+    for (int c = 0; c < 3; ++c) words[c][x] = bytes[c][x] = pixels[3 * x + c];
   }
 }
 
@@ -249,6 +254,7 @@ void ColorSmoothing::begin(const Rect& box) {
   seen_.resize(width, height);
   for (int c = 0; c < 3; ++c) {
     values_[c].resize(width, height);
+    words_[c].resize(width, height);
     row_means_[c].resize(width, height);
     guide_[c].resize(width, height);
   }
@@ -271,9 +277,13 @@ void ColorSmoothing::split_row(const Mask& origins, const Image<Bgr>& picture, c
     seen[x] = is_seen ? 255 : 0;
   }
   std::uint8_t* channels[3];
-  for (int c = 0; c < 3; ++c) channels[c] = values_[c].row(y + reach) + reach;
+  std::int16_t* words[3];
+  for (int c = 0; c < 3; ++c) {
+    channels[c] = values_[c].row(y + reach) + reach;
+    words[c] = words_[c].row(y + reach) + reach;
+  }
   HWY_DYNAMIC_DISPATCH(SplitChannels)
-  (reinterpret_cast<const std::uint8_t*>(picture.row(box.y + y) + box.x), width, channels);
+  (reinterpret_cast<const std::uint8_t*>(picture.row(box.y + y) + box.x), width, channels, words);
   for (int c = 0; c < 3; ++c) {
     HWY_DYNAMIC_DISPATCH(AverageAlongRow)
     (channels[c], seen, width, row_means_[c].row(y + reach) + reach);
@@ -295,7 +305,7 @@ void ColorSmoothing::smooth_row(const Rect& box, int y, Image<Bgr>& picture) con
   for (int i = 0; i < SmoothedRow::rows; ++i) {
     row.seen[i] = seen_.row(y + i) + reach;
     for (int c = 0; c < 3; ++c) {
-      row.values[c][i] = values_[c].row(y + i) + reach;
+      row.values[c][i] = words_[c].row(y + i) + reach;
       row.guide[c][i] = guide_[c].row(y + i) + reach;
     }
   }

@@ -45,6 +45,7 @@ class ColorSmoothing {
   // Of the box, and `reach` pixels and some more around it.
   Mask seen_;                         ///< 255 or 0
   Image<std::uint8_t> values_[3];     ///< channels
+  Image<std::int16_t> words_[3];      ///< likewise
   Image<std::uint8_t> row_means_[3];  ///< with the neighbours to the left and right
   Image<std::uint8_t> guide_[3];      ///< and above and below
 };

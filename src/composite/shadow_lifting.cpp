@@ -4,29 +4,78 @@
 
 #include "core/rows.h"
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "composite/shadow_lifting.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+// Included once for every instruction set.
+HWY_BEFORE_NAMESPACE();
+namespace diminish::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Floats = hn::CappedTag<float, 16>;
+using Ints = hn::RebindToSigned<Floats>;
+using Bytes = hn::Rebind<std::uint8_t, Floats>;
+
+/// level * 255 / light, rounded. The quotient of two whole numbers of such a size is never so close
+/// below a whole number that a float would reach it.
+HWY_INLINE hn::Vec<Bytes> Lit(hn::Vec<Bytes> level, hn::Vec<Bytes> light) {
+  const auto divisor = hn::PromoteTo(Ints(), light);
+  const auto level_in_full = hn::Mul(hn::PromoteTo(Ints(), level), hn::Set(Ints(), 255));
+  const auto sum = hn::ConvertTo(Floats(), hn::Add(level_in_full, hn::ShiftRight<1>(divisor)));
+  const auto quotient =
+      hn::Div(sum, hn::Max(hn::ConvertTo(Floats(), divisor), hn::Set(Floats(), 1.F)));
+  const auto clamped = hn::Min(quotient, hn::Set(Floats(), 255.F));
+  return hn::DemoteTo(Bytes(), hn::ConvertTo(Ints(), clamped));
+}
+
+void Lift(const std::uint8_t* light, int count, std::uint8_t* levels) {
+  const Bytes d;
+  const auto lanes = static_cast<int>(hn::Lanes(d));
+  int i = 0;
+  for (; i + lanes <= count; i += lanes) {
+    hn::StoreU(Lit(hn::LoadU(d, levels + i), hn::LoadU(d, light + i)), d, levels + i);
+  }
+  if (i == count) return;
+  // The last vector reaches beyond the row.
+  std::uint8_t last_light[16] = {};
+  std::uint8_t last_levels[16] = {};
+  for (int k = 0; k < lanes && i + k < count; ++k) {
+    last_light[k] = light[i + k];
+    last_levels[k] = levels[i + k];
+  }
+  hn::StoreU(Lit(hn::LoadU(d, last_levels), hn::LoadU(d, last_light)), d, last_levels);
+  for (int k = 0; k < lanes && i + k < count; ++k) levels[i + k] = last_levels[k];
+}
+
+}  // namespace
+}  // namespace diminish::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
 namespace diminish {
+
+HWY_EXPORT(Lift);
+
 namespace {
 
 constexpr int fading_px = ShadowLifting::fading_px;
 constexpr Bgr all_light{255, 255, 255};
-constexpr std::uint8_t one = 1;
-
-/// level * 255 / light, rounded. The quotient of two whole numbers of such a size is never so close
-/// below a whole number that a float would reach it.
-std::uint8_t lit(std::uint8_t level, std::uint8_t light) {
-  const auto sum = static_cast<float>(level * 255 + light / 2);
-  return static_cast<std::uint8_t>(std::min(255.F, sum / static_cast<float>(std::max(light, one))));
-}
-
-/// Channel by channel, some at a time: nearly all or none of them have all light.
-void lift_row(const std::uint8_t* light, int count, std::uint8_t* levels) {
+/// Calls visit(first, last) for some channels of a row at a time, unless they all have all light:
+/// nearly all or none of them have.
+template <class Visit>
+void for_each_shaded(const Bgr* row, int width, const Visit& visit) {
   constexpr int step = 48;
+  const auto* const light = reinterpret_cast<const std::uint8_t*>(row);
+  const int count = 3 * width;
   for (int first = 0; first < count; first += step) {
-    const int end = std::min(first + step, count);
+    const int last = std::min(first + step, count);
     std::uint8_t least = 255;
-    for (int i = first; i < end; ++i) least = std::min(least, light[i]);
-    if (least == 255) continue;
-    for (int i = first; i < end; ++i) levels[i] = lit(levels[i], light[i]);
+    for (int i = first; i < last; ++i) least = std::min(least, light[i]);
+    if (least != 255) visit(first, last);
   }
 }
 
@@ -49,9 +98,10 @@ void for_each_within(const std::uint8_t* distances, int begin, int end, const Vi
 Rect shaded_part(const Reconstruction& reconstruction) {
   const Rect& region = reconstruction.region;
   const auto is_shaded = [&](int y) {
-    const Bgr* row = reconstruction.light.row(y) + region.x;
-    return std::any_of(row, row + region.width,
-                       [](const Bgr& light) { return light != all_light; });
+    bool is_any = false;
+    for_each_shaded(reconstruction.light.row(y) + region.x, region.width,
+                    [&](int, int) { is_any = true; });
+    return is_any;
   };
   int top = region.y;
   int bottom = region.bottom();
@@ -86,8 +136,12 @@ void ShadowLifting::lift(const Reconstruction& reconstruction, Image<Bgr>& pictu
   const Rect& region = reconstruction.region;
   for_rows(region.height, [&](Rows rows) {
     for (int y = region.y + rows.first; y < region.y + rows.last; ++y) {
-      lift_row(reinterpret_cast<const std::uint8_t*>(reconstruction.light.row(y) + region.x),
-               3 * region.width, reinterpret_cast<std::uint8_t*>(picture.row(y) + region.x));
+      const Bgr* const light = reconstruction.light.row(y) + region.x;
+      const auto* const lights = reinterpret_cast<const std::uint8_t*>(light);
+      auto* const levels = reinterpret_cast<std::uint8_t*>(picture.row(y) + region.x);
+      for_each_shaded(light, region.width, [&](int first, int last) {
+        HWY_DYNAMIC_DISPATCH(Lift)(lights + first, last - first, levels + first);
+      });
     }
   });
 }
@@ -138,3 +192,4 @@ void ShadowLifting::measure_distances(const Mask& occlusion, const Rect& part) {
 }
 
 }  // namespace diminish
+#endif

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 namespace diminish {
@@ -33,6 +34,36 @@ TEST_F(HalfInShadow, ShadowsAreLifted) {
     }
   }
   EXPECT_EQ(lit(5, 60), picture(5, 60)) << "outside the region";
+}
+
+TEST(ShadowLifting, DividesByTheLightAndRounds) {
+  // All levels by all lights, and a row whose length fits no vector.
+  const Rect all{0, 0, 256 + 3, 256};
+  Reconstruction reconstruction;
+  reconstruction.region = all;
+  reconstruction.light.resize(all.width, all.height, {});
+  Image<Bgr> picture(all.width, all.height);
+  for (int y = 0; y < all.height; ++y) {
+    for (int x = 0; x < all.width; ++x) {
+      const auto level = static_cast<std::uint8_t>(x);
+      const auto light = static_cast<std::uint8_t>(y);
+      picture(x, y) = {level, light, level};
+      reconstruction.light(x, y) = {light, level, 255};
+    }
+  }
+  const Image<Bgr> before = picture;
+  ShadowLifting().lift(reconstruction, picture);
+  const auto lit = [](int level, int light) {
+    return std::min(255, (level * 255 + light / 2) / std::max(light, 1));
+  };
+  for (int y = 0; y < all.height; ++y) {
+    for (int x = 0; x < all.width; ++x) {
+      const Bgr& light = reconstruction.light(x, y);
+      ASSERT_EQ(picture(x, y).b, lit(before(x, y).b, light.b)) << x << ' ' << y;
+      ASSERT_EQ(picture(x, y).g, lit(before(x, y).g, light.g)) << x << ' ' << y;
+      ASSERT_EQ(picture(x, y).r, before(x, y).r) << x << ' ' << y;
+    }
+  }
 }
 
 TEST_F(HalfInShadow, OutsideTheMaskTheCamerasPictureStaysAndNoLineShows) {
