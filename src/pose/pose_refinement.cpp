@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "core/robust.h"
-#include "core/rows.h"
 #include "geometry/rotation.h"
 
 namespace diminish {
@@ -17,6 +16,7 @@ constexpr int small_width = 320;
 constexpr int most_iterations = 10;
 /// Metres and radians: smaller steps move no pixel by a tenth.
 constexpr float last_step = 1e-4F;
+constexpr float nearest_m = 1e-3F;
 constexpr std::size_t fewest_points = 150;
 constexpr std::size_t most_points = 2400;
 
@@ -26,11 +26,6 @@ constexpr float translation_deviation_m = 0.012F;
 constexpr float largest_deviations = 4;
 /// Neighbouring samples' errors are not independent: they count for less than their number.
 constexpr float independent_share = 0.1F;
-
-float brightness(int blue, int green, int red) {
-  return 0.114F * static_cast<float>(blue) + 0.587F * static_cast<float>(green) +
-         0.299F * static_cast<float>(red);
-}
 
 RigidTransform exponential(const Eigen::Matrix<double, 6, 1>& twist) {
   return {rotation_by(twist.tail<3>()), twist.head<3>()};
@@ -44,133 +39,197 @@ PoseRefinement::PoseRefinement(const Intrinsics& color)
       shrinkage_(std::max(1, (color.width + small_width / 2) / small_width)),
       lines_(256) {}
 
-/// Of the square of pixels that makes one, four are enough: they blur as much.
-void PoseRefinement::shrink(const Image<Bgr>& image) {
-  small_.resize(image.width() / shrinkage_, image.height() / shrinkage_);
-  const int apart = shrinkage_ / 2;
-  for_rows(small_.height(), [&](Rows rows) {
-    for (int y = rows.first; y < rows.last; ++y) {
-      const Bgr* upper = image.row(shrinkage_ * y);
-      const Bgr* lower = image.row(shrinkage_ * y + apart);
-      float* to = small_.row(y);
-      for (int x = 0; x < small_.width(); ++x, upper += shrinkage_, lower += shrinkage_) {
-        const int blue = upper[0].b + upper[apart].b + lower[0].b + lower[apart].b;
-        const int green = upper[0].g + upper[apart].g + lower[0].g + lower[apart].g;
-        const int red = upper[0].r + upper[apart].r + lower[0].r + lower[apart].r;
-        to[x] = brightness(blue, green, red) / 4;
-      }
-    }
-  });
-}
-
-/// The brightness around each sample, over about the area of a pixel of the small picture.
+/// The brightness around each sample that may be in the picture, over about the area of a pixel of
+/// the small one.
 void PoseRefinement::collect(const FrameSet& frame, const std::vector<SceneSample>& samples) {
   constexpr int reach = 2;
   const int spacing = shrinkage_ / 2;
   const int rim = reach * spacing;
+  const Rect picture = frame.color.bounds();
   points_.clear();
   const std::size_t step = (samples.size() + most_points - 1) / most_points;
   for (std::size_t i = 0; i < samples.size(); i += step) {
     const SceneSample& sample = samples[i];
+    if (!picture.contains(static_cast<int>(sample.pixel.x()), static_cast<int>(sample.pixel.y()))) {
+      continue;
+    }
     const Image<Bgr>& image = frame.rgbd[sample.source - 1U].color;
     const int u = static_cast<int>(std::lrint(sample.texture.x()));
     const int v = static_cast<int>(std::lrint(sample.texture.y()));
     if (u < rim || v < rim || u >= image.width() - rim || v >= image.height() - rim) continue;
-    float sum = 0;
+    int blue = 0;
+    int green = 0;
+    int red = 0;
     for (int j = -reach; j <= reach; ++j) {
+      const Bgr* const row = image.row(v + j * spacing) + u;
       for (int k = -reach; k <= reach; ++k) {
-        const Bgr& color = image(u + k * spacing, v + j * spacing);
-        sum += brightness(color.b, color.g, color.r);
+        const Bgr& color = row[k * spacing];
+        blue += color.b;
+        green += color.g;
+        red += color.r;
       }
     }
     constexpr float taps = (2 * reach + 1) * (2 * reach + 1);
-    points_.push_back({sample.point_m, sum / taps, sample.source});
+    add(sample.point_m, brightness(blue, green, red) / taps, sample.source);
   }
 }
 
-void PoseRefinement::linearise(const RigidTransform& correction, const Mask& occlusion) {
-  const Eigen::Matrix3f rotation = correction.rotation.cast<float>();
-  const Eigen::Vector3f translation = correction.translation.cast<float>();
-  const auto fx = static_cast<float>(color_.fx);
-  const auto fy = static_cast<float>(color_.fy);
-  const auto shrinkage = static_cast<float>(shrinkage_);
+void PoseRefinement::add(const Eigen::Vector3f& point_m, float brightness, std::uint8_t source) {
+  if (points_.empty() || points_.back().count == lanes || points_.back().source != source) {
+    // What is left over is never seen.
+    Points& points = points_.emplace_back();
+    points.x_m = points.y_m = points.z_m = points.brightness = Lanes::Zero();
+    points.source = source;
+    points.count = 0;
+  }
+  Points& points = points_.back();
+  const int i = points.count++;
+  points.x_m[i] = point_m.x();
+  points.y_m[i] = point_m.y();
+  points.z_m[i] = point_m.z();
+  points.brightness[i] = brightness;
+}
+
+std::size_t PoseRefinement::linearise(const RigidTransform& correction) {
+  const Eigen::Matrix3f r = correction.rotation.cast<float>();
+  const Eigen::Vector3f t = correction.translation.cast<float>();
+  const Projection& lens = projection_;
+  const float scale = 1 / static_cast<float>(shrinkage_);
   // Of the four pixels that make one of the small picture.
   const float center = static_cast<float>(shrinkage_ / 2) / 2;
-  rows_.clear();
-  for (const Point& point : points_) {
-    const Eigen::Vector3f p = rotation * point.point_m + translation;
-    float px = 0;
-    float py = 0;
-    if (!(p.z() > 0) || !projection_.distort(p.x() / p.z(), p.y() / p.z(), px, py)) continue;
-    const float x = (px - center) / shrinkage;
-    const float y = (py - center) / shrinkage;
-    if (!(x >= 1 && y >= 1 && x < static_cast<float>(small_.width() - 2) &&
-          y < static_cast<float>(small_.height() - 2))) {
-      continue;
+  const auto last_column = static_cast<float>(small_.width() - 2);
+  const auto last_row = static_cast<float>(small_.height() - 2);
+  std::size_t count = 0;
+  for (Points& points : points_) {
+    const auto coordinate = [&](int i) {
+      return r(i, 0) * points.x_m + r(i, 1) * points.y_m + r(i, 2) * points.z_m + t[i];
+    };
+    const Lanes px = coordinate(0);
+    const Lanes py = coordinate(1);
+    const Lanes pz = coordinate(2).max(nearest_m);
+    const Lanes inverse_z = 1 / pz;
+    const Lanes x = px * inverse_z;
+    const Lanes y = py * inverse_z;
+    // Projection::distort
+    const Lanes xx = x * x;
+    const Lanes yy = y * y;
+    const Lanes xy = x * y;
+    const Lanes r2 = xx + yy;
+    const Lanes radial = 1 + r2 * (lens.k1 + r2 * (lens.k2 + r2 * lens.k3));
+    const Lanes column =
+        (lens.fx * (x * radial + (2 * lens.p1 * xy + lens.p2 * (r2 + 2 * xx))) + lens.cx - center) *
+        scale;
+    const Lanes row =
+        (lens.fy * (y * radial + (lens.p1 * (r2 + 2 * yy) + 2 * lens.p2 * xy)) + lens.cy - center) *
+        scale;
+    Lanes dx = Lanes::Zero();
+    Lanes dy = Lanes::Zero();
+    points.seen.setZero();
+    points.is_seen.setZero();
+    for (int i = 0; i < points.count; ++i) {
+      if (!(pz[i] > nearest_m && r2[i] < lens.max_radius_squared && column[i] >= 1 && row[i] >= 1 &&
+            column[i] < last_column && row[i] < last_row)) {
+        continue;
+      }
+      ShrunkPicture::Brightness found;
+      if (!small_.look_up(column[i], row[i], found)) continue;
+      points.seen[i] = found.level;
+      points.is_seen[i] = 1;
+      dx[i] = found.dx;
+      dy[i] = found.dy;
+      ++count;
     }
-    const int column = static_cast<int>(x);
-    const int row = static_cast<int>(y);
-    const int left = shrinkage_ * column;
-    const int top = shrinkage_ * row;
-    const int beyond = 2 * shrinkage_ - 1;
-    if ((occlusion(left, top) | occlusion(left + beyond, top) | occlusion(left, top + beyond) |
-         occlusion(left + beyond, top + beyond)) != 0) {
-      continue;
-    }
-    const float u = x - static_cast<float>(column);
-    const float v = y - static_cast<float>(row);
-    const float* upper = small_.row(row) + column;
-    const float* lower = small_.row(row + 1) + column;
-    const float seen =
-        (1 - v) * ((1 - u) * upper[0] + u * upper[1]) + v * ((1 - u) * lower[0] + u * lower[1]);
-    const float du = ((1 - v) * (upper[1] - upper[0]) + v * (lower[1] - lower[0])) / shrinkage;
-    const float dv = ((1 - u) * (lower[0] - upper[0]) + u * (lower[1] - upper[1])) / shrinkage;
     // The lens' distortion hardly changes the derivative.
-    const Eigen::Vector3f by_point(du * fx / p.z(), dv * fy / p.z(),
-                                   -(du * fx * p.x() + dv * fy * p.y()) / (p.z() * p.z()));
-    Row next;
-    next.derivative.head<3>() = by_point;
-    next.derivative.tail<3>() = p.cross(by_point);
-    next.brightness = point.brightness;
-    next.seen = seen;
-    next.source = point.source;
-    rows_.push_back(next);
+    const Lanes u = dx * inverse_z * (scale * lens.fx);
+    const Lanes v = dy * inverse_z * (scale * lens.fy);
+    const Lanes w = -(u * x + v * y);
+    points.derivative = {u, v, w, py * w - pz * v, pz * u - px * w, px * v - py * u};
   }
+  return count;
 }
 
 void PoseRefinement::fit_lines() {
-  struct Sums {
-    double n = 0, x = 0, y = 0, xx = 0, xy = 0;
-  };
-  Sums sums[256];
-  for (const Row& row : rows_) {
-    Sums& sum = sums[row.source];
-    const double weighted = static_cast<double>(row.weight) * static_cast<double>(row.brightness);
-    sum.n += static_cast<double>(row.weight);
-    sum.x += weighted;
-    sum.y += static_cast<double>(row.weight) * static_cast<double>(row.seen);
-    sum.xx += weighted * static_cast<double>(row.brightness);
-    sum.xy += weighted * static_cast<double>(row.seen);
-  }
-  for (std::size_t i = 0; i < lines_.size(); ++i) {
-    const Sums& sum = sums[i];
-    const double determinant = sum.n * sum.xx - sum.x * sum.x;
+  using Sum = Eigen::Array<double, lanes, 1>;
+  for (auto points = points_.begin(); points != points_.end();) {
+    const std::uint8_t source = points->source;
+    Sum n = Sum::Zero();
+    Sum x = Sum::Zero();
+    Sum y = Sum::Zero();
+    Sum xx = Sum::Zero();
+    Sum xy = Sum::Zero();
+    for (; points != points_.end() && points->source == source; ++points) {
+      const Sum weight = points->weight.cast<double>();
+      const Sum brightness = points->brightness.cast<double>();
+      const Sum seen = points->seen.cast<double>();
+      const Sum weighted = weight * brightness;
+      n += weight;
+      x += weighted;
+      y += weight * seen;
+      xx += weighted * brightness;
+      xy += weighted * seen;
+    }
+    const double determinant = n.sum() * xx.sum() - x.sum() * x.sum();
     if (!(determinant > 1)) continue;
-    const double gain = (sum.n * sum.xy - sum.x * sum.y) / determinant;
-    lines_[i] = {static_cast<float>(gain), static_cast<float>((sum.y - gain * sum.x) / sum.n)};
+    const double gain = (n.sum() * xy.sum() - x.sum() * y.sum()) / determinant;
+    lines_[source] = {static_cast<float>(gain),
+                      static_cast<float>((y.sum() - gain * x.sum()) / n.sum())};
   }
 }
 
-float PoseRefinement::weigh() {
-  magnitudes_.clear();
-  for (Row& row : rows_) {
-    const Line& line = lines_[row.source];
-    row.residual = row.seen - line.gain * row.brightness - line.offset;
-    magnitudes_.push_back(std::abs(row.residual));
+void PoseRefinement::find_residuals() {
+  for (Points& points : points_) {
+    const Line& line = lines_[points.source];
+    points.residual = points.is_seen * (points.seen - line.gain * points.brightness - line.offset);
   }
-  const float scale = std::max(1.F, 1.48F * median(magnitudes_));
-  for (Row& row : rows_) row.weight = tukey_weight(std::abs(row.residual), 4.7F * scale);
-  return scale;
+}
+
+float PoseRefinement::find_scale() {
+  magnitudes_.clear();
+  for (const Points& points : points_) {
+    for (int i = 0; i < points.count; ++i) {
+      if (points.is_seen[i] != 0) magnitudes_.push_back(std::abs(points.residual[i]));
+    }
+  }
+  return std::max(1.F, 1.48F * median(magnitudes_));
+}
+
+/// As tukey_weight does.
+void PoseRefinement::weigh(float scale) {
+  const float end = 4.7F * scale;
+  for (Points& points : points_) {
+    const Lanes relative = (points.residual.abs() / end).min(1.F);
+    points.weight = points.is_seen * (1 - relative.square()).square();
+  }
+}
+
+PoseRefinement::Equations PoseRefinement::add_up() const {
+  std::array<Lanes, 21> squares;
+  std::array<Lanes, 6> products;
+  squares.fill(Lanes::Zero());
+  products.fill(Lanes::Zero());
+  Lanes cost = Lanes::Zero();
+  for (const Points& points : points_) {
+    auto square = squares.begin();
+    for (std::size_t i = 0; i < 6; ++i) {
+      const Lanes weighted = points.weight * points.derivative[i];
+      products[i] -= weighted * points.residual;
+      for (std::size_t j = 0; j <= i; ++j) *square++ += weighted * points.derivative[j];
+    }
+    // Of one scale, so that iterations compare (Geman & McClure 1985).
+    constexpr float same_scale = 400;
+    const Lanes squared = points.residual.square();
+    cost += squared / (squared + same_scale);
+  }
+  Equations sums;
+  auto square = squares.begin();
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    sums.products[i] = products[static_cast<std::size_t>(i)].sum();
+    for (Eigen::Index j = 0; j <= i; ++j) {
+      sums.squares(i, j) = sums.squares(j, i) = (square++)->sum();
+    }
+  }
+  sums.cost = cost.sum();
+  return sums;
 }
 
 bool PoseRefinement::refine(const FrameSet& frame, const Mask& occlusion,
@@ -179,7 +238,7 @@ bool PoseRefinement::refine(const FrameSet& frame, const Mask& occlusion,
   const int smallest_side = 8 * shrinkage_;
   if (std::min(frame.color.width(), frame.color.height()) < smallest_side) return false;
   if (samples.size() < fewest_points) return false;
-  shrink(frame.color);
+  small_.begin(frame.color, occlusion, shrinkage_);
   collect(frame, samples);
   std::fill(lines_.begin(), lines_.end(), Line{});
 
@@ -190,35 +249,32 @@ bool PoseRefinement::refine(const FrameSet& frame, const Mask& occlusion,
   Twist total = Twist::Zero();
   float first_cost = 0;
   float cost = 0;
+  float scale = 0;
   for (int iteration = 0;; ++iteration) {
-    linearise(correction, occlusion);
-    if (rows_.size() < fewest_points) return false;
+    const std::size_t seen = linearise(correction);
+    if (seen < fewest_points) return false;
+    if (iteration == 0) {
+      for (Points& points : points_) points.weight = points.is_seen;
+    } else {
+      find_residuals();
+      weigh(scale);
+    }
     // Later on the lines hardly change.
     const int passes = iteration == 0 ? 3 : 1;
-    float scale = 0;
     for (int pass = 0; pass < passes; ++pass) {
-      if (iteration > 0) weigh();
       fit_lines();
-      scale = weigh();
+      find_residuals();
+      scale = find_scale();
+      weigh(scale);
     }
-    Eigen::Matrix<float, 6, 6> squares = Eigen::Matrix<float, 6, 6>::Zero();
-    Twist products = Twist::Zero();
-    cost = 0;
-    for (const Row& row : rows_) {
-      squares += (row.weight * row.derivative) * row.derivative.transpose();
-      products -= (row.weight * row.residual) * row.derivative;
-      // Of one scale, so that iterations compare (Geman & McClure 1985).
-      constexpr float same_scale = 400;
-      const float squared = row.residual * row.residual;
-      cost += squared / (squared + same_scale);
-    }
-    cost /= static_cast<float>(rows_.size());
+    Equations equations = add_up();
+    cost = equations.cost / static_cast<float>(seen);
     if (iteration == 0) first_cost = cost;
     if (iteration == most_iterations) break;
     const Twist held = prior * (scale * scale / independent_share);
-    squares.diagonal() += held;
-    products -= held.cwiseProduct(total);
-    const Twist step = squares.ldlt().solve(products);
+    equations.squares.diagonal() += held;
+    equations.products -= held.cwiseProduct(total);
+    const Twist step = equations.squares.ldlt().solve(equations.products);
     if (step.cwiseAbs().maxCoeff() < last_step) break;
     total += step;
     correction = exponential(step.cast<double>()) * correction;

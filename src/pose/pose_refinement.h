@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <cstdint>
 #include <vector>
 
 #include "diminish/frame_set.h"
@@ -9,6 +11,7 @@
 #include "diminish/poses.h"
 #include "diminish/reconstruction.h"
 #include "geometry/projection.h"
+#include "pose/shrunk_picture.h"
 
 namespace diminish {
 
@@ -24,44 +27,55 @@ class PoseRefinement {
   explicit PoseRefinement(const Intrinsics& color);
 
   /// Moves the reconstruction's samples and object points, and the poses. Returns whether the
-  /// correction was taken: it must explain the picture better, and be small. Cost: an eighth of the
-  /// picture's pixels, and 0.3 us a sample.
+  /// correction was taken: it must explain the picture better, and be small. Cost: about 0.2 us a
+  /// sample that the colour camera sees.
   bool refine(const FrameSet& frame, const Mask& occlusion, Reconstruction& reconstruction,
               Poses& poses);
 
  private:
   using Twist = Eigen::Matrix<float, 6, 1>;
 
-  struct Point {
-    Eigen::Vector3f point_m;
-    float brightness;  ///< what the RGB-D camera saw
+  /// Points that one RGB-D camera sees, worked on together; those after the last have no depth.
+  static constexpr int lanes = 8;
+  using Lanes = Eigen::Array<float, lanes, 1>;
+  struct Points {
+    Lanes x_m, y_m, z_m;  ///< in the colour camera's frame, as measured
+    Lanes brightness;     ///< what the RGB-D camera saw
+    /// What the colour camera sees there, linearised; all 0 where it sees nothing, or an object.
+    Lanes is_seen, seen;
+    std::array<Lanes, 6> derivative;  ///< of `seen`, by the camera's motion
+    Lanes residual, weight;
     std::uint8_t source;
-  };
-  /// A point that the colour camera sees, linearised.
-  struct Row {
-    Twist derivative;  ///< of what the colour camera sees there
-    float brightness = 0, seen = 0, residual = 0, weight = 1;
-    std::uint8_t source = 0;
+    int count;
   };
   struct Line {
     float gain = 1, offset = 0;
   };
+  /// squares * step = products
+  struct Equations {
+    Eigen::Matrix<float, 6, 6> squares;
+    Twist products;
+    float cost;
+  };
 
-  void shrink(const Image<Bgr>& image);
   void collect(const FrameSet& frame, const std::vector<SceneSample>& samples);
-  void linearise(const RigidTransform& correction, const Mask& occlusion);
+  void add(const Eigen::Vector3f& point_m, float brightness, std::uint8_t source);
+  /// Returns how many points the colour camera sees.
+  std::size_t linearise(const RigidTransform& correction);
   /// Gain and offset of each camera, by the weights.
   void fit_lines();
-  /// The residuals and their weights, by the lines; returns their scale.
-  float weigh();
+  void find_residuals();
+  /// Of the residuals.
+  float find_scale();
+  void weigh(float scale);
+  Equations add_up() const;
   void apply(const RigidTransform& correction, Reconstruction& reconstruction, Poses& poses) const;
 
   Intrinsics color_;
   Projection projection_;
   int shrinkage_;
-  Image<float> small_;
-  std::vector<Point> points_;
-  std::vector<Row> rows_;
+  ShrunkPicture small_;
+  std::vector<Points> points_;
   std::vector<float> magnitudes_;
   std::vector<Line> lines_;
 };

@@ -1,0 +1,76 @@
+#include "pose/shrunk_picture.h"
+
+#include <algorithm>
+
+namespace diminish {
+namespace {
+
+constexpr float not_yet = -1;
+constexpr float object = -2;
+
+}  // namespace
+
+void ShrunkPicture::begin(const Image<Bgr>& picture, const Mask& occlusion, int shrinkage) {
+  picture_ = &picture;
+  occlusion_ = &occlusion;
+  shrinkage_ = shrinkage;
+  levels_.resize(picture.width() / shrinkage, picture.height() / shrinkage);
+  levels_.fill(not_yet);
+}
+
+bool ShrunkPicture::look_up(float x, float y, Brightness& found) {
+  const int column = static_cast<int>(x);
+  const int row = static_cast<int>(y);
+  const float* upper = levels_.row(row) + column;
+  const float* lower = levels_.row(row + 1) + column;
+  const auto least = [&] {
+    return std::min(std::min(upper[0], upper[1]), std::min(lower[0], lower[1]));
+  };
+  if (least() < 0) {
+    fill_in(column, row);
+    fill_in(column, row + 1);
+    if (least() < 0) return false;
+  }
+  const float u = x - static_cast<float>(column);
+  const float v = y - static_cast<float>(row);
+  const float above = upper[1] - upper[0];
+  const float below = lower[1] - lower[0];
+  const float left = upper[0] + u * above;
+  found.dy = lower[0] + u * below - left;
+  found.dx = above + v * (below - above);
+  found.level = left + v * found.dy;
+  return true;
+}
+
+void ShrunkPicture::fill_in(int column, int row) {
+  for (int x = column; x < column + 2; ++x) {
+    if (levels_(x, row) == not_yet) levels_(x, row) = shrink(x, row);
+  }
+}
+
+/// Of the square of pixels that makes one, four are enough: they blur as much.
+float ShrunkPicture::shrink(int column, int row) const {
+  const int left = shrinkage_ * column;
+  const int top = shrinkage_ * row;
+  const int right = left + shrinkage_ - 1;
+  const int bottom = top + shrinkage_ - 1;
+  const Mask& occlusion = *occlusion_;
+  if ((occlusion(left, top) | occlusion(right, top) | occlusion(left, bottom) |
+       occlusion(right, bottom)) != 0) {
+    return object;
+  }
+  int blue = 0;
+  int green = 0;
+  int red = 0;
+  for (const int y : {top, top + shrinkage_ / 2}) {
+    for (const int x : {left, left + shrinkage_ / 2}) {
+      const Bgr& color = (*picture_)(x, y);
+      blue += color.b;
+      green += color.g;
+      red += color.r;
+    }
+  }
+  return brightness(blue, green, red) / 4;
+}
+
+}  // namespace diminish
