@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/robust.h"
 
@@ -26,10 +27,10 @@ constexpr float most_shares = 0.75F;
 constexpr float largest_ratio = 1.6F;
 constexpr std::size_t fewest_in_shadow = 12;
 
-Eigen::Matrix<float, 6, 1> terms(const Eigen::Vector2f& p) {
-  Eigen::Matrix<float, 6, 1> result;
-  result << 1, p.x(), p.y(), p.x() * p.x(), p.x() * p.y(), p.y() * p.y();
-  return result;
+constexpr int terms = 6;
+/// Of x^a y^b in Monomials.
+constexpr int place_of(int a, int b) {
+  return (a + b) * (a + b + 1) / 2 + b;
 }
 
 }  // namespace
@@ -42,25 +43,34 @@ void ShadowFit::begin(std::size_t directions) {
 
 void ShadowFit::add(const Eigen::Vector2f& place, const Eigen::Array3f& levels,
                     const std::vector<std::uint8_t>& hidden) {
-  const auto first = static_cast<std::uint32_t>(hidden_.size());
+  Point& point = points_.emplace_back();
+  point.monomials.setZero();
+  float of_x[5] = {1};
+  for (int i = 1; i < 5; ++i) of_x[i] = of_x[i - 1] * place.x();
+  float of_y = 1;
+  for (int b = 0; b < 5; ++b, of_y *= place.y()) {
+    for (int a = 0; a + b < 5; ++a) point.monomials[place_of(a, b)] = of_x[a] * of_y;
+  }
+  point.levels << levels, levels.mean();
+  point.first_hidden = static_cast<std::uint32_t>(hidden_.size());
   hidden_.insert(hidden_.end(), hidden.begin(), hidden.end());
-  points_.push_back(
-      {place, levels, first, static_cast<std::uint32_t>(hidden_.size()), 1.F, 1.F, 1.F});
+  point.last_hidden = static_cast<std::uint32_t>(hidden_.size());
+  point.light = point.field = 1;
 }
 
 bool ShadowFit::fit() {
   if (points_.empty()) return false;
+  sort_by_direction();
   // The field begins as that of the points that nothing can hide.
   for (Point& point : points_) point.weight = point.first_hidden == point.last_hidden ? 1.F : 0.1F;
   for (int pass = 0; pass < passes; ++pass) {
     fit_field(brightness);
     weigh(pass < lenient_passes ? largest_shadow : 0);
-    add_up_squares();
     fit_shares(brightness);
+    find_light();
   }
   if (!explains()) return false;
   for (int c = 0; c < brightness; ++c) {
-    for (Point& point : points_) point.light = 1 - hidden_share(point, brightness);
     fit_field(c);
     fit_shares(c);
   }
@@ -72,27 +82,46 @@ Eigen::Array3f ShadowFit::share(std::size_t direction) const {
   return shares_.row(static_cast<Eigen::Index>(direction)).head<brightness>().transpose().array();
 }
 
-float ShadowFit::hidden_share(const Point& point, int channel) const {
-  float sum = 0;
-  for (std::uint32_t i = point.first_hidden; i < point.last_hidden; ++i) {
-    sum += shares_(hidden_[i], channel);
+void ShadowFit::sort_by_direction() {
+  first_point_.assign(static_cast<std::size_t>(shares_.rows()) + 1, 0);
+  for (const std::uint8_t direction : hidden_) ++first_point_[direction];
+  // Filled from behind: each begins where it will end.
+  std::partial_sum(first_point_.begin(), first_point_.end(), first_point_.begin());
+  hidden_points_.resize(hidden_.size());
+  for (std::size_t p = points_.size(); p-- > 0;) {
+    for (std::uint32_t i = points_[p].first_hidden; i < points_[p].last_hidden; ++i) {
+      hidden_points_[--first_point_[hidden_[i]]] = static_cast<std::uint32_t>(p);
+    }
   }
-  return std::min(sum, 1 - least_light);
 }
 
-/// The light being as it is.
+/// The light being as it is. What the terms' products sum up to are monomials, too: fifteen instead
+/// of thirty-six sums.
 void ShadowFit::fit_field(int channel) {
-  Eigen::Matrix<float, 6, 6> squares = Eigen::Matrix<float, 6, 6>::Identity() * 1e-3F;
-  Terms products = Terms::Zero();
+  Monomials moments = Monomials::Zero();
+  Eigen::Array<float, 8, 1> sums = Eigen::Array<float, 8, 1>::Zero();
   for (const Point& point : points_) {
-    const Terms lit = point.light * terms(point.place);
-    squares += (point.weight * lit) * lit.transpose();
-    products += (point.weight * level(point, channel)) * lit;
+    const float lit = point.weight * point.light;
+    moments += (lit * point.light) * point.monomials;
+    sums += (lit * point.levels[channel]) * point.monomials.head<8>();
   }
-  const Terms solution = squares.ldlt().solve(products);
+  Eigen::Matrix<float, terms, terms> squares;
+  for (int b = 0; b < 3; ++b) {
+    for (int a = 0; a + b < 3; ++a) {
+      for (int d = 0; d < 3; ++d) {
+        for (int c = 0; c + d < 3; ++c) {
+          squares(place_of(a, b), place_of(c, d)) = moments[place_of(a + c, b + d)];
+        }
+      }
+    }
+  }
+  squares.diagonal().array() += 1e-3F;
+  const Eigen::Matrix<float, terms, 1> products = sums.head<terms>();
+  Eigen::Array<float, 8, 1> solution = Eigen::Array<float, 8, 1>::Zero();
+  solution.head<terms>() = squares.ldlt().solve(products).array();
   for (Point& point : points_) {
     constexpr float least_level = 4;
-    point.field = std::max(least_level, solution.dot(terms(point.place)));
+    point.field = std::max(least_level, (solution * point.monomials.head<8>()).sum());
   }
 }
 
@@ -100,7 +129,7 @@ void ShadowFit::fit_field(int channel) {
 void ShadowFit::weigh(float end_in_shadow) {
   residuals_.clear();
   const auto residual = [](const Point& point) {
-    return std::abs(level(point, brightness) / point.field - point.light);
+    return std::abs(point.levels[brightness] / point.field - point.light);
   };
   for (const Point& point : points_) residuals_.push_back(residual(point));
   constexpr float least_scale = 0.02F;
@@ -110,41 +139,70 @@ void ShadowFit::weigh(float end_in_shadow) {
     point.weight =
         tukey_weight(residual(point), may_be_hidden ? std::max(end, end_in_shadow) : end);
   }
+  has_column_.assign(static_cast<std::size_t>(shares_.rows()), 0);
 }
 
-/// The left side of the shares' equations. Directions come in order: half of it is enough.
-void ShadowFit::add_up_squares() {
-  const Eigen::Index count = shares_.rows();
-  squares_.setZero(count, count);
-  for (const Point& point : points_) {
+/// How the others' light and this direction's meet in points. Most directions get no share, and
+/// nobody asks for their columns.
+const float* ShadowFit::column(std::size_t direction) {
+  float* const sums = squares_.col(static_cast<Eigen::Index>(direction)).data();
+  if (has_column_[direction] != 0) return sums;
+  has_column_[direction] = 1;
+  std::fill_n(sums, squares_.rows(), 0.F);
+  for (std::uint32_t k = first_point_[direction]; k < first_point_[direction + 1]; ++k) {
+    const Point& point = points_[hidden_points_[k]];
     for (std::uint32_t i = point.first_hidden; i < point.last_hidden; ++i) {
-      float* column = squares_.data() + count * hidden_[i];
-      for (std::uint32_t j = i; j < point.last_hidden; ++j) column[hidden_[j]] += point.weight;
+      sums[hidden_[i]] += point.weight;
     }
   }
-  squares_.triangularView<Eigen::StrictlyUpper>() = squares_.transpose();
-  squares_.diagonal().array() += ridge;
+  sums[direction] += ridge;
+  return sums;
 }
 
 /// The field being as it is: least squares without negative shares, one after the other.
 void ShadowFit::fit_shares(int channel) {
   const Eigen::Index count = shares_.rows();
-  products_.setZero(count);
+  squares_.resize(count, count);
+  diagonal_.setConstant(count, ridge);
+  gradient_.setZero(count);
   for (const Point& point : points_) {
-    const float darker = point.weight * (1 - level(point, channel) / point.field);
+    const float darker = point.weight * (1 - point.levels[channel] / point.field);
     for (std::uint32_t i = point.first_hidden; i < point.last_hidden; ++i) {
-      products_[hidden_[i]] += darker;
+      diagonal_[hidden_[i]] += point.weight;
+      gradient_[hidden_[i]] += darker;
     }
   }
   auto shares = shares_.col(channel);
   if (channel != brightness) shares = shares_.col(brightness);
+  const auto change_by = [&](Eigen::Index direction, float change) {
+    const float* const by = column(static_cast<std::size_t>(direction));
+    gradient_ -= change * Eigen::Map<const Eigen::ArrayXf>(by, count);
+  };
+  for (Eigen::Index d = 0; d < count; ++d) {
+    if (shares[d] != 0) change_by(d, shares[d]);
+  }
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     for (Eigen::Index d = 0; d < count; ++d) {
-      const float rest = products_[d] - squares_.col(d).dot(shares);
-      shares[d] = std::max(0.F, shares[d] + rest / squares_(d, d) - least_share);
+      const float next = std::max(0.F, shares[d] + gradient_[d] / diagonal_[d] - least_share);
+      const float change = next - shares[d];
+      if (change == 0) continue;
+      change_by(d, change);
+      shares[d] = next;
     }
   }
-  for (Point& point : points_) point.light = 1 - hidden_share(point, channel);
+}
+
+/// By the brightness' shares.
+void ShadowFit::find_light() {
+  for (Point& point : points_) point.light = 1;
+  for (std::size_t d = 0; d < has_column_.size(); ++d) {
+    const float share = shares_(static_cast<Eigen::Index>(d), brightness);
+    if (share == 0) continue;
+    for (std::uint32_t k = first_point_[d]; k < first_point_[d + 1]; ++k) {
+      points_[hidden_points_[k]].light -= share;
+    }
+  }
+  for (Point& point : points_) point.light = std::max(point.light, least_light);
 }
 
 bool ShadowFit::explains() const {
@@ -154,7 +212,7 @@ bool ShadowFit::explains() const {
   for (const Point& point : points_) {
     constexpr float shadow = 0.95F;
     if (point.light > shadow) continue;
-    const float relative = level(point, brightness) / point.field;
+    const float relative = point.levels[brightness] / point.field;
     with += point.weight * (relative - point.light) * (relative - point.light);
     without += point.weight * (relative - 1) * (relative - 1);
     ++in_shadow;

@@ -36,29 +36,33 @@ class ShadowFit {
   Eigen::Array3f share(std::size_t direction) const;
 
  private:
+  static constexpr int brightness = 3;  ///< a fourth channel: the mean of all
+  /// x^a y^b of a place (x, y), up to a + b = 4; those up to 2 first, which the field consists of.
+  using Monomials = Eigen::Array<float, 16, 1>;
   struct Point {
-    Eigen::Vector2f place;
-    Eigen::Array3f levels;
+    Monomials monomials;
+    Eigen::Array4f levels;
     std::uint32_t first_hidden, last_hidden;  ///< in hidden_
     float weight, light, field;
   };
-  using Terms = Eigen::Matrix<float, 6, 1>;
-  static constexpr int brightness = 3;  ///< a fourth channel: the mean of all
 
-  static float level(const Point& point, int channel) {
-    return channel == brightness ? point.levels.mean() : point.levels[channel];
-  }
+  void sort_by_direction();
   void fit_field(int channel);
   void weigh(float end_in_shadow);
-  void add_up_squares();
   void fit_shares(int channel);
-  float hidden_share(const Point& point, int channel) const;
+  const float* column(std::size_t direction);
+  void find_light();
   bool explains() const;
 
   std::vector<Point> points_;
   std::vector<std::uint8_t> hidden_;
+  /// By direction: the points that are hidden from it begin in hidden_points_ at first_point_, and
+  /// end where the next one's begin.
+  std::vector<std::uint32_t> first_point_, hidden_points_;
+  /// The left side of the shares' equations, of those columns that were asked for.
   Eigen::MatrixXf squares_;
-  Eigen::VectorXf products_;
+  std::vector<std::uint8_t> has_column_;
+  Eigen::ArrayXf diagonal_, gradient_;
   Eigen::MatrixXf shares_;  ///< directions by channels
   std::vector<float> residuals_;
 };
