@@ -61,16 +61,17 @@ BackgroundPlane fit(const BackgroundPlane& plane, const PlanePoints& points) {
 /// Points no further from the plane than they may be off by.
 int count_on(const BackgroundPlane& plane, const PlanePoints& points) {
   int count = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const float height_m = plane.height_m(points[i]);
-    count += std::abs(height_m) <= points.tolerance_m[i] ? 1 : 0;
+  const std::size_t size = points.size();
+  for (std::size_t i = 0; i < size; ++i) {
+    count += std::abs(points.height_m(plane, i)) <= points.tolerance_m[i] ? 1 : 0;
   }
   return count;
 }
 int count_behind(const BackgroundPlane& plane, const PlanePoints& points) {
   int count = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    count += plane.height_m(points[i]) < -2 * points.tolerance_m[i] ? 1 : 0;
+  const std::size_t size = points.size();
+  for (std::size_t i = 0; i < size; ++i) {
+    count += points.height_m(plane, i) < -2 * points.tolerance_m[i] ? 1 : 0;
   }
   return count;
 }
@@ -88,10 +89,16 @@ void BackgroundPlanes::find(const Rect& objects, const std::vector<SceneSample>&
 void BackgroundPlanes::label(Reconstruction& reconstruction) const {
   Image<std::uint8_t>& surface = reconstruction.surface;
   surface.resize(reconstruction.source.width(), reconstruction.source.height());
-  const Rect& region = reconstruction.region;
+  const TiledRegion& region = reconstruction.region;
   for_rows(region.height, [&](Rows rows) {
     for (int y = region.y + rows.first; y < region.y + rows.last; ++y) {
-      label_row(y, reconstruction);
+      int begin = region.x;
+      region.for_each_gap(y, [&](int first, int last) {
+        label_run(begin, first, y, reconstruction);
+        std::fill(surface.row(y) + first, surface.row(y) + last, surface_label::unknown);
+        begin = last;
+      });
+      label_run(begin, region.right(), y, reconstruction);
     }
   });
 }
@@ -111,10 +118,10 @@ void BackgroundPlanes::choose_points(const Rect& objects, const std::vector<Scen
 /// The plane that most of the points that are on no plane yet lie on, and hardly any behind
 /// (RANSAC, Fischler & Bolles 1981).
 bool BackgroundPlanes::next_plane(BackgroundPlane& plane) {
-  if (rest_.size() < fewest_points) return false;
   const auto wanted = std::max<std::size_t>(
       fewest_points / 2,
       static_cast<std::size_t>(smallest_support * static_cast<double>(points_.size())));
+  if (rest_.size() < std::max(fewest_points, wanted)) return false;
   Random random;
   const std::size_t stride = std::max<std::size_t>(1, rest_.size() / 500);
   some_.thin(points_, stride);
@@ -143,16 +150,14 @@ bool BackgroundPlanes::next_plane(BackgroundPlane& plane) {
   return plane.distance_m < 0;
 }
 
-void BackgroundPlanes::label_row(int y, Reconstruction& reconstruction) const {
-  const Rect& region = reconstruction.region;
+void BackgroundPlanes::label_run(int first, int last, int y, Reconstruction& reconstruction) const {
   std::array<surface_rows::InverseDepth, most_planes> planes;
-  for (int x = region.x; x < region.right();) {
-    const RayGrid::Segment rays = rays_.segment(x, y, region.right());
-    const Eigen::Vector2f second = rays.first + rays.slope;
+  for (int x = first; x < last;) {
+    const RayGrid::Segment rays = rays_.segment(x, y, last);
     // Along a row the inverse depth of a plane grows linearly.
     for (std::size_t k = 0; k < planes_.size(); ++k) {
-      const float start = planes_[k].inverse_depth(rays.first.x(), rays.first.y());
-      planes[k] = {start, planes_[k].inverse_depth(second.x(), second.y()) - start};
+      planes[k] = {planes_[k].inverse_depth(rays.first.x(), rays.first.y()),
+                   planes_[k].normal.head<2>().dot(rays.slope) / planes_[k].distance_m};
     }
     surface_rows::label(reconstruction.depth_m.row(y) + x, rays.count, planes.data(),
                         static_cast<int>(planes_.size()), tolerance,

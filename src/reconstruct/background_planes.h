@@ -32,6 +32,11 @@ class PlanePoints {
 
   std::size_t size() const { return x_m.size(); }
   Eigen::Vector3f operator[](std::size_t i) const { return {x_m[i], y_m[i], z_m[i]}; }
+  /// In front of the plane.
+  float height_m(const BackgroundPlane& plane, std::size_t i) const {
+    const Eigen::Vector3f& normal = plane.normal;
+    return normal.x() * x_m[i] + normal.y() * y_m[i] + normal.z() * z_m[i] - plane.distance_m;
+  }
   void clear() { keep(0); }
   void add(const Eigen::Vector3f& point_m, float tolerance) {
     x_m.push_back(point_m.x());
@@ -84,7 +89,8 @@ class BackgroundPlanes {
  private:
   void choose_points(const Rect& objects, const std::vector<SceneSample>& samples);
   bool next_plane(BackgroundPlane& plane);
-  void label_row(int y, Reconstruction& reconstruction) const;
+  /// Columns [first, last) of row y.
+  void label_run(int first, int last, int y, Reconstruction& reconstruction) const;
 
   RayGrid rays_;
   PlanePoints points_, rest_, some_, some_of_rest_;

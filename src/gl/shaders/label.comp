@@ -7,6 +7,10 @@ void main() {
   ivec2 place = ivec2(gl_GlobalInvocationID.xy);
   if (place.x >= region.z) return;
   int index = index_of(place);
+  if (!is_kept(region.xy + place)) {
+    surface[index] = SURFACE_UNKNOWN | color_bits << 8;
+    return;
+  }
   float z = uintBitsToFloat(result[index].y);
   vec2 ray = ray_beside(region.xy + place, 0);
   uint own = SURFACE_FOREGROUND;
