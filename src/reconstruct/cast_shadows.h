@@ -40,8 +40,10 @@ class CastShadows {
   };
   static constexpr float cell_m = 0.02F;
   static constexpr int grid_cells = 128;
-  /// Light changes little from pixel to pixel: it is looked up at every so many.
+  /// Light changes little from pixel to pixel: it is looked up at every so many of a row, in every
+  /// so many rows of the picture.
   static constexpr int node_px = 16;
+  static constexpr int node_rows_px = 8;
   /// Where less is taken there is no shadow.
   static constexpr float invisible = 1.F / 256;
   /// What stands on a plane is labelled as the plane up to some height: shadows fade between this
@@ -60,12 +62,17 @@ class CastShadows {
   /// Where they are in the colour camera's picture.
   Rect bounds() const;
   /// Fills `reconstruction.light`: shadows end where something stands on their plane.
-  void shade(Reconstruction& reconstruction) const;
+  void shade(Reconstruction& reconstruction);
 
  private:
   static constexpr std::size_t bits_a_word = 64;
-  /// One for each direction.
-  using DirectionBits = std::array<std::uint64_t, 2>;
+  static constexpr int azimuths = 16;
+  static constexpr std::array<float, 5> elevations_deg = {25, 38, 51, 64, 77};
+  static constexpr std::size_t directions = azimuths * elevations_deg.size();
+  /// A cell's bits, one for each direction, are in two words.
+  static constexpr int words = 2;
+  static_assert(directions <= bits_a_word * words);
+  using ByDirection = Eigen::Array<float, directions, 1>;
 
   struct Blocker {
     Eigen::Vector2f place;
@@ -80,26 +87,31 @@ class CastShadows {
   void choose_lit(const Ground& ground, const std::vector<SceneSample>& samples);
   void find_hidden();
   bool fit();
-  bool is_hidden(int x, int y, std::size_t direction) const {
-    return (hidden_(x, y)[direction / bits_a_word] >> (direction % bits_a_word) & 1U) != 0;
-  }
+  template <class Visit>
+  static void for_each_direction(const std::uint64_t* bits, const Visit& visit);
   void draw_light(Image<Eigen::Array3f>& light);
   static Eigen::Array3f dark_at(const Shadow& cast, const Eigen::Vector2f& ray);
-  void shade_row(const Shadow& cast, int y, Reconstruction& reconstruction) const;
+  void find_nodes(const Rect& region);
+  void shade_row(int y, Reconstruction& reconstruction) const;
 
   Lens lens_;
   RayGrid rays_;
-  std::vector<Eigen::Vector2f> slopes_;  ///< of each direction: metres along the plane a metre up
+  ByDirection slopes_u_, slopes_v_;  ///< metres along the plane a metre up
   std::vector<Blocker> blockers_;
   std::vector<Lit> lit_;
-  /// By cell; the first with a rim of one around the grid.
-  Image<DirectionBits> struck_, struck_in_column_, hidden_;
-  std::vector<std::uint8_t> directions_;
+  std::vector<std::uint32_t> on_plane_;  ///< samples
+  /// Words of cells; the first with a rim around the grid: of one cell, and one more for what is
+  /// beyond.
+  Image<std::uint64_t> struck_, struck_in_column_, hidden_;
+  std::vector<std::uint8_t> hidden_from_;
   ShadowFit fit_;
-  std::vector<Eigen::Array3f> shares_;  ///< by direction
-  Image<Eigen::Array3f> dark_;
+  Image<Eigen::Array4f> dark_;
   std::vector<Shadow> shadows_;  ///< the first shadow_count_ are this frame's
   std::size_t shadow_count_ = 0;
+  Rect nodes_box_;  ///< of the nodes around the region, in nodes from the picture's corner
+  /// By shadow: dark_at, and the height above the plane for each metre of z.
+  std::array<Image<Eigen::Array4f>, BackgroundPlanes::most_planes> nodes_;
+  Mask is_shaded_;  ///< by block of pixels between four nodes
 };
 
 }  // namespace diminish

@@ -9,6 +9,8 @@
 #include <random>
 #include <vector>
 
+#include "reconstruct/background_planes.h"
+
 namespace diminish {
 namespace {
 
@@ -59,43 +61,43 @@ TEST_F(OnRandomRow, LabelsAreThoseOfThePlanesNearby) {
 TEST_F(OnRandomRow, ShadowsFadeWithTheHeightAboveTheirPlane) {
   surface_rows::Shading shading;
   shading.label = 2;
-  shading.plane = {Eigen::Vector3f(0.1F, -0.6F, -0.79F).normalized(), -1.5F};
-  shading.ray = {-0.1F, 0.2F};
-  shading.slope = {0.002F, 0.0001F};
-  shading.dark = {0.6F, 0.3F, 0.1F};
+  const BackgroundPlane plane{Eigen::Vector3f(0.1F, -0.6F, -0.79F).normalized(), -1.5F};
+  const Eigen::Vector2f first_ray(-0.1F, 0.2F);
+  const Eigen::Vector2f slope(0.002F, 0.0001F);
+  shading.first = {0.6F, 0.3F, 0.1F, plane.normal.dot(first_ray.homogeneous())};
+  shading.slope = {-0.01F, 0.005F, 0.002F, plane.normal.head<2>().dot(slope)};
+  shading.distance_m = plane.distance_m;
   shading.fading_height = 0.6F;
-  shading.dark_slope = {-0.01F, 0.005F, 0.002F};
   std::vector<std::uint8_t> labels(depth_m.size());
   for (int i = 0; i < count; ++i) {
     labels[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(random() % 4 == 0 ? 1 : 2);
     // Near the plane, most of them.
     if (depth_m[static_cast<std::size_t>(i)] == 0) continue;
-    const Eigen::Vector2f ray = shading.ray + static_cast<float>(i) * shading.slope;
+    const Eigen::Vector2f ray = first_ray + static_cast<float>(i) * slope;
     depth_m[static_cast<std::size_t>(i)] =
-        1 / shading.plane.inverse_depth(ray.x(), ray.y()) + uniform(-0.02F, 0.06F);
+        1 / plane.inverse_depth(ray.x(), ray.y()) + uniform(-0.02F, 0.06F);
   }
-  const Bgr untouched{9, 8, 7};
-  std::vector<Bgr> light(depth_m.size(), untouched);
-  surface_rows::shade(shading, depth_m.data(), labels.data(), count, light.data());
+  std::vector<Bgr> light(depth_m.size());
+  surface_rows::shade({&shading, 1}, depth_m.data(), labels.data(), count, light.data());
   int faded = 0;
   for (int i = 0; i < count; ++i) {
     const auto at = static_cast<std::size_t>(i);
     if (labels[at] != 2) {
-      EXPECT_EQ(light[at], untouched);
+      EXPECT_EQ(light[at], (Bgr{255, 255, 255}));
       continue;
     }
     const double z = depth_m[at];
     double left = 1;
     if (z > 0) {
       const Eigen::Vector3d point =
-          z * (shading.ray + static_cast<float>(i) * shading.slope).cast<double>().homogeneous();
-      const double height = std::abs(shading.plane.normal.cast<double>().dot(point) + 1.5);
+          z * (first_ray + static_cast<float>(i) * slope).cast<double>().homogeneous();
+      const double height = std::abs(plane.normal.cast<double>().dot(point) + 1.5);
       left = std::clamp(2 - height / (0.6 * (0.008 + 0.004 * z * z)), 0.0, 1.0);
     }
     faded += left < 1 ? 1 : 0;
     const int levels[] = {light[at].b, light[at].g, light[at].r};
     for (int c = 0; c < 3; ++c) {
-      const double dark = left * (shading.dark[c] + i * static_cast<double>(shading.dark_slope[c]));
+      const double dark = left * (shading.first[c] + i * static_cast<double>(shading.slope[c]));
       EXPECT_NEAR(levels[c], 255 - 255 * dark, 0.51) << i;
     }
   }

@@ -30,15 +30,18 @@ void main() {
   uint label = surface[index] & 0xFFu;
   for (uint i = 0u; i < shadow_count; ++i) {
     if (uint(shadows[i].origin.w) != label) continue;
-    // Between nodes of every so many pixels, from where the row's rays begin anew.
     ivec2 pixel = region.xy + place;
-    int begin = max(region.x, pixel.x / RAY_STEP * RAY_STEP);
-    ivec2 first = ivec2(begin + (pixel.x - begin) / LIGHT_NODE_PX * LIGHT_NODE_PX, pixel.y);
-    vec3 left = dark_at(i, ray_beside(first, 0));
-    vec3 right = dark_at(i, ray_beside(first, LIGHT_NODE_PX));
-    vec3 most = max(left, right);
-    if (max(max(most.x, most.y), most.z) < INVISIBLE_SHADOW) continue;
-    vec3 dark = mix(left, right, float(pixel.x - first.x) / float(LIGHT_NODE_PX));
+    ivec2 apart = ivec2(LIGHT_NODE_PX, LIGHT_NODE_ROWS_PX);
+    ivec2 first = pixel / apart * apart;
+    vec2 f = vec2(pixel - first) / vec2(apart);
+    vec3 corners[4];
+    float most = 0.0;
+    for (int k = 0; k < 4; ++k) {
+      corners[k] = dark_at(i, ray_beside(first + ivec2(k & 1, k >> 1) * apart, 0));
+      most = max(most, max(max(corners[k].x, corners[k].y), corners[k].z));
+    }
+    if (most < INVISIBLE_SHADOW) continue;
+    vec3 dark = mix(mix(corners[0], corners[2], f.y), mix(corners[1], corners[3], f.y), f.x);
     float z = uintBitsToFloat(result[index].y);
     if (z > 0.0) {
       vec4 plane = shadows[i].plane;
