@@ -93,14 +93,14 @@ struct Pipeline::Implementation {
     });
   }
 
-  /// Finds the parts of the depth images that will be drawn. Before poses are refined.
-  void find_visible_depths(const FrameSet& frame, const Poses& poses) {
+  /// Finds the parts of the depth images that may be drawn, before poses are refined.
+  void find_visible_depths(const FrameSet& frame, const Poses& poses, const Rect& drawn) {
     oneapi::tbb::parallel_for(std::size_t{0}, rig.rgbd.size(), [&](std::size_t k) {
       if (!frame.rgbd[k].available() || !poses.color_from_depth[k]) {
         return visible_depths[k].clear();
       }
       visible_depths[k].find(frame.rgbd[k].depth, *poses.color_from_depth[k],
-                             grow(region, refinement_margin_px));
+                             grow(drawn, refinement_margin_px));
     });
   }
 
@@ -123,8 +123,8 @@ struct Pipeline::Implementation {
     const Rect whole = rig.color.bounds();
     region.set(options.whole_view ? whole
                                   : intersect(grow(objects, options.surroundings_px), whole));
-    sampler.sample(frame, poses, masks, options.remove_shadows ? whole : region, reconstruction);
-    find_visible_depths(frame, poses);
+    sampler.sample(frame, poses, masks, reconstruction);
+    find_visible_depths(frame, poses, options.remove_shadows ? whole : region);
     const bool finds_surfaces = compositor.uses_surfaces(options);
     backend.begin_frame();
     const bool composes = backend.reach(options) != Reach::reconstruction;

@@ -44,8 +44,7 @@ class PoseRefinementTest : public ::testing::Test {
   }
   bool refine(Poses& poses) {
     Reconstruction reconstruction;
-    SceneSampler(frame.rig).sample(frame.frame, poses, masks, frame.rig.color.bounds(),
-                                   reconstruction);
+    SceneSampler(frame.rig).sample(frame.frame, poses, masks, reconstruction);
     return PoseRefinement(frame.rig.color).refine(frame.frame, masks.color, reconstruction, poses);
   }
 

@@ -17,7 +17,7 @@ class OnAnalyticScene : public ::testing::Test {
  protected:
   OnAnalyticScene() : frame(scene, {eye}) {
     SceneSampler(frame.rig).sample(frame.frame, frame.poses, testing::empty_masks(frame.rig),
-                                   frame.rig.color.bounds(), reconstruction);
+                                   reconstruction);
   }
   AnalyticScene scene;
   AnalyticFrame frame;

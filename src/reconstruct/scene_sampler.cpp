@@ -20,9 +20,6 @@ constexpr float edge = 0.03F;
 
 constexpr int reach = 2;
 
-/// In the picture: more than a step of samples, and what refinement may move.
-constexpr int margin_px = 64;
-
 /// From a sample to the next, in depth pixels.
 int step_of(const Image<std::uint16_t>& depth) {
   const double pixels = static_cast<double>(depth.width()) * depth.height();
@@ -42,26 +39,24 @@ bool on_surface(const Image<std::uint16_t>& depth, int column, int row) {
 
 SceneSampler::SceneSampler(const Rig& rig) {
   for (const RgbdCamera& camera : rig.rgbd) {
-    by_camera_.push_back({DepthMesh(camera, rig.color), {}, {}});
+    by_camera_.push_back({DepthMesh(camera, rig.color), {}});
   }
 }
 
 void SceneSampler::sample(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks,
-                          const Rect& region, Reconstruction& reconstruction) {
+                          Reconstruction& reconstruction) {
   constexpr std::size_t halves = std::tuple_size_v<decltype(Camera::halves)>;
   oneapi::tbb::parallel_for(std::size_t{0}, halves * by_camera_.size(), [&](std::size_t i) {
     const std::size_t k = i / halves;
     Half& half = by_camera_[k].halves[i % halves];
     half.samples.clear();
     half.object_points_m.clear();
-    half.part = {};
     const RgbdFrame& rgbd = frame.rgbd[k];
     if (!rgbd.available() || !poses.color_from_depth[k]) return;
     const View view{rgbd,
                     by_camera_[k].mesh,
                     {rgbd.depth, masks.rgbd_depth[k], masks.rgbd_color[k],
                      FloatTransform(*poses.color_from_depth[k])},
-                    grow(region, margin_px),
                     static_cast<std::uint8_t>(k + 1)};
     const int middle = rgbd.depth.height() / 2;
     sample_rows(view, i % halves == 0 ? Rows{0, middle} : Rows{middle, rgbd.depth.height()}, half);
@@ -70,16 +65,11 @@ void SceneSampler::sample(const FrameSet& frame, const Poses& poses, const Occlu
   std::vector<Eigen::Vector3f>& points = reconstruction.object_points_m;
   samples.clear();
   points.clear();
-  for (std::size_t k = 0; k < by_camera_.size(); ++k) {
-    Camera& camera = by_camera_[k];
-    camera.part = {};
+  for (const Camera& camera : by_camera_) {
     for (const Half& half : camera.halves) {
       samples.insert(samples.end(), half.samples.begin(), half.samples.end());
       points.insert(points.end(), half.object_points_m.begin(), half.object_points_m.end());
-      camera.part = join(camera.part, half.part);
     }
-    const Image<std::uint16_t>& depth = frame.rgbd[k].depth;
-    camera.part = intersect(grow(camera.part, 2 * step_of(depth)), depth.bounds());
   }
 }
 
@@ -100,9 +90,6 @@ void SceneSampler::sample_rows(const View& view, Rows rows, Half& half) {
       SceneSample sample;
       sample.pixel = Eigen::Vector2f(static_cast<float>(vertex.x), static_cast<float>(vertex.y)) /
                      sdct::subpixels;
-      if (view.around.contains(vertex.x / sdct::subpixels, vertex.y / sdct::subpixels)) {
-        extend(half.part, column, row);
-      }
       if (!on_surface(depth, column, row)) continue;
       const int u = static_cast<int>(std::lrint(vertex.u));
       const int v = static_cast<int>(std::lrint(vertex.v));

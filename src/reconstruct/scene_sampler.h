@@ -20,31 +20,24 @@ class SceneSampler {
  public:
   explicit SceneSampler(const Rig& rig);
 
-  /// masks: grown already. region: of the colour camera's picture, to be drawn later. `samples` is
-  /// sorted by `source`. Cost: about 0.1 us a sample.
+  /// masks: grown already. `samples` is sorted by `source`. Cost: about 0.1 us a sample.
   void sample(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks,
-              const Rect& region, Reconstruction& reconstruction);
-
-  /// The part of an RGB-D camera's depth image that shows the region, generously.
-  const Rect& part(std::size_t camera) const { return by_camera_[camera].part; }
+              Reconstruction& reconstruction);
 
  private:
   /// What some rows of a depth image show.
   struct Half {
     std::vector<SceneSample> samples;
     std::vector<Eigen::Vector3f> object_points_m;
-    Rect part;
   };
   struct Camera {
     DepthMesh mesh;
     std::array<Half, 2> halves;
-    Rect part;
   };
   struct View {
     const RgbdFrame& images;
     const DepthMesh& mesh;
     DepthMesh::Frame frame;
-    Rect around;  ///< the region, generously
     std::uint8_t source;
   };
   static void sample_rows(const View& view, Rows rows, Half& half);
