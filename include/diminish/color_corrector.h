@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <vector>
 
 #include "diminish/image.h"
 #include "diminish/reconstruction.h"
@@ -17,6 +18,11 @@ class ColorCorrector {
   using Factory = std::function<std::unique_ptr<ColorCorrector>()>;
 
   virtual ~ColorCorrector() = default;
+
+  /// Does what needs no drawn scene, while that is drawn; called before `correct` with the same
+  /// frame. samples: Reconstruction::samples.
+  virtual void prepare(const Image<Bgr>& /*camera*/, const Mask& /*occlusion*/,
+                       const std::vector<SceneSample>& /*samples*/) {}
 
   /// camera: the colour camera's image. occlusion: the objects' mask in it; `camera` shows the
   /// object there and must not be used. reconstruction: drawn in `reconstruction.region`.

@@ -221,10 +221,16 @@ struct TwoLooks {
       }
     }
   }
+  Image<Bgr> corrected(const char* method) const {
+    Image<Bgr> picture = camera;
+    const auto corrector = Registry<ColorCorrector>::get(method)();
+    corrector->prepare(camera, occlusion, reconstruction.samples);
+    corrector->correct(camera, occlusion, reconstruction, picture);
+    return picture;
+  }
   /// Levels, inside the mask.
   double worst_error(const char* method) const {
-    Image<Bgr> picture = camera;
-    Registry<ColorCorrector>::get(method)()->correct(camera, occlusion, reconstruction, picture);
+    const Image<Bgr> picture = corrected(method);
     double worst = 0;
     for (int y = 0; y < 300; ++y) {
       for (int x = 0; x < 400; ++x) {
@@ -254,9 +260,7 @@ TEST(MappedCorrection, IsNotDrawnAlongByTheRim) {
     for (int y = 201; y < 220; ++y) looks.camera(x, y) = {10, 12, 14};
   }
   EXPECT_LE(looks.worst_error("field_membrane"), 250) << "outside the mask the shadow stays";
-  Image<Bgr> picture = looks.camera;
-  Registry<ColorCorrector>::get("field_membrane")()->correct(looks.camera, looks.occlusion,
-                                                             looks.reconstruction, picture);
+  const Image<Bgr> picture = looks.corrected("field_membrane");
   for (int x = 130; x < 270; ++x) {
     const Bgr exact = TwoLooks::color(x, 195);
     EXPECT_NEAR(picture(x, 195).g, exact.g, 3) << x;

@@ -104,6 +104,11 @@ void on_gpu_or_processor(const std::string& name,
 
 }  // namespace
 
+void Compositor::prepare(const Image<Bgr>& camera, const Mask& occlusion, const Options& options,
+                         const std::vector<SceneSample>& samples) {
+  corrector(without_gpu_prefix(options.color_correct)).prepare(camera, occlusion, samples);
+}
+
 void Compositor::composite(const Image<Bgr>& camera, const Mask& occlusion, const Rect& objects,
                            const Options& options, DiminishedFrame& result) {
   StageTimes& milliseconds = result.report.milliseconds;

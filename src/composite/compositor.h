@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "composite/color_smoothing.h"
 #include "composite/shadow_lifting.h"
@@ -18,6 +19,11 @@ namespace diminish {
 /// Puts the reconstruction where the objects are (Meerits & Saito 2015, section 3.4).
 class Compositor {
  public:
+  /// What can be done before the scene is drawn; to be called before `composite` with the same
+  /// frame.
+  void prepare(const Image<Bgr>& camera, const Mask& occlusion, const Options& options,
+               const std::vector<SceneSample>& samples);
+
   /// result.reconstruction has been drawn. Fills picture, mask, provenance, the pixel counts and
   /// the times of the stages. Outside the mask the picture is `camera`, bit for bit; inside, pixels
   /// that were reconstructed are colour-corrected, and the others are inpainted.

@@ -15,9 +15,13 @@ class MappedCorrection : public ColorCorrector {
  public:
   explicit MappedCorrection(const MappedMethod& method) : method_(method) {}
 
+  void prepare(const Image<Bgr>& camera, const Mask& occlusion,
+               const std::vector<SceneSample>& samples) override {
+    maps_.fit(camera, occlusion, samples, method_.model);
+  }
+
   void correct(const Image<Bgr>& camera, const Mask& occlusion,
                const Reconstruction& reconstruction, Image<Bgr>& picture) override {
-    maps_.fit(camera, occlusion, reconstruction.samples, method_.model);
     const Rect& region = reconstruction.region;
     membrane_.begin(region);
     if (method_.with_membrane) fit_membrane(camera, occlusion, reconstruction);

@@ -26,6 +26,7 @@ class Composition : public ::testing::Test, protected testing::DiminishedWall {
     } else {
       made.light.resize(0, 0);
     }
+    compositor.prepare(frame.frame.color, masks.color, options, made.samples);
     compositor.composite(frame.frame.color, masks.color, bounding_box(masks.color), options,
                          expected);
   }

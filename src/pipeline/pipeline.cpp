@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/parallel_invoke.h>
-#include <oneapi/tbb/task_group.h>
 
 #include <vector>
 
@@ -129,17 +128,20 @@ struct Pipeline::Implementation {
     backend.begin_frame();
     const bool composes = backend.reach(options) != Reach::reconstruction;
     cast_shadows.clear();
-    const auto find_surfaces = [&] {
-      if (finds_surfaces) find_background(objects, reconstruction);
+    const auto prepare_colors = [&] {
+      compositor.prepare(frame.color, masks.color, options, reconstruction.samples);
     };
-    const bool surfaces_first = composes || options.remove_shadows;  // what is drawn needs them
     oneapi::tbb::parallel_invoke(
         [&] {
           if (options.refine_poses) {
             pose_refinement.refine(frame, masks.color, reconstruction, poses);
           }
-          if (surfaces_first) find_surfaces();
-          if (composes) fit_color_maps(frame.color, reconstruction);
+          if (finds_surfaces) find_background(objects, reconstruction);
+          if (composes) {
+            fit_color_maps(frame.color, reconstruction);
+          } else {
+            prepare_colors();
+          }
         },
         [&] { clean_depths(frame); });
     if (options.remove_shadows) {
@@ -154,12 +156,10 @@ struct Pipeline::Implementation {
            color_maps.by_source(), wants_reconstruction, texture.output()},
           result);
       if (reach != Reach::reconstruction) return reach;
+      prepare_colors();
     }
-    oneapi::tbb::task_group beside;
-    if (!surfaces_first) beside.run(find_surfaces);
     backend.reconstruct(frame, depths, poses, masks, region, options, reconstruction,
                         result.report.drawing);
-    beside.wait();
     if (finds_surfaces) {
       background_planes.label(reconstruction);
     } else {
