@@ -25,7 +25,9 @@ Mask make_pipes(int percent) {
   return mask;
 }
 
-void harmonic_beside_telea(benchmark::State& state, const Image<Bgr>& truth, const Mask& missing) {
+/// exact_psnr: of the exact harmonic filling.
+void beside_telea(benchmark::State& state, const char* method, const Image<Bgr>& truth,
+                  const Mask& missing) {
   Image<Bgr> picture = truth;
   picture.fill({});
   for (int y = 0; y < truth.height(); ++y) {
@@ -36,7 +38,7 @@ void harmonic_beside_telea(benchmark::State& state, const Image<Bgr>& truth, con
   Image<Bgr> ours = picture;
   Image<Bgr> exact = picture;
   Image<Bgr> teleas;
-  const auto inpainter = Registry<Inpainter>::get("harmonic")();
+  const auto inpainter = Registry<Inpainter>::get(method)();
   const Options options;
   cv::Mat filled;
   run_beside_peer(
@@ -58,7 +60,7 @@ void harmonic_in_pipes(benchmark::State& state) {
   cv::Mat picture = as_mat(truth);
   cv::RNG(3).fill(picture, cv::RNG::UNIFORM, 0, 256);
   cv::GaussianBlur(picture, picture, {}, 6);
-  harmonic_beside_telea(state, truth, make_pipes(static_cast<int>(state.range(0))));
+  beside_telea(state, "harmonic", truth, make_pipes(static_cast<int>(state.range(0))));
 }
 BENCHMARK(harmonic_in_pipes)
     ->ArgName("percent_missing")
@@ -68,7 +70,8 @@ BENCHMARK(harmonic_in_pipes)
     ->Unit(benchmark::kMillisecond);
 
 /// DIMINISH_STAGE_DATA may name a folder with photographs photo_*.png and holes hole_*.png.
-void harmonic_in_photograph(benchmark::State& state, const char* photo, const char* hole) {
+void in_photograph(benchmark::State& state, const char* method, const char* photo,
+                   const char* hole) {
   const char* folder = std::getenv("DIMINISH_STAGE_DATA");
   const auto path = [&](const std::string& name) {
     return std::string(folder ? folder : "") + "/" + name + ".png";
@@ -83,18 +86,21 @@ void harmonic_in_photograph(benchmark::State& state, const char* photo, const ch
   copy_from(picture, truth);
   Mask missing;
   copy_from(mask, missing);
-  harmonic_beside_telea(state, truth, missing);
+  beside_telea(state, method, truth, missing);
 }
-#define DIMINISH_PHOTOGRAPH_BENCHMARK(photo, hole)                         \
-  BENCHMARK_CAPTURE(harmonic_in_photograph, photo##_##hole, #photo, #hole) \
-      ->UseManualTime()                                                    \
+#define DIMINISH_PHOTOGRAPH_BENCHMARK(method, photo, hole)                            \
+  BENCHMARK_CAPTURE(in_photograph, method##_##photo##_##hole, #method, #photo, #hole) \
+      ->UseManualTime()                                                               \
       ->Unit(benchmark::kMillisecond)
-DIMINISH_PHOTOGRAPH_BENCHMARK(aloe, pipes3);
-DIMINISH_PHOTOGRAPH_BENCHMARK(garden, pipes3);
-DIMINISH_PHOTOGRAPH_BENCHMARK(wood, pipes3);
-DIMINISH_PHOTOGRAPH_BENCHMARK(building, pipes3);
-DIMINISH_PHOTOGRAPH_BENCHMARK(aloe, pipes8);
-DIMINISH_PHOTOGRAPH_BENCHMARK(aloe, blob200);
+#define DIMINISH_PHOTOGRAPH_BENCHMARKS(method)             \
+  DIMINISH_PHOTOGRAPH_BENCHMARK(method, aloe, pipes3);     \
+  DIMINISH_PHOTOGRAPH_BENCHMARK(method, garden, pipes3);   \
+  DIMINISH_PHOTOGRAPH_BENCHMARK(method, wood, pipes3);     \
+  DIMINISH_PHOTOGRAPH_BENCHMARK(method, building, pipes3); \
+  DIMINISH_PHOTOGRAPH_BENCHMARK(method, aloe, pipes8);     \
+  DIMINISH_PHOTOGRAPH_BENCHMARK(method, aloe, blob200)
+DIMINISH_PHOTOGRAPH_BENCHMARKS(harmonic);
+DIMINISH_PHOTOGRAPH_BENCHMARKS(surfaces);
 
 }  // namespace
 }  // namespace diminish

@@ -9,6 +9,7 @@
 #include "composite/smooth_filling.h"
 #include "composite/surface_rules.h"
 #include "core/channels.h"
+#include "core/rows.h"
 #include "detect/connected_regions.h"
 #include "diminish/inpainter.h"
 
@@ -177,25 +178,31 @@ class SurfaceInpainting : public Inpainter {
     return own.sum() < surface_rules::shadow * around.sum() ? around : own;
   }
 
+  /// By value, so that the loop is vectorised.
+  static void find_kinds(const state::Code* states, int width, state::Code label, state::Code open,
+                         state::Code known_bits, SmoothFilling::Kind* kinds) {
+    for (int x = 0; x < width; ++x) {
+      const bool is_known = (states[x] & known_bits) == label;
+      kinds[x] = static_cast<SmoothFilling::Kind>((is_known ? SmoothFilling::known : 0) |
+                                                  (states[x] == open ? SmoothFilling::open : 0));
+    }
+  }
+
   /// Fills the open pixels with this label. Returns false if nothing is known beside them.
   bool fill(Label label, const Holes& holes, Image<Bgr>& picture) {
     const Rect& box = boxes_[label];
     if (box.empty()) return true;
     SmoothFilling& filling = fillings_[label];
     Image<SmoothFilling::Kind>& kinds = filling.begin(box);
-    for (int y = 0; y < kinds.height(); ++y) {
-      const state::Code* const states = state_row(box.y - 1 + y) + box.x - 1;
-      SmoothFilling::Kind* const row = kinds.row(y);
-      const state::Code open = state::open | label;
-      const state::Code known_bits =
-          label == surface_label::unknown ? state::open : static_cast<state::Code>(0xFF);
-      const int width = kinds.width();
-      for (int x = 0; x < width; ++x) {
-        const bool is_known = (states[x] & known_bits) == label;
-        row[x] = static_cast<SmoothFilling::Kind>((is_known ? SmoothFilling::known : 0) |
-                                                  (states[x] == open ? SmoothFilling::open : 0));
+    const state::Code open = state::open | label;
+    const state::Code known_bits =
+        label == surface_label::unknown ? state::open : static_cast<state::Code>(0xFF);
+    for_rows(kinds.height(), [&](Rows rows) {
+      for (int y = rows.first; y < rows.last; ++y) {
+        find_kinds(state_row(box.y - 1 + y) + box.x - 1, kinds.width(), label, open, known_bits,
+                   kinds.row(y));
       }
-    }
+    });
     if (!filling.connect([&](int x, int y) { return color_of(x, y, holes, picture); })) {
       return false;
     }
