@@ -182,7 +182,7 @@ void EdgeSnapping::mark_gaps(const DepthPart& part, const Rect& within, int y, b
   const std::ptrdiff_t step = downwards ? depth_.width() : 1;
   const int rows_below = std::min(most_steps, within.bottom() - 1 - y);
   // Most pieces are one surface.
-  scratch.has_jump.assign(static_cast<std::size_t>(count / piece + 1), 1);
+  scratch.has_jump.assign(static_cast<std::size_t>(count / piece) + 1, 1);
   depth_rows::find_jumps(depth, downwards ? count : count - most_steps, step,
                          downwards ? rows_below : most_steps, closer_than_gap_,
                          scratch.has_jump.data());

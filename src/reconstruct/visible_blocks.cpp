@@ -112,7 +112,7 @@ void VisibleBlocks::find(const Image<std::uint16_t>& depth, const RigidTransform
           nearest = std::min(nearest, depths.nearest[x]);
           farthest = std::max(farthest, depths.farthest[x]);
         }
-        const auto block = static_cast<std::size_t>(row * columns_ + column);
+        const auto block = index(column, row);
         visible_[block] =
             farthest > 0 && is_visible(rays_[block], {static_cast<float>(nearest) * unit_m_,
                                                       static_cast<float>(farthest) * unit_m_})
@@ -176,7 +176,7 @@ void VisibleBlocks::find_part() {
     DepthPart::Columns columns{columns_, 0};
     if (row < 0 || row >= rows_) return columns;
     for (int column = 0; column < columns_; ++column) {
-      if (visible_[static_cast<std::size_t>(row * columns_ + column)] == 0) continue;
+      if (visible_[index(column, row)] == 0) continue;
       columns.first = std::min(columns.first, column - 1);
       columns.last = column + 2;
     }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -26,7 +27,7 @@ class VisibleBlocks {
   void clear();
 
   /// Of each block along a row of pixels, whether it may be seen.
-  const std::uint8_t* row(int y) const { return visible_.data() + y / height * columns_; }
+  const std::uint8_t* row(int y) const { return visible_.data() + index(0, y / height); }
   /// From the first to the last visible block of each row, and a block more on all sides.
   const DepthPart& part() const { return part_; }
 
@@ -50,6 +51,10 @@ class VisibleBlocks {
   void find_sides(const RigidTransform& color_from_depth, const Rect& region);
   bool is_visible(const Rays& rays, const Range& depth_m) const;
   void find_part();
+  std::size_t index(int column, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+           static_cast<std::size_t>(column);
+  }
 
   Lens color_;
   float unit_m_;
