@@ -14,6 +14,15 @@ namespace diminish::membrane {
 /// The key of a pixel with a given value (Dirichlet).
 inline constexpr std::uint8_t fixed_value_key = 255;
 
+/// Every second bit, beginning with the lowest, moved together.
+inline std::uint32_t even_bits(std::uint32_t bits) {
+  bits &= 0x55555555U;
+  bits = (bits | bits >> 1) & 0x33333333U;
+  bits = (bits | bits >> 2) & 0x0F0F0F0FU;
+  bits = (bits | bits >> 4) & 0x00FF00FFU;
+  return (bits | bits >> 8) & 0xFFFFU;
+}
+
 /// Sorts the keys of a row, 32 pixels a word: into cells (neither 0 nor fixed), fixed pixels beside
 /// a cell, and those cells that are irregular, i.e. have a neighbour of another key.
 /// keys: the row's first; the rows above and below and a key on both sides must be readable.

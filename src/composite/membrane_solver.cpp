@@ -209,14 +209,8 @@ void MembraneSolver::build() {
 }
 
 void MembraneSolver::coarsen_blocks(const MembraneLevel& fine, MembraneLevel& coarse) const {
-  // A bit for each pair of bits, from the lowest on.
-  const auto pairs = [](std::uint32_t bits) {
-    bits = (bits | bits >> 1) & 0x55555555U;
-    bits = (bits | bits >> 1) & 0x33333333U;
-    bits = (bits | bits >> 2) & 0x0F0F0F0FU;
-    bits = (bits | bits >> 4) & 0x00FF00FFU;
-    return (bits | bits >> 8) & 0xFFFFU;
-  };
+  // A bit for each pair of bits.
+  const auto pairs = [](std::uint32_t bits) { return membrane::even_bits(bits | bits >> 1); };
   const auto fine_block = [&](int y, int column) {
     return y < fine.rows() && column < fine.tile_columns ? fine.block(y, column) : Block::empty;
   };

@@ -57,15 +57,6 @@ void ClassifyRow(const std::uint8_t* keys, std::ptrdiff_t keys_per_row, int word
   }
 }
 
-/// Every second bit, beginning with the lowest, moved together.
-HWY_INLINE unsigned EvenBits(std::uint32_t bits) {
-  bits &= 0x55555555U;
-  bits = (bits | (bits >> 1)) & 0x33333333U;
-  bits = (bits | (bits >> 2)) & 0x0F0F0F0FU;
-  bits = (bits | (bits >> 4)) & 0x00FF00FFU;
-  return (bits | (bits >> 8)) & 0xFFFFU;
-}
-
 /// The lanes whose bits are set, from bit i on.
 HWY_INLINE Mask LoadBits(unsigned bits, std::ptrdiff_t i) {
   alignas(8) std::uint8_t bytes[8] = {};
@@ -77,7 +68,7 @@ HWY_INLINE Mask LoadBits(unsigned bits, std::ptrdiff_t i) {
 /// `value` where the bit is set, else 0; even and odd cells apart.
 HWY_INLINE void StoreBits(std::uint32_t bits, float value, float* even, std::ptrdiff_t pitch) {
   for (int parity = 0; parity < 2; ++parity) {
-    const unsigned half = EvenBits(bits >> parity);
+    const unsigned half = even_bits(bits >> parity);
     for (std::ptrdiff_t i = 0; i < lanes; i += VectorSize()) {
       Store(hn::IfThenElseZero(LoadBits(half, i), Set(value)), even + parity * pitch + i);
     }
