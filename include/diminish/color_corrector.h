@@ -19,8 +19,8 @@ class ColorCorrector {
 
   virtual ~ColorCorrector() = default;
 
-  /// Does what needs no drawn scene, while that is drawn; called before `correct` with the same
-  /// frame. samples: Reconstruction::samples.
+  /// Does what needs no drawn scene; called before `correct` with the same frame, while other
+  /// threads get ready to draw. samples: Reconstruction::samples.
   virtual void prepare(const Image<Bgr>& /*camera*/, const Mask& /*occlusion*/,
                        const std::vector<SceneSample>& /*samples*/) {}
 

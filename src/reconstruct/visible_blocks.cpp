@@ -51,7 +51,7 @@ namespace {
 
 HWY_EXPORT(FindDepths);
 
-/// For what rounding vertices may move, and between the points at which sides are undistorted.
+/// For what rounding vertices may move, and between the points that are undistorted.
 constexpr int margin_px = 4;
 constexpr int points_of_side = 16;
 
@@ -72,19 +72,24 @@ VisibleBlocks::VisibleBlocks(const RgbdCamera& camera, const Intrinsics& color)
       image_height_(camera.depth.height),
       columns_((image_width_ + width - 1) / width),
       rows_((image_height_ + height - 1) / height) {
-  const Image<Eigen::Vector2f> rays = Lens(camera.depth).rays();
+  const Lens lens(camera.depth);
   for (int row = 0; row < rows_; ++row) {
     for (int column = 0; column < columns_; ++column) {
-      const Rect pixels = with_neighbours(column, row, rays.bounds());
-      Eigen::Array2f least = rays(pixels.x, pixels.y);
-      Eigen::Array2f greatest = least;
-      for (int y = pixels.y; y < pixels.bottom(); ++y) {
-        for (int x = pixels.x; x < pixels.right(); ++x) {
-          least = least.min(rays(x, y).array());
-          greatest = greatest.max(rays(x, y).array());
+      // A block is small: its other rays hardly lie beyond these, by less than the margin.
+      const Rect pixels = with_neighbours(column, row, camera.depth.bounds());
+      Eigen::Array2d least = lens.undistort({pixels.x, pixels.y});
+      Eigen::Array2d greatest = least;
+      for (const int y : {pixels.y, pixels.y + pixels.height / 2, pixels.bottom() - 1}) {
+        for (const int x : {pixels.x, pixels.x + pixels.width / 2, pixels.right() - 1}) {
+          const Eigen::Array2d ray = lens.undistort({x, y});
+          least = least.min(ray);
+          greatest = greatest.max(ray);
         }
       }
-      rays_.push_back({{least.x(), greatest.x()}, {least.y(), greatest.y()}});
+      const auto range = [&](int axis) {
+        return Range{static_cast<float>(least[axis]), static_cast<float>(greatest[axis])};
+      };
+      rays_.push_back({range(0), range(1)});
     }
   }
   visible_.resize(rays_.size());
