@@ -11,6 +11,7 @@
 #include "core/mat.h"
 #include "diminish/marker_detector.h"
 #include "diminish/rig.h"
+#include "paths.h"
 
 namespace diminish {
 namespace {
@@ -104,7 +105,7 @@ void beside_opencv(benchmark::State& state, const std::vector<Picture>& pictures
 
 /// The calendar's pictures, in turn: one camera's share of a frame. There is no truth here.
 void markers_of_a_frame(benchmark::State& state) {
-  const fs::path folder = fs::path(DIMINISH_RECORDINGS_DIR) / "calendar";
+  const fs::path folder = fs::path(testing::recordings_dir()) / "calendar";
   std::vector<Picture> pictures(2);
   copy_from(cv::imread((folder / "color/000000.jpg").string()), pictures[0].image);
   copy_from(cv::imread((folder / "rgbd0/color/000000.jpg").string()), pictures[1].image);

@@ -6,6 +6,7 @@
 #include "core/mat.h"
 #include "diminish/frame_source.h"
 #include "diminish/pipeline.h"
+#include "paths.h"
 
 namespace diminish {
 namespace {
@@ -27,7 +28,8 @@ void scale(double factor, Intrinsics& intrinsics, Image<Bgr>& image) {
 /// Whole frames of a bundled recording with colour pictures of another size (the first argument,
 /// in percent) and with its RGB-D camera several times (the second).
 void scaling(benchmark::State& state) {
-  Recording recording = load_recording(std::filesystem::path(DIMINISH_RECORDINGS_DIR) / "calendar");
+  Recording recording =
+      load_recording(std::filesystem::path(testing::recordings_dir()) / "calendar");
   FrameSet frame;
   open_recording(recording, {})->next(frame);
   Rig& rig = recording.rig;

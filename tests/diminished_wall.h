@@ -5,8 +5,8 @@
 #include "core/mat.h"
 #include "diminish/diminished_frame.h"
 #include "lit_wall.h"
-#include "reconstruct/cast_shadows.h"
 #include "reconstruct/clear_outside.h"
+#include "scene/cast_shadows.h"
 
 namespace diminish::testing {
 

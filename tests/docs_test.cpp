@@ -10,12 +10,13 @@
 #include "diminish/color_corrector.h"
 #include "diminish/inpainter.h"
 #include "diminish/options.h"
+#include "paths.h"
 
 namespace diminish {
 namespace {
 
 std::string command_line_docs() {
-  return read_text_file(std::filesystem::path(DIMINISH_DOCS_DIR) / "command-line.md", 1 << 20);
+  return read_text_file(std::filesystem::path(testing::docs_dir()) / "command-line.md", 1 << 20);
 }
 
 // The options are described once, in options.h; the docs must say the same.
@@ -34,17 +35,17 @@ TEST(CommandLineDocs, DescribeEveryOptionAsTheCodeDoes) {
     }
     const std::string row = fmt::format("| `--{}` |{}| {} | {} |", flag,
                                         unit.empty() ? " " : " " + unit + " ", text, info.help);
-    EXPECT_THAT(docs, testing::HasSubstr(row));
+    EXPECT_THAT(docs, ::testing::HasSubstr(row));
   });
 }
 
 TEST(CommandLineDocs, NameEveryMethod) {
   const std::string docs = command_line_docs();
   for (const std::string& name : Registry<ColorCorrector>::names()) {
-    EXPECT_THAT(docs, testing::HasSubstr("`" + name + "`"));
+    EXPECT_THAT(docs, ::testing::HasSubstr("`" + name + "`"));
   }
   for (const std::string& name : Registry<Inpainter>::names()) {
-    EXPECT_THAT(docs, testing::HasSubstr("`" + name + "`"));
+    EXPECT_THAT(docs, ::testing::HasSubstr("`" + name + "`"));
   }
 }
 

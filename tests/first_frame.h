@@ -6,13 +6,14 @@
 #include "analytic_scene.h"
 #include "diminish/frame_source.h"
 #include "diminish/pipeline.h"
+#include "paths.h"
 
 namespace diminish::testing {
 
 /// A bundled recording's first frame and what the pipeline makes of it.
 struct FirstFrame {
   explicit FirstFrame(const std::string& name)
-      : recording(load_recording(std::filesystem::path(DIMINISH_RECORDINGS_DIR) / name)) {
+      : recording(load_recording(std::filesystem::path(testing::recordings_dir()) / name)) {
     open_recording(recording, options)->next(frame);
     Pipeline(recording.rig, recording.scene, options).process(frame, result);
     depths = depths_of(frame);

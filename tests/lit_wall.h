@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "analytic_scene.h"
-#include "reconstruct/background_planes.h"
+#include "scene/background_planes.h"
 
 namespace diminish::testing {
 

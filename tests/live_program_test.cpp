@@ -3,17 +3,18 @@
 #include <cstdlib>
 
 #include "diminish/frame_source.h"
+#include "paths.h"
 #include "run_program.h"
 
 namespace diminish {
 namespace {
 
-using testing::AllOf;
-using testing::ContainsRegex;
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::AllOf;
+using ::testing::ContainsRegex;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
-const std::string calendar = std::string(DIMINISH_RECORDINGS_DIR) + "/calendar";
+const std::string calendar = testing::recordings_dir() + "/calendar";
 
 TEST(LiveProgram, RunsAndRecordsWhatCanBeRunAgain) {
   const TemporaryFolder folder;

@@ -20,7 +20,7 @@ void PrintTo(const Spoilt& spoilt, std::ostream* stream) {
   *stream << spoilt.name;
 }
 
-class ProgramErrors : public testing::TestWithParam<Spoilt> {};
+class ProgramErrors : public ::testing::TestWithParam<Spoilt> {};
 
 TEST_P(ProgramErrors, AreOneLineThatNamesFileAndExpectation) {
   const MaskedRecording recording;
@@ -32,7 +32,7 @@ TEST_P(ProgramErrors, AreOneLineThatNamesFileAndExpectation) {
   EXPECT_EQ(outcome.err.rfind("diminish: ", 0), 0U) << outcome.err;
   EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
   for (const std::string& text : GetParam().mentions) {
-    EXPECT_THAT(outcome.err, testing::HasSubstr(text));
+    EXPECT_THAT(outcome.err, ::testing::HasSubstr(text));
   }
 }
 
@@ -64,7 +64,7 @@ const auto remove_file = [](const char* file) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, ProgramErrors,
-    testing::Values(
+    ::testing::Values(
         rig("MissingKey", "depth_unit_m: 0.001\n", "\n", {"depth_unit_m"}),
         rig("MisspeltKey", "depth_unit_m", "depth_units", {"depth_units"}),
         rig("NotANumber", "[40, 40, 20, 15]", "[40, .nan, 20, 15]", {"camera_matrix"}),
@@ -101,7 +101,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(ProgramErrorsToo, ARecordingThatIsNotThere) {
   const auto outcome = Program::run({"run", "/nowhere", "--out", "/tmp/never"});
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.err, testing::HasSubstr("/nowhere"));
+  EXPECT_THAT(outcome.err, ::testing::HasSubstr("/nowhere"));
 }
 
 TEST(ProgramErrorsToo, TheRecordingIsNoPlaceForResults) {
@@ -109,7 +109,7 @@ TEST(ProgramErrorsToo, TheRecordingIsNoPlaceForResults) {
   const auto outcome =
       Program::run({"run", recording.folder(), "--out", recording.folder(), "--force"});
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.err, testing::HasSubstr("--out"));
+  EXPECT_THAT(outcome.err, ::testing::HasSubstr("--out"));
   EXPECT_TRUE(std::filesystem::exists(recording.path("color/0.png")));
 }
 

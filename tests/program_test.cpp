@@ -11,6 +11,7 @@
 
 #include "core/text.h"
 #include "masked_recording.h"
+#include "paths.h"
 #include "run_program.h"
 #include "score/csv_table.h"
 
@@ -18,7 +19,7 @@ namespace diminish {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 std::set<std::string> files_in(const fs::path& folder) {
   std::set<std::string> names;
@@ -28,7 +29,7 @@ std::set<std::string> files_in(const fs::path& folder) {
   return names;
 }
 
-class ProgramTest : public testing::Test {
+class ProgramTest : public ::testing::Test {
  protected:
   Program::Outcome run(std::vector<std::string> more = {}) const {
     std::vector<std::string> arguments = {"run", recording.folder(), "--out", recording.out()};
@@ -111,8 +112,8 @@ TEST_F(ProgramTest, ReplacesResultsOnlyWhenForced) {
 
 TEST_F(ProgramTest, AnInterruptedRunLeavesWholeFiles) {
   const fs::path folder = recording.path("interrupted");
-  Program program({"run", std::string(DIMINISH_RECORDINGS_DIR) + "/calendar", "--out",
-                   folder.string(), "--threads", "1"});
+  Program program(
+      {"run", testing::recordings_dir() + "/calendar", "--out", folder.string(), "--threads", "1"});
   for (int i = 0; i < 600 && !fs::exists(folder / "result/000000.png"); ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }
@@ -152,7 +153,7 @@ TEST_F(ProgramTest, ReportsOnOnePage) {
     ++pictures;
   }
   EXPECT_EQ(pictures, 15U);
-  EXPECT_THAT(page, testing::Not(HasSubstr("http"))) << "it must need nothing else";
+  EXPECT_THAT(page, ::testing::Not(HasSubstr("http"))) << "it must need nothing else";
   ASSERT_EQ(Program::run({"score", recording.folder(), recording.out()}).exit_code, 0);
   const auto score = nlohmann::json::parse(read_text_file(out("score.json"), 1 << 20));
   EXPECT_THAT(page, HasSubstr(fmt::format("PSNR {:.2f} dB",

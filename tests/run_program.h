@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "paths.h"
 #include "temporary_folder.h"
 
 namespace diminish {
@@ -27,7 +28,7 @@ class Program {
   }
 
   explicit Program(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), DIMINISH_PROGRAM);
+    arguments.insert(arguments.begin(), testing::program());
     const std::string out = (folder_.path() / "out").string();
     const std::string err = (folder_.path() / "err").string();
     process_ = fork();

@@ -7,7 +7,7 @@
 #include "calibrate.h"
 #include "diminish/camera_source.h"
 #include "diminish/error.h"
-#include "setup/rig_file.h"
+#include "setup/calibrate/rig_file.h"
 
 namespace diminish {
 namespace {

@@ -11,10 +11,10 @@
 #include "diminish/calibration.h"
 #include "diminish/error.h"
 #include "live_setup.h"
-#include "setup/board_images.h"
-#include "setup/coverage_picture.h"
-#include "setup/live_board_images.h"
-#include "setup/rig_file.h"
+#include "setup/calibrate/board_images.h"
+#include "setup/calibrate/coverage_picture.h"
+#include "setup/calibrate/live_board_images.h"
+#include "setup/calibrate/rig_file.h"
 #include "sink/partial_file.h"
 
 namespace diminish {

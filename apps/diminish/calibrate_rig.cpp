@@ -10,7 +10,7 @@
 #include "calibrate.h"
 #include "diminish/frame_source.h"
 #include "diminish/rig_calibration.h"
-#include "setup/rig_file.h"
+#include "setup/calibrate/rig_file.h"
 
 namespace diminish {
 namespace {

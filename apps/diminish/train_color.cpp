@@ -5,7 +5,7 @@
 #include <string>
 
 #include "commands.h"
-#include "detect/color_model.h"
+#include "detect/color_blob/color_model.h"
 #include "diminish/error.h"
 #include "diminish/frame_source.h"
 

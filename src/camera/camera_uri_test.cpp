@@ -4,8 +4,8 @@
 namespace diminish {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
 
 TEST(CameraUri, HasSchemeTargetAndParameters) {
   const CameraUri uri = parse_camera_uri("v4l2:/dev/video0?size=1280x1024&fps=30&mirror");

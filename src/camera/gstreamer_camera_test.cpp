@@ -14,7 +14,7 @@ namespace diminish {
 namespace {
 
 using std::chrono::milliseconds;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 using Status = CameraSource::Status;
 
 std::unique_ptr<CameraSource> open(const std::string& pipeline) {

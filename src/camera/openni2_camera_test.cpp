@@ -10,18 +10,19 @@
 #include "diminish/config.h"
 #include "diminish/frame_source.h"
 #include "expect_error.h"
+#include "paths.h"
 #include "run_program.h"
 
 namespace diminish {
 namespace {
 
 using std::chrono::milliseconds;
-using testing::HasSubstr;
-using testing::SizeIs;
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
 
-const std::filesystem::path folder = std::filesystem::path(DIMINISH_RECORDINGS_DIR) / "calendar";
+const std::filesystem::path folder = std::filesystem::path(testing::recordings_dir()) / "calendar";
 
-class OpenNi2Camera : public testing::Test {
+class OpenNi2Camera : public ::testing::Test {
  protected:
   OpenNi2Camera() { setenv("DIMINISH_TEST_RECORDING", folder.c_str(), 1); }
   std::unique_ptr<CameraSource> open(const std::string& uri, const Rig& rig) const {

@@ -12,9 +12,9 @@ namespace diminish {
 namespace {
 
 using std::chrono::milliseconds;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
-class RecordingCamera : public testing::Test {
+class RecordingCamera : public ::testing::Test {
  protected:
   std::unique_ptr<CameraSource> open(const std::string& name, const std::string& parameters) {
     return open_camera("recording:" + recording_.path("").string() + parameters,

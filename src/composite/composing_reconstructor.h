@@ -3,12 +3,12 @@
 #include <span>
 #include <vector>
 
-#include "composite/color_map.h"
 #include "composite/texture_output.h"
 #include "diminish/diminished_frame.h"
 #include "diminish/reconstructor.h"
-#include "reconstruct/background_planes.h"
-#include "reconstruct/cast_shadows.h"
+#include "scene/background_planes.h"
+#include "scene/cast_shadows.h"
+#include "scene/color_map.h"
 
 namespace diminish {
 

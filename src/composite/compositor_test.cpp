@@ -11,7 +11,7 @@ namespace diminish {
 namespace {
 
 /// A picture with a mask whose left half was reconstructed.
-class Compositing : public testing::Test {
+class Compositing : public ::testing::Test {
  protected:
   Compositing() {
     std::mt19937 random(1);

@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "composite/color_map.h"
 #include "diminish/image.h"
 #include "diminish/reconstruction.h"
+#include "scene/color_map.h"
 
 namespace diminish {
 

@@ -1,11 +1,11 @@
 #include <vector>
 
-#include "composite/color_maps.h"
 #include "composite/map_colors.h"
-#include "composite/soft_membrane.h"
 #include "core/channels.h"
 #include "core/rows.h"
 #include "diminish/color_corrector.h"
+#include "membrane/soft_membrane.h"
+#include "scene/color_maps.h"
 
 namespace diminish {
 namespace {

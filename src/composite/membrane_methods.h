@@ -2,9 +2,9 @@
 
 #include <memory>
 
-#include "composite/membrane_solver.h"
 #include "diminish/color_corrector.h"
 #include "diminish/inpainter.h"
+#include "membrane/solver.h"
 
 namespace diminish {
 

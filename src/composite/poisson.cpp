@@ -3,12 +3,12 @@
 #include <cstddef>
 
 #include "composite/membrane_methods.h"
-#include "composite/membrane_picture.h"
-#include "composite/membrane_solver.h"
-#include "composite/neighbours.h"
 #include "core/channels.h"
+#include "core/neighbours.h"
 #include "core/rows.h"
 #include "diminish/color_corrector.h"
+#include "membrane/picture.h"
+#include "membrane/solver.h"
 
 namespace diminish {
 namespace {

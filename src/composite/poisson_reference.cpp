@@ -1,10 +1,10 @@
 #include <array>
 #include <vector>
 
-#include "composite/laplace_solver.h"
-#include "composite/neighbours.h"
 #include "core/channels.h"
+#include "core/neighbours.h"
 #include "diminish/color_corrector.h"
+#include "membrane/laplace_solver.h"
 
 namespace diminish {
 namespace {

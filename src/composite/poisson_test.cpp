@@ -8,6 +8,7 @@
 #include "diminish/color_corrector.h"
 #include "diminish/frame_source.h"
 #include "diminish/pipeline.h"
+#include "paths.h"
 
 namespace diminish {
 namespace {
@@ -290,13 +291,13 @@ TEST(PoissonCorrection, RemembersNoOtherFrame) {
   }
 }
 
-class PoissonOnRecordings : public testing::TestWithParam<const char*> {};
+class PoissonOnRecordings : public ::testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Recordings, PoissonOnRecordings,
-                         testing::Values("calendar", "ball", "workbench"));
+                         ::testing::Values("calendar", "ball", "workbench"));
 
 TEST_P(PoissonOnRecordings, EqualsThePlainVersion) {
   const Recording recording =
-      load_recording(std::filesystem::path(DIMINISH_RECORDINGS_DIR) / GetParam());
+      load_recording(std::filesystem::path(testing::recordings_dir()) / GetParam());
   FrameSet frame;
   DiminishedFrame result;
   open_recording(recording, {})->next(frame);

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "composite/neighbours.h"
 #include "composite/view_mode_rules.h"
 #include "core/channels.h"
+#include "core/neighbours.h"
 #include "core/rows.h"
 #include "diminish/view_mode.h"
 

@@ -8,9 +8,9 @@
 namespace diminish {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::StartsWith;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 Config parse(const std::string& yaml) {
   return Config::parse(yaml, "folder/rig.yaml");
@@ -100,7 +100,8 @@ TEST(Config, MalformedYamlIsOneLineWithFileAndLine) {
        {"a: 1\nb: [1, 2\n", "a: 1\n\tb: 2\n", "a: 1\n  b: 2\n", "a: *unknown\n",
         "a: 1\n---\nb: 2\n", "a: 1\na: 2\n", "a: {b: 1, b: 2}\n", "? [a]\n: 1\n", "{}: 1\n",
         "a: &x [*x]\n", "%YAML 9.0\n---\na: 1\n", "a: \x04\nb: 1\n", "a: !<tag\n"}) {
-    EXPECT_THAT(error_of([&] { parse(yaml); }), testing::MatchesRegex("folder/rig.yaml:[1-4]: .+"))
+    EXPECT_THAT(error_of([&] { parse(yaml); }),
+                ::testing::MatchesRegex("folder/rig.yaml:[1-4]: .+"))
         << yaml;
   }
   EXPECT_EQ(error_of([] { parse("x: 0\na: 1\na: 2\n"); }),

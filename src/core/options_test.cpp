@@ -7,10 +7,10 @@
 namespace diminish {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
 
-class OptionsCheck : public testing::Test {
+class OptionsCheck : public ::testing::Test {
  protected:
   Options options_;
 };

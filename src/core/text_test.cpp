@@ -6,9 +6,9 @@
 namespace diminish {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 TEST(Text, ParsesNumbersAndNothingElse) {
   EXPECT_EQ(parse_number("-1.5e3"), -1500);

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <vector>
 
-#include "detect/disc_dilation.h"
-#include "detect/silhouette.h"
+#include "detect/silhouette/disc_dilation.h"
+#include "detect/silhouette/silhouette.h"
 #include "diminish/occluder_detector.h"
 #include "geometry/triangle_mesh.h"
 

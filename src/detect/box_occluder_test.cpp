@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include "detect/silhouette.h"
+#include "detect/silhouette/silhouette.h"
 #include "detection.h"
 #include "expect_error.h"
 #include "mask_overlap.h"
@@ -10,10 +10,10 @@
 namespace diminish {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 /// A rig that looks along z at a wall at 2 m with a square plate of 0.4 m in front of it, at 1 m.
-class BoxOccluderOnPlate : public testing::Test {
+class BoxOccluderOnPlate : public ::testing::Test {
  protected:
   BoxOccluderOnPlate() {
     const RigidTransform rgbd1_from_world{

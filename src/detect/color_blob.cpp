@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "detect/color_blob_finder.h"
+#include "detect/color_blob/color_blob_finder.h"
 #include "diminish/occluder_detector.h"
 
 namespace diminish {

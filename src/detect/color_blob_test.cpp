@@ -5,15 +5,16 @@
 #include "detection.h"
 #include "expect_error.h"
 #include "mask_overlap.h"
+#include "paths.h"
 #include "temporary_folder.h"
 #include "truth_poses.h"
 
 namespace diminish {
 namespace {
 
-const std::filesystem::path recordings = DIMINISH_RECORDINGS_DIR;
+const std::filesystem::path recordings = testing::recordings_dir();
 
-class ColorBlobOnBall : public testing::Test {
+class ColorBlobOnBall : public ::testing::Test {
  protected:
   const Recording recording = load_recording(recordings / "ball");
   const OccluderSpec& spec = recording.scene.occluders.at(0);
@@ -80,7 +81,7 @@ TEST_F(ColorBlobOnBall, ACameraWithoutImagesIsLeftAlone) {
 }
 
 /// A rig with one colour camera, and an object whose colour is learnt from a drawing.
-class ColorBlobOnDrawings : public testing::Test {
+class ColorBlobOnDrawings : public ::testing::Test {
  protected:
   static constexpr int width = 640;
   static constexpr int height = 480;
@@ -161,12 +162,12 @@ TEST_F(ColorBlobOnDrawings, SizesThatTheScaleDoesNotDivideAreCoveredToTheBorder)
 }
 
 TEST_F(ColorBlobOnDrawings, WrongSettingsAreNamed) {
-  EXPECT_THAT(error_of([&] { make("square"); }), testing::HasSubstr("shape"));
+  EXPECT_THAT(error_of([&] { make("square"); }), ::testing::HasSubstr("shape"));
   EXPECT_THAT(error_of([&] {
                 make_detector("{name: toy, detector: color_blob, training: nowhere}", rig,
                               folder.path() / "scene.yaml");
               }),
-              testing::HasSubstr("nowhere"));
+              ::testing::HasSubstr("nowhere"));
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include "detect/marker_views.h"
 #include "detect/place_deviation.h"
 #include "detect/shape_detector.h"
-#include "detect/silhouette.h"
+#include "detect/silhouette/silhouette.h"
 #include "geometry/triangle_mesh.h"
 #include "pose/known_markers.h"
 #include "pose/marker_pose.h"

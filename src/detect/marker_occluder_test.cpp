@@ -5,12 +5,13 @@
 #include "detection.h"
 #include "expect_error.h"
 #include "mask_overlap.h"
+#include "paths.h"
 #include "truth_poses.h"
 
 namespace diminish {
 namespace {
 
-const std::filesystem::path recordings = DIMINISH_RECORDINGS_DIR;
+const std::filesystem::path recordings = testing::recordings_dir();
 
 /// The marker of a recording's only occluder, and where it is in the occluder's frame.
 struct RecordedMarker {
@@ -34,7 +35,7 @@ Marker project(const MarkerSpec& marker, const RigidTransform& camera_from_marke
   return seen;
 }
 
-class MarkerOccluderOnRecordings : public testing::TestWithParam<RecordedMarker> {};
+class MarkerOccluderOnRecordings : public ::testing::TestWithParam<RecordedMarker> {};
 
 /// truth/mask shows what the colour camera sees of the object, which nothing hides here.
 TEST_P(MarkerOccluderOnRecordings, DrawsTheTruth) {
@@ -79,7 +80,7 @@ TEST_P(MarkerOccluderOnRecordings, DrawsTheTruth) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Recordings, MarkerOccluderOnRecordings, testing::ValuesIn(recorded),
+INSTANTIATE_TEST_SUITE_P(Recordings, MarkerOccluderOnRecordings, ::testing::ValuesIn(recorded),
                          [](const auto& test) { return test.param.recording; });
 
 Rig small_rig() {
@@ -159,7 +160,7 @@ TEST(MarkerOccluder, WrongSettingsAreNamed) {
                     small_rig());
     });
   };
-  using testing::HasSubstr;
+  using ::testing::HasSubstr;
   EXPECT_THAT(error_with(""), HasSubstr("expected either vertices or mesh"));
   EXPECT_THAT(error_with("vertices: [[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0]]"),
               HasSubstr("s.yaml:4: vertices: expected points that are not all on one line"));

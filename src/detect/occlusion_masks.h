@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "detect/mask_drawer.h"
 #include "detect/shape_detector.h"
+#include "detect/silhouette/mask_drawer.h"
 #include "diminish/occluder_detector.h"
 
 namespace diminish {

@@ -109,7 +109,7 @@ TEST(OccluderStage, WhereTheGpuFailsTheProcessorDraws) {
 TEST(OccluderStage, AnUnknownDetectorIsNamed) {
   EXPECT_THAT(
       error_of([] { OccluderStage(small_rig(), scene_with("[{name: a, detector: magic}]")); }),
-      testing::MatchesRegex("scene.yaml:1: .*detector: expected one of .*marker.*, got 'magic'"));
+      ::testing::MatchesRegex("scene.yaml:1: .*detector: expected one of .*marker.*, got 'magic'"));
 }
 
 TEST(OccluderStage, AFrameWithoutAGivenMaskIsReported) {

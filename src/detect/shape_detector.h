@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "detect/polygon_filler.h"
-#include "detect/polygons.h"
+#include "detect/silhouette/polygon_filler.h"
+#include "detect/silhouette/polygons.h"
 #include "diminish/occluder_detector.h"
 
 namespace diminish {

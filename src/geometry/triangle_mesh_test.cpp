@@ -3,11 +3,12 @@
 #include <sstream>
 
 #include "expect_error.h"
+#include "paths.h"
 
 namespace diminish {
 namespace {
 
-using testing::ElementsAre;
+using ::testing::ElementsAre;
 using Triangle = std::array<int, 3>;
 
 TriangleMesh read(const std::string& text) {
@@ -18,7 +19,7 @@ TriangleMesh read(const std::string& text) {
 const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0.5\n";
 
 TEST(TriangleMesh, ReadsTheBundledLamp) {
-  const TriangleMesh mesh = load_obj(DIMINISH_RECORDINGS_DIR "/workbench/lamp.obj");
+  const TriangleMesh mesh = load_obj(testing::recordings_dir() + "/workbench/lamp.obj");
   ASSERT_FALSE(mesh.vertices.empty());
   EXPECT_EQ(mesh.vertices[0], Eigen::Vector3d(-0.1, -0.085, -0.0608));
   EXPECT_EQ(mesh.vertices.size() + mesh.triangles.size(), 80U);
@@ -63,7 +64,7 @@ TEST(TriangleMesh, MalformedLinesAreNamed) {
 
 TEST(TriangleMesh, MissingFilesAreNamed) {
   EXPECT_THAT(error_of([] { load_obj("/nowhere/lamp.obj"); }),
-              testing::HasSubstr("/nowhere/lamp.obj: cannot be opened"));
+              ::testing::HasSubstr("/nowhere/lamp.obj: cannot be opened"));
 }
 
 }  // namespace

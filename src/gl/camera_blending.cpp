@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "blend/confidence_grid.h"
 #include "gl/definitions.h"
 #include "gl/result_pixel.h"
-#include "reconstruct/confidence_grid.h"
 
 namespace diminish::gl {
 namespace {

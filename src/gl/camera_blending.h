@@ -3,12 +3,12 @@
 #include <string>
 #include <vector>
 
+#include "blend/layers.h"
 #include "gl/buffer.h"
 #include "gl/frame_block.h"
 #include "gl/frame_upload.h"
 #include "gl/pass_timer.h"
 #include "gl/program.h"
-#include "reconstruct/layers.h"
 
 namespace diminish::gl {
 

@@ -2,10 +2,10 @@
 
 #include <cstdint>
 
-#include "composite/color_map.h"
 #include "gl/frame_block.h"
-#include "reconstruct/background_planes.h"
-#include "reconstruct/cast_shadows.h"
+#include "scene/background_planes.h"
+#include "scene/cast_shadows.h"
+#include "scene/color_map.h"
 
 namespace diminish::gl {
 

@@ -1,15 +1,15 @@
 #include "gl/composition_rules.h"
 
-#include "composite/color_map.h"
 #include "composite/color_smoothing.h"
 #include "composite/shadow_lifting.h"
-#include "composite/soft_membrane.h"
 #include "composite/view_mode_rules.h"
 #include "diminish/diminished_frame.h"
 #include "gl/definitions.h"
 #include "gl/frame_block.h"
-#include "reconstruct/background_planes.h"
-#include "reconstruct/cast_shadows.h"
+#include "membrane/soft_membrane.h"
+#include "scene/background_planes.h"
+#include "scene/cast_shadows.h"
+#include "scene/color_map.h"
 
 namespace diminish::gl {
 namespace {

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <string>
 
+#include "depth/depth_noise.h"
 #include "diminish/image.h"
-#include "reconstruct/depth_noise.h"
 
 namespace diminish::gl {
 

@@ -2,12 +2,12 @@
 
 #include <cstring>
 
-#include "composite/color_maps.h"
-#include "composite/soft_membrane.h"
 #include "composite/soft_rim.h"
 #include "core/rows.h"
 #include "gl/composition_rules.h"
+#include "membrane/soft_membrane.h"
 #include "reconstruct/clear_outside.h"
+#include "scene/color_maps.h"
 
 namespace diminish::gl {
 namespace {

@@ -5,12 +5,12 @@
 
 #include <optional>
 
-#include "composite/color_maps.h"
 #include "composite/compositor.h"
 #include "diminish/view_mode.h"
 #include "diminished_wall.h"
 #include "gl/context.h"
 #include "picture_difference.h"
+#include "scene/color_maps.h"
 
 namespace diminish {
 namespace {

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cstring>
 
+#include "blend/layers.h"
 #include "diminish/error.h"
-#include "reconstruct/layers.h"
-#include "reconstruct/sdct.h"
+#include "render/sdct.h"
 
 namespace diminish::gl {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <memory>
 
-#include "detect/disc_dilation.h"
-#include "detect/mask_drawer.h"
+#include "detect/silhouette/disc_dilation.h"
+#include "detect/silhouette/mask_drawer.h"
 #include "gl/context.h"
 
 namespace diminish::gl {

@@ -8,6 +8,7 @@
 #include "detect/occlusion_masks.h"
 #include "detection.h"
 #include "first_frame.h"
+#include "paths.h"
 
 namespace diminish {
 namespace {
@@ -21,7 +22,7 @@ INSTANTIATE_TEST_SUITE_P(Recordings, MasksOfRecordings,
 // for the GPU.
 TEST_P(MasksOfRecordings, AreTheProcessorsOnTheGpu) {
   const Recording recording =
-      load_recording(std::filesystem::path(DIMINISH_RECORDINGS_DIR) / GetParam());
+      load_recording(std::filesystem::path(testing::recordings_dir()) / GetParam());
   Pipeline pipeline(recording.rig, recording.scene, {});
   OccluderStage by_processor(recording.rig, recording.scene);
   OccluderStage by_gpu(recording.rig, recording.scene);

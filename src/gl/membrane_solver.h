@@ -2,9 +2,9 @@
 
 #include <memory>
 
-#include "composite/membrane_solver.h"
 #include "gl/buffer.h"
 #include "gl/context.h"
+#include "membrane/solver.h"
 
 namespace diminish::gl {
 

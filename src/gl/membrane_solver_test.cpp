@@ -10,6 +10,7 @@
 #include "diminish/error.h"
 #include "diminish/frame_source.h"
 #include "diminish/pipeline.h"
+#include "paths.h"
 #include "picture_difference.h"
 
 namespace diminish {
@@ -44,7 +45,7 @@ INSTANTIATE_TEST_SUITE_P(Recordings, GlMembrane,
 // strips, loose parts, seams between two cameras.
 TEST_P(GlMembrane, SolvesWhatThePlainVersionsSolve) {
   const Recording recording =
-      load_recording(std::filesystem::path(DIMINISH_RECORDINGS_DIR) / GetParam());
+      load_recording(std::filesystem::path(testing::recordings_dir()) / GetParam());
   Options options;
   options.lift_shadows = false;
   const auto source = open_recording(recording, options);
@@ -88,7 +89,7 @@ TEST_P(GlMembrane, SolvesWhatThePlainVersionsSolve) {
 // `--backend gl` takes them of itself.
 TEST(GlMembraneSolver, IsUsedWhereTheFrameIsDrawnOnTheGpu) {
   const Recording recording =
-      load_recording(std::filesystem::path(DIMINISH_RECORDINGS_DIR) / "ball");
+      load_recording(std::filesystem::path(testing::recordings_dir()) / "ball");
   Options options;
   options.backend = "gl";
   options.color_correct = "poisson";

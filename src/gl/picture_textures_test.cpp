@@ -9,6 +9,7 @@
 
 #include "expect_error.h"
 #include "first_frame.h"
+#include "paths.h"
 
 namespace diminish {
 namespace {
@@ -81,7 +82,7 @@ INSTANTIATE_TEST_SUITE_P(Recordings, PictureTextures,
 TEST_P(PictureTextures, HoldWhatElseIsDownloaded) {
   const Application application;
   const Recording recording =
-      load_recording(std::filesystem::path(DIMINISH_RECORDINGS_DIR) / GetParam());
+      load_recording(std::filesystem::path(testing::recordings_dir()) / GetParam());
   Pipeline downloading(recording.rig, recording.scene, on_gpu());
   Pipeline drawing(recording.rig, recording.scene, on_gpu());
   drawing.want_texture(application.sharing());

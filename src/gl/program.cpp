@@ -8,7 +8,7 @@
 
 #include "diminish/error.h"
 #include "diminish/tiled_region.h"
-#include "reconstruct/sdct.h"
+#include "render/sdct.h"
 #include "shader_files.h"
 
 namespace diminish::gl {

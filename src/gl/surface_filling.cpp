@@ -5,10 +5,10 @@
 #include <array>
 #include <string>
 
-#include "composite/smooth_filling.h"
-#include "composite/surface_rules.h"
 #include "diminish/diminished_frame.h"
 #include "gl/pixels_of.h"
+#include "inpaint/smooth_filling.h"
+#include "inpaint/surface_rules.h"
 
 namespace diminish::gl {
 namespace {

@@ -8,11 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "composite/plane_colors.h"
 #include "diminish/frame_source.h"
 #include "diminish/inpainter.h"
 #include "diminish/pipeline.h"
 #include "gl/context.h"
+#include "inpaint/plane_colors.h"
+#include "paths.h"
 #include "picture_difference.h"
 
 namespace diminish {
@@ -265,7 +266,7 @@ INSTANTIATE_TEST_SUITE_P(Recordings, GlSurfaceFillingOnRecordings,
 
 TEST_P(GlSurfaceFillingOnRecordings, FillsAsTheProcessorDoes) {
   const Recording recording =
-      load_recording(std::filesystem::path(DIMINISH_RECORDINGS_DIR) / GetParam());
+      load_recording(std::filesystem::path(testing::recordings_dir()) / GetParam());
   const auto source = open_recording(recording, {});
   Pipeline pipeline(recording.rig, recording.scene, {});
   Gpu gpu;

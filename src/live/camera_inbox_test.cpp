@@ -7,12 +7,12 @@
 namespace diminish {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 using Verdict = CameraInbox::Verdict;
 
 constexpr double now_s = 100;
 
-class Inbox : public testing::Test {
+class Inbox : public ::testing::Test {
  protected:
   Verdict put_color(double stamp_s, std::uint8_t value = 0, int width = 8) {
     CameraImage image;

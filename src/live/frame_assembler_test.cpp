@@ -5,12 +5,12 @@
 namespace diminish {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 using testing::Optional;
 
 constexpr double period_s = 1.0 / 30;
 
-class Assembler : public testing::Test {
+class Assembler : public ::testing::Test {
  protected:
   Assembler() {
     inboxes_.reserve(2);

@@ -8,17 +8,18 @@
 #include "diminish/frame_source.h"
 #include "diminish/pipeline.h"
 #include "expect_error.h"
+#include "paths.h"
 
 namespace diminish {
 namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
-using testing::AllOf;
-using testing::Contains;
-using testing::HasSubstr;
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::HasSubstr;
 
-const std::filesystem::path recordings = DIMINISH_RECORDINGS_DIR;
+const std::filesystem::path recordings = testing::recordings_dir();
 
 /// Waits until `is_true`, at most a generous while: tests' machines may be slow.
 template <class Condition>
@@ -30,7 +31,7 @@ bool eventually(Condition&& is_true) {
   return false;
 }
 
-class Live : public testing::Test {
+class Live : public ::testing::Test {
  protected:
   std::vector<LiveCamera> cameras(const std::string& color_prefix = "",
                                   const std::string& rgbd_prefix = "",

@@ -23,13 +23,13 @@ std::vector<int> levels(QualityLadder& ladder, double full_ms, double budget_ms,
 
 TEST(QualityLadder, StaysWhereTimeIsEnough) {
   QualityLadder ladder;
-  EXPECT_THAT(levels(ladder, 20, 33, 500), testing::Each(0));
+  EXPECT_THAT(levels(ladder, 20, 33, 500), ::testing::Each(0));
 }
 
 TEST(QualityLadder, OneLateFrameIsNoReason) {
   QualityLadder ladder;
   ladder.next_level(100, 33);
-  EXPECT_THAT(levels(ladder, 20, 33, 10), testing::Each(0));
+  EXPECT_THAT(levels(ladder, 20, 33, 10), ::testing::Each(0));
 }
 
 TEST(QualityLadder, StepsDownUntilTheBudgetIsKept) {
@@ -75,7 +75,7 @@ TEST(QualityLadder, EveryLevelIsAllowedAndSaysWhatItSimplifies) {
     EXPECT_EQ(QualityLadder::description(level).empty(), level == 0);
     if (level == 0) continue;
     EXPECT_THAT(QualityLadder::description(level),
-                testing::StartsWith(QualityLadder::description(level - 1)));
+                ::testing::StartsWith(QualityLadder::description(level - 1)));
   }
 }
 

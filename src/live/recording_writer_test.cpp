@@ -6,14 +6,15 @@
 
 #include "diminish/frame_source.h"
 #include "expect_error.h"
+#include "paths.h"
 #include "temporary_folder.h"
 
 namespace diminish {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
-const std::filesystem::path recordings = DIMINISH_RECORDINGS_DIR;
+const std::filesystem::path recordings = testing::recordings_dir();
 
 std::vector<FrameSet> frames_of(const std::filesystem::path& folder) {
   const Recording recording = load_recording(folder);
@@ -32,7 +33,7 @@ double mean_difference(const Image<Bgr>& a, const Image<Bgr>& b) {
   return sum / static_cast<double>(3 * a.size());
 }
 
-class Writer : public testing::TestWithParam<const char*> {
+class Writer : public ::testing::TestWithParam<const char*> {
  protected:
   std::unique_ptr<RecordingWriter> write_to(const std::filesystem::path& folder) const {
     return std::make_unique<RecordingWriter>(folder, source_ / "rig.yaml", recording_.rig,
@@ -85,7 +86,7 @@ TEST_P(Writer, WhatNoRgbdCameraSawIsARecordingToo) {
   for (const RgbdFrame& rgbd : read[0].rgbd) EXPECT_FALSE(rgbd.available());
 }
 
-INSTANTIATE_TEST_SUITE_P(Recordings, Writer, testing::Values("calendar", "ball", "workbench"));
+INSTANTIATE_TEST_SUITE_P(Recordings, Writer, ::testing::Values("calendar", "ball", "workbench"));
 
 class CalendarWriter : public Writer {};
 
@@ -119,7 +120,7 @@ TEST_P(CalendarWriter, AFolderThatGoesAwayEndsItWithAReason) {
   EXPECT_THAT(writer->status().problem, HasSubstr("cannot be written"));
 }
 
-INSTANTIATE_TEST_SUITE_P(Recordings, CalendarWriter, testing::Values("calendar"));
+INSTANTIATE_TEST_SUITE_P(Recordings, CalendarWriter, ::testing::Values("calendar"));
 
 }  // namespace
 }  // namespace diminish

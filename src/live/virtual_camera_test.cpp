@@ -8,12 +8,13 @@
 #include <thread>
 
 #include "diminish/frame_source.h"
+#include "paths.h"
 #include "temporary_folder.h"
 
 namespace diminish {
 namespace {
 
-const std::filesystem::path folder = std::filesystem::path(DIMINISH_RECORDINGS_DIR) / "calendar";
+const std::filesystem::path folder = std::filesystem::path(testing::recordings_dir()) / "calendar";
 
 TEST(VirtualCamera, HandsOverTheResultsPixels) {
   const Recording recording = load_recording(folder);

@@ -16,6 +16,7 @@
 #include "score/image_quality.h"
 #ifdef DIMINISH_HAS_GL
 #include "gl/context.h"
+#include "paths.h"
 #endif
 
 namespace diminish {
@@ -69,7 +70,7 @@ class Helpless : public ComposingReconstructor {
 /// Three times the same frame. failures: those in which the backend fails.
 void expect_the_processors_frames(const std::string& backend, const std::vector<bool>& failures) {
   const Recording recording =
-      load_recording(std::filesystem::path(DIMINISH_RECORDINGS_DIR) / "calendar");
+      load_recording(std::filesystem::path(testing::recordings_dir()) / "calendar");
   Options options;
   Pipeline by_processor(recording.rig, recording.scene, options);
   options.backend = backend;
@@ -138,7 +139,7 @@ TEST(Backend, AutoIsTheGpuOnlyWhereHardwareDraws) {
 
 class WholeFrames : public ::testing::TestWithParam<const char*> {
  protected:
-  std::filesystem::path folder = std::filesystem::path(DIMINISH_RECORDINGS_DIR) / GetParam();
+  std::filesystem::path folder = std::filesystem::path(testing::recordings_dir()) / GetParam();
   Recording recording = load_recording(folder);
   Pipeline by_processor{recording.rig, recording.scene, {}};
   Pipeline by_gpu{recording.rig, recording.scene, {}};
@@ -261,7 +262,7 @@ TEST_P(WholeFrames, DoNotNeedTheReconstructionWhereNobodyLooksAtIt) {
 
 TEST(WholeFrame, WithoutObjectsOrRgbdCamerasIsTheGpusToo) {
   const Recording recording =
-      load_recording(std::filesystem::path(DIMINISH_RECORDINGS_DIR) / "ball");
+      load_recording(std::filesystem::path(testing::recordings_dir()) / "ball");
   Options options;
   options.backend = "gl";
   options.inpaint = "none";

@@ -6,20 +6,20 @@
 
 #include <vector>
 
-#include "composite/color_maps.h"
 #include "composite/compositor.h"
 #include "core/stopwatch.h"
+#include "depth/depth_cleaner.h"
+#include "depth/visible_blocks.h"
 #include "detect/occlusion_masks.h"
 #include "diminish/marker_detector.h"
 #include "pipeline/backend.h"
 #include "pipeline/frame_texture.h"
 #include "pose/camera_poses.h"
 #include "pose/pose_refinement.h"
-#include "reconstruct/background_planes.h"
-#include "reconstruct/cast_shadows.h"
-#include "reconstruct/depth_cleaner.h"
-#include "reconstruct/scene_sampler.h"
-#include "reconstruct/visible_blocks.h"
+#include "scene/background_planes.h"
+#include "scene/cast_shadows.h"
+#include "scene/color_maps.h"
+#include "scene/scene_sampler.h"
 
 namespace diminish {
 namespace {

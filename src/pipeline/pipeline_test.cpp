@@ -9,13 +9,14 @@
 #include "diminish/error.h"
 #include "diminish/frame_source.h"
 #include "mask_overlap.h"
+#include "paths.h"
 #include "picture_difference.h"
 #include "truth_poses.h"
 
 namespace diminish {
 namespace {
 
-const std::filesystem::path recordings = DIMINISH_RECORDINGS_DIR;
+const std::filesystem::path recordings = testing::recordings_dir();
 
 /// A bundled recording, frame after frame through the whole pipeline.
 class BundledRecording {

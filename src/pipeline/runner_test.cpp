@@ -7,11 +7,12 @@
 #include <set>
 
 #include "diminish/error.h"
+#include "paths.h"
 
 namespace diminish {
 namespace {
 
-const std::filesystem::path recordings = DIMINISH_RECORDINGS_DIR;
+const std::filesystem::path recordings = testing::recordings_dir();
 
 /// Keeps what it is given.
 class MemorySink : public FrameSink {
@@ -39,7 +40,7 @@ class MemorySink : public FrameSink {
   std::mutex mutex_;
 };
 
-class Runner : public testing::Test {
+class Runner : public ::testing::Test {
  protected:
   std::size_t run_with(FrameSink& sink, const RunnerOptions& options) {
     const auto source = open_recording(recording, {});

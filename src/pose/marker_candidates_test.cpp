@@ -9,6 +9,7 @@
 
 #include "core/mat.h"
 #include "diminish/marker_detector.h"
+#include "paths.h"
 #include "pose/dark_components.h"
 #include "pose/decimation.h"
 #include "pose/marker_code.h"
@@ -191,7 +192,7 @@ TEST_P(MarkersOfRecordings, AreThoseThatOpenCvFinds) {
   MarkerDetector detector("DICT_4X4_50");
   int found = 0;
   for (const auto& entry : std::filesystem::directory_iterator(
-           std::filesystem::path(DIMINISH_RECORDINGS_DIR) / GetParam())) {
+           std::filesystem::path(testing::recordings_dir()) / GetParam())) {
     const cv::Mat picture = cv::imread(entry.path().string());
     if (picture.empty()) continue;
     std::vector<std::vector<cv::Point2f>> corners;

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "analytic_scene.h"
-#include "reconstruct/scene_sampler.h"
+#include "scene/scene_sampler.h"
 
 namespace diminish {
 namespace {

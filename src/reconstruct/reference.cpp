@@ -1,10 +1,10 @@
 #include <vector>
 
+#include "blend/layers.h"
 #include "diminish/reconstructor.h"
 #include "reconstruct/clear_outside.h"
-#include "reconstruct/depth_mesh.h"
-#include "reconstruct/layers.h"
-#include "reconstruct/rasterizer.h"
+#include "render/depth_mesh.h"
+#include "render/rasterizer.h"
 
 namespace diminish {
 namespace {

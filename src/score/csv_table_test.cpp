@@ -5,7 +5,7 @@
 namespace diminish {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 TEST(CsvTable, ReadsQuotedCells) {
   const auto rows = parse_csv(

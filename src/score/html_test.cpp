@@ -7,9 +7,9 @@
 namespace diminish {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
-using testing::StartsWith;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
 
 // Decoded by the alphabet's definition, then by OpenCV.
 TEST(Html, DataUrisHoldThePicture) {

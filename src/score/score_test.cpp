@@ -14,7 +14,7 @@
 namespace diminish {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 constexpr int width = 80;
 constexpr int height = 60;
@@ -22,7 +22,7 @@ constexpr int height = 60;
 /// Two frames whose every figure is known: the true mask is a square of 20; the run covers it
 /// exactly (margin 0), has seen its left half, and is wrong there by 10 and right of it by 20
 /// levels (first frame), or right everywhere (second frame).
-class ScoreTest : public testing::Test {
+class ScoreTest : public ::testing::Test {
  protected:
   ScoreTest() {
     for (int i = 0; i < 2; ++i) {

@@ -11,7 +11,7 @@
 namespace diminish {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 std::string part(const std::string& frame, const std::string& body) {
   return "--picture\r\nContent-Type: image/jpeg\r\nContent-Length: " + std::to_string(body.size()) +

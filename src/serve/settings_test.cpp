@@ -5,8 +5,8 @@
 namespace diminish {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
 
 TEST(ChangedSettings, ChangesWhatIsNamedAndNothingElse) {
   Settings current;

@@ -10,6 +10,7 @@
 #include "core/mat.h"
 #include "diminish/frame_source.h"
 #include "expect_error.h"
+#include "paths.h"
 #include "serve/picture_stream.h"
 #include "temporary_folder.h"
 
@@ -18,11 +19,11 @@ namespace {
 
 using nlohmann::json;
 using std::chrono::seconds;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
-const std::filesystem::path folder = std::filesystem::path(DIMINISH_RECORDINGS_DIR) / "calendar";
+const std::filesystem::path folder = std::filesystem::path(testing::recordings_dir()) / "calendar";
 
-class Web : public testing::Test {
+class Web : public ::testing::Test {
  protected:
   Web() { EXPECT_TRUE(session_.wait_for_frame(0, seconds(30))); }
 

@@ -12,7 +12,7 @@
 namespace diminish {
 namespace {
 
-class IndexedPng : public testing::Test {
+class IndexedPng : public ::testing::Test {
  protected:
   IndexedPng() {
     for (int y = 0; y < indices.height(); ++y) {

@@ -5,7 +5,7 @@
 namespace diminish {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 TEST(RunStatistics, AddsUpFramesAndLeavesSkippedOnesOutOfTheTimes) {
   RunStatistics statistics;

@@ -11,12 +11,13 @@
 #include "diminish/rig.h"
 #include "diminish/scene.h"
 #include "geometry/triangle_mesh.h"
+#include "paths.h"
 #include "source/stream_list.h"
 
 namespace diminish {
 namespace {
 
-const std::filesystem::path recording = DIMINISH_RECORDINGS_DIR "/workbench";
+const std::filesystem::path recording = testing::recordings_dir() + "/workbench";
 
 /// What people and disks do to files: characters changed, pieces deleted, doubled and moved.
 std::string mutate(std::string text, std::mt19937& random) {

@@ -4,21 +4,22 @@
 
 #include "core/mat.h"
 #include "expect_error.h"
+#include "paths.h"
 #include "source/tiny_recording.h"
 
 namespace diminish {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 cv::Mat black(int width, int height, int type) {
   return {height, width, type, cv::Scalar::all(0)};
 }
 
 TEST(Recording, ReadsTheBundledRecordings) {
-  const Recording recording = load_recording(DIMINISH_RECORDINGS_DIR "/workbench");
+  const Recording recording = load_recording(testing::recordings_dir() + "/workbench");
   const auto source = open_recording(recording, {});
   EXPECT_EQ(source->frame_count(), 3U);
   EXPECT_NEAR(source->frames_per_second(), 30, 0.01);
@@ -220,7 +221,7 @@ TEST(Recording, FramesOfVideos) {
   for (int i = 0; i < 5; ++i) writer.write(cv::Mat(30, 40, CV_8UC3, cv::Scalar::all(40 * i)));
   writer.release();
   recording.write("color.txt", "1000 a.avi\n");
-  recording.write("rgbd0_depth.txt", "1000.001 " DIMINISH_SOURCE_TEST_DATA "/depth.mkv\n");
+  recording.write("rgbd0_depth.txt", "1000.001 " + testing::source_test_data() + "/depth.mkv\n");
   const auto frames = recording.read();
   ASSERT_EQ(frames.size(), 5U);
   for (std::size_t i = 0; i < frames.size(); ++i) {

@@ -4,11 +4,12 @@
 #include <sstream>
 
 #include "expect_error.h"
+#include "paths.h"
 
 namespace diminish {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 /// A correct rig.yaml with one text replaced by another.
 std::string rig_with(const std::string& text, const std::string& replacement) {
@@ -39,7 +40,7 @@ std::string complaint(const std::string& text, const std::string& replacement) {
 }
 
 TEST(Rig, ReadsTheBundledRigs) {
-  const Rig rig = load_rig(DIMINISH_RECORDINGS_DIR "/workbench/rig.yaml");
+  const Rig rig = load_rig(testing::recordings_dir() + "/workbench/rig.yaml");
   EXPECT_EQ(rig.color.width, 1280);
   EXPECT_EQ(rig.color.cy, 507.8);
   EXPECT_EQ(rig.color.distortion[3], -0.0004);
@@ -108,7 +109,7 @@ TEST(Rig, EachWrongValueIsNamed) {
 }
 
 TEST(Rig, NamesAreUnique) {
-  std::ifstream file(DIMINISH_RECORDINGS_DIR "/workbench/rig.yaml");
+  std::ifstream file(testing::recordings_dir() + "/workbench/rig.yaml");
   std::stringstream text;
   text << file.rdbuf();
   std::string yaml = text.str();

@@ -1,18 +1,19 @@
 #include "diminish/scene.h"
 
 #include "expect_error.h"
+#include "paths.h"
 
 namespace diminish {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 Scene read(const std::string& yaml) {
   return read_scene(Config::parse(yaml, "scene.yaml"));
 }
 
 TEST(Scene, ReadsTheBundledScenes) {
-  const Scene scene = load_scene(DIMINISH_RECORDINGS_DIR "/workbench/scene.yaml");
+  const Scene scene = load_scene(testing::recordings_dir() + "/workbench/scene.yaml");
   EXPECT_EQ(scene.marker_dictionary, "DICT_4X4_50");
   EXPECT_EQ(scene.world_marker.id, 0);
   EXPECT_EQ(scene.world_marker.size_m, 0.2);
@@ -21,7 +22,7 @@ TEST(Scene, ReadsTheBundledScenes) {
   EXPECT_EQ(scene.occluders[0].detector, "marker");
   const Config& config = scene.occluders[0].config;
   EXPECT_EQ(read_marker(config.at("marker")).id, 2);
-  EXPECT_EQ(config.at("mesh").path(), DIMINISH_RECORDINGS_DIR "/workbench/lamp.obj");
+  EXPECT_EQ(config.at("mesh").path(), testing::recordings_dir() + "/workbench/lamp.obj");
 }
 
 TEST(Scene, MarkersMayBeLeftOut) {

@@ -3,11 +3,12 @@
 #include <sstream>
 
 #include "expect_error.h"
+#include "paths.h"
 
 namespace diminish {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 std::vector<StreamEntry> read(const std::string& text) {
   std::istringstream stream(text);
@@ -63,7 +64,7 @@ TEST(StreamList, LinesOfOneVideoAreItsFrames) {
 }
 
 TEST(StreamList, OneLineOfAVideoStandsForAllItsFrames) {
-  const std::string video = DIMINISH_SOURCE_TEST_DATA "/depth.mkv";
+  const std::string video = testing::source_test_data() + "/depth.mkv";
   const auto entries = expand_videos(read("0.5 a.png\n1 " + video + "\n"), "color.txt");
   ASSERT_EQ(entries.size(), 6U);
   for (int frame = 0; frame < 5; ++frame) {

@@ -1,0 +1,186 @@
+#include "blend/camera_blender.h"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <functional>
+#include <numeric>
+
+#include "blend/layers.h"
+#include "core/rows.h"
+#include "depth/depth_noise.h"
+
+namespace diminish {
+namespace {
+
+/// In the RGB-D camera's frame.
+float depth_m(const BlendedRow& row, int x) {
+  return (row.depth_slope + row.depth_step * static_cast<float>(x)) / row.inverse_z[x] -
+         row.depth_offset_m;
+}
+
+}  // namespace
+
+void CameraBlender::begin(std::vector<Surface>& surfaces, const Rect& region,
+                          const Intrinsics& color, float agreement_m) {
+  surfaces_ = &surfaces;
+  region_ = region;
+  color_ = color;
+  agreement_m_ = agreement_m;
+  seen_.resize(region.width, region.height);
+  for_rows(region.height, [&](Rows rows) {
+    const int thread = rows.first == 0 ? 0 : 1;
+    slivers_[thread].clear();
+    for (int y = rows.first; y < rows.last; ++y) {
+      look_at_row(y, scratch_[thread], slivers_[thread]);
+    }
+  });
+  for (const std::vector<Sliver>& slivers : slivers_) {
+    for (const Sliver& sliver : slivers) remove(sliver);
+  }
+  grid_.begin(region, color, surfaces.size());
+  for_rows(region.height, [&](Rows rows) {
+    constexpr int cell_px = ConfidenceGrid::cell_px;
+    const int last = rows.last == region.height ? grid_.rows() : rows.last / cell_px;
+    for (int row = rows.first / cell_px; row < last; ++row) {
+      measure_cells(row, scratch_[rows.first == 0 ? 0 : 1]);
+    }
+  });
+  oneapi::tbb::parallel_for(std::size_t{0}, surfaces.size(),
+                            [&](std::size_t k) { grid_.finish(k, surfaces[k].place); });
+}
+
+/// y: relative to the region's corner, as everywhere below.
+void CameraBlender::gather(int y, std::vector<BlendedRow>& rows) const {
+  rows.clear();
+  const Eigen::Vector3f ray =
+      pinhole_ray(color_, static_cast<float>(region_.x), static_cast<float>(region_.y + y));
+  for (const Surface& surface : *surfaces_) {
+    BlendedRow row(*surface.rows[static_cast<std::size_t>(y)], region_.y + y, surface.source);
+    const Eigen::Vector3f& forward = surface.place.forward;
+    row.depth_slope = forward.dot(ray);
+    row.depth_step = forward.x() / static_cast<float>(color_.fx);
+    row.depth_offset_m = forward.dot(surface.place.eye_m);
+    rows.push_back(row);
+  }
+}
+
+void CameraBlender::look_at_row(int y, Scratch& scratch, std::vector<Sliver>& slivers) {
+  gather(y, scratch.rows);
+  scratch.bytes.resize(static_cast<std::size_t>(region_.width));
+  find_seen(scratch.rows, agreement_m_, region_.width, seen_.row(y), scratch.bytes.data());
+  const std::uint8_t* const begin = scratch.bytes.data();
+  const std::uint8_t* const end = begin + region_.width;
+  for (const std::uint8_t* lone = std::find(begin, end, 255); lone != end;
+       lone = std::find(lone + 1, end, 255)) {
+    const auto x = static_cast<int>(lone - begin);
+    const auto camera = static_cast<std::size_t>(std::countr_zero(seen_(x, y)));
+    const float noise_m = DepthNoise().at(depth_m(scratch.rows[camera], x));
+    if (is_sliver((*surfaces_)[camera], x, y,
+                  agreement_tolerance_m(agreement_m_, noise_m, noise_m))) {
+      slivers.push_back({camera, x, y});
+    }
+  }
+}
+
+bool CameraBlender::is_sliver(const Surface& surface, int x, int y, float tolerance_m) const {
+  const auto row_of = [&](int row) {
+    const SurfaceBuffer& buffer = *surface.rows[static_cast<std::size_t>(row)];
+    return buffer.inverse_z.data() + buffer.row(region_.y + row);
+  };
+  const float z = 1 / row_of(y)[x];
+  const float least = 1 / (z + tolerance_m);
+  const float most = z > tolerance_m ? 1 / (z - tolerance_m) : INFINITY;
+  constexpr int reach = blending::window_reach;
+  const int left = std::max(0, x - reach);
+  const int right = std::min(region_.width - 1, x + reach);
+  const int top = std::max(0, y - reach);
+  const int bottom = std::min(region_.height - 1, y + reach);
+  const float enough =
+      blending::least_part * static_cast<float>((right - left + 1) * (bottom - top + 1));
+  int same = 0;
+  for (int v = top; v <= bottom; ++v) {
+    const float* const inverse_z = row_of(v);
+    for (int u = left; u <= right; ++u) {
+      same += inverse_z[u] > least && inverse_z[u] < most ? 1 : 0;
+    }
+    if (static_cast<float>(same) >= enough) return false;
+  }
+  return true;
+}
+
+/// What is behind it is now seen.
+void CameraBlender::remove(const Sliver& sliver) {
+  SurfaceBuffer& buffer = *(*surfaces_)[sliver.camera].rows[static_cast<std::size_t>(sliver.y)];
+  buffer.inverse_z[static_cast<std::size_t>(buffer.row(region_.y + sliver.y) + sliver.x)] = 0;
+  std::vector<BlendedRow>& rows = scratch_[0].rows;
+  gather(sliver.y, rows);
+  for (BlendedRow& row : rows) {
+    // One pixel of each row.
+    row.depth_slope += row.depth_step * static_cast<float>(sliver.x);
+    row.inverse_z += sliver.x;
+  }
+  std::uint8_t lone = 0;
+  find_seen(rows, agreement_m_, 1, &seen_(sliver.x, sliver.y), &lone);
+}
+
+void CameraBlender::measure_cells(int cell_row, Scratch& scratch) {
+  const Rect first = grid_.cell(0, cell_row);
+  // The cameras that see the nearest surface in all rows of a column.
+  scratch.bytes.assign(static_cast<std::size_t>(region_.width), 255);
+  for (int y = first.y; y < first.bottom(); ++y) {
+    const std::uint8_t* const seen = seen_.row(y);
+    for (std::size_t x = 0; x < scratch.bytes.size(); ++x) scratch.bytes[x] &= seen[x];
+  }
+  const auto place = [](const SurfaceRow& row, int x) {
+    const float z = 1 / row.inverse_z[x];
+    return Eigen::Vector2f(row.u_over_z[x] * z, row.v_over_z[x] * z);
+  };
+  const int bottom = first.bottom() - 1;
+  for (std::size_t k = 0; k < surfaces_->size(); ++k) {
+    const Surface& surface = (*surfaces_)[k];
+    const auto row_at = [&](int y) {
+      return SurfaceRow(*surface.rows[static_cast<std::size_t>(y)], region_.y + y, surface.source);
+    };
+    const SurfaceRow upper = row_at(first.y);
+    const SurfaceRow lower = row_at(bottom);
+    for (int column = 0; column < grid_.columns(); ++column) {
+      const Rect cell = grid_.cell(column, cell_row);
+      const auto seen = scratch.bytes.begin() + cell.x;
+      const std::uint8_t covering =
+          std::accumulate(seen, seen + cell.width, std::uint8_t{255}, std::bit_and<>());
+      if ((covering >> k & 1) == 0) {
+        grid_.set(k, column, cell_row, 0, 0);
+        continue;
+      }
+      const int right = cell.right() - 1;
+      const Eigen::Vector2f origin = place(upper, cell.x);
+      const Eigen::Vector2f along_x = place(upper, right) - origin;
+      const Eigen::Vector2f along_y = place(lower, cell.x) - origin;
+      const float area = along_x.x() * along_y.y() - along_x.y() * along_y.x();
+      const int pixels = std::max(1, right - cell.x) * std::max(1, bottom - cell.y);
+      grid_.set(k, column, cell_row,
+                std::max(area / static_cast<float>(pixels), ConfidenceGrid::least_resolution),
+                1 / upper.inverse_z[cell.x]);
+    }
+  }
+}
+
+const std::vector<BlendedRow>& CameraBlender::choose(int y, const TwoSources& out,
+                                                     Scratch& scratch) const {
+  const int row = y - region_.y;
+  gather(row, scratch.rows);
+  const auto width = static_cast<std::size_t>(region_.width);
+  scratch.confidences.resize(scratch.rows.size() * width);
+  for (std::size_t k = 0; k < scratch.rows.size(); ++k) {
+    float* const confidence = scratch.confidences.data() + k * width;
+    grid_.row(k, row, scratch.nodes, confidence);
+    scratch.rows[k].confidence = confidence;
+  }
+  choose_two(scratch.rows, region_.width, seen_.row(row), out);
+  return scratch.rows;
+}
+
+}  // namespace diminish

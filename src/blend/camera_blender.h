@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "blend/blend_row.h"
+#include "blend/camera_place.h"
+#include "blend/confidence_grid.h"
+#include "diminish/intrinsics.h"
+#include "diminish/reconstruction.h"
+
+namespace diminish {
+
+/// Blends what several RGB-D cameras show by the rules of layers.h: what blend_layers does, in
+/// vectors of pixels, the rows in two threads.
+class CameraBlender {
+ public:
+  /// One camera's surface in the region.
+  struct Surface {
+    std::uint8_t source = 0;  ///< the camera's name in Reconstruction::source
+    CameraPlace place;
+    std::vector<SurfaceBuffer*> rows;  ///< which buffer holds each row of the region
+  };
+
+  /// Takes slivers out of the surfaces and finds out how far each camera is trusted. `surfaces`,
+  /// blending::most_cameras at most, must stay until the region's rows are done.
+  void begin(std::vector<Surface>& surfaces, const Rect& region, const Intrinsics& color,
+             float agreement_m);
+
+  /// Memory for a row at a time; one for each thread.
+  struct Scratch {
+    std::vector<BlendedRow> rows;
+    std::vector<float> nodes, confidences;
+    std::vector<std::uint8_t> bytes;
+  };
+  /// Which cameras the pixels of row y are taken from. Returns the cameras' rows.
+  const std::vector<BlendedRow>& choose(int y, const TwoSources& out, Scratch& scratch) const;
+
+ private:
+  struct Sliver {
+    std::size_t camera;
+    int x, y;
+  };
+
+  void gather(int y, std::vector<BlendedRow>& rows) const;
+  void look_at_row(int y, Scratch& scratch, std::vector<Sliver>& slivers);
+  bool is_sliver(const Surface& surface, int x, int y, float tolerance_m) const;
+  void remove(const Sliver& sliver);
+  void measure_cells(int cell_row, Scratch& scratch);
+
+  std::vector<Surface>* surfaces_ = nullptr;
+  Rect region_;
+  Intrinsics color_;
+  float agreement_m_ = 0;
+  Image<std::uint8_t> seen_;  ///< which cameras see the nearest surface: a bit each
+  ConfidenceGrid grid_;
+  Scratch scratch_[2];  ///< of each thread
+  std::vector<Sliver> slivers_[2];
+};
+
+}  // namespace diminish

@@ -1,0 +1,101 @@
+#include "depth/depth_cleaner.h"
+
+#include <algorithm>
+
+#include "core/rows.h"
+#include "depth/depth_rows.h"
+#include "geometry/projection.h"
+
+namespace diminish {
+namespace {
+
+using depth_rows::reach;
+
+/// How far, in depth pixels, from what hides it a pixel must be in the colour image: both are
+/// blurred.
+constexpr float margin_px = 1;
+
+/// What is `reach` away from the image's borders.
+Rect inside(const Image<std::uint16_t>& depth) {
+  return {reach, reach, depth.width() - 2 * reach, depth.height() - 2 * reach};
+}
+
+}  // namespace
+
+DepthCleaner::DepthCleaner(const RgbdCamera& camera) : camera_(camera), edge_snapping_(camera) {
+  const Image<Eigen::Vector2f> rays = Lens(camera.depth).rays();
+  ray_side_.resize(rays.width(), rays.height());
+  ray_ahead_.resize(rays.width(), rays.height());
+  const FloatTransform to_color(camera.color_from_depth);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const float x = rays.data()[i].x();
+    const float y = rays.data()[i].y();
+    ray_side_.data()[i] = to_color.r[0][0] * x + to_color.r[0][1] * y + to_color.r[0][2];
+    ray_ahead_.data()[i] = to_color.r[2][0] * x + to_color.r[2][1] * y + to_color.r[2][2];
+  }
+}
+
+void DepthCleaner::clean(const Image<std::uint16_t>& depth, const EdgeSnapping::Images& images,
+                         const DepthPart& part, const Options& options,
+                         Image<std::uint16_t>& cleaned) {
+  cleaned = depth;
+  if (options.remove_flying) remove_flying(depth, part, cleaned);
+  if (options.smooth_depth) smooth(part, cleaned);
+  if (options.snap_edges) edge_snapping_.snap(images, part, cleaned);
+  if (options.remove_hidden) {
+    remove_hidden(part, static_cast<float>(options.discontinuity_threshold_m), cleaned);
+  }
+}
+
+void DepthCleaner::remove_flying(const Image<std::uint16_t>& depth, const DepthPart& part,
+                                 Image<std::uint16_t>& cleaned) const {
+  for_each_row(part, inside(depth), [&](int y, const DepthPart::Columns& columns) {
+    depth_rows::remove_flying(row(depth, y, columns), depth.width(),
+                              cleaned.row(y) + columns.first);
+  });
+}
+
+void DepthCleaner::remove_hidden(const DepthPart& part, float threshold_m,
+                                 Image<std::uint16_t>& cleaned) {
+  const auto side_m = static_cast<float>(camera_.color_from_depth.translation.x());
+  const auto ahead_m = static_cast<float>(camera_.color_from_depth.translation.z());
+  const auto unit_m = static_cast<float>(camera_.depth_unit_m);
+  const auto margin = margin_px / static_cast<float>(camera_.depth.fx);
+  const Rect& bounds = part.bounds();
+  for_rows(bounds.height, [&](Rows rows) {
+    Scratch& scratch = scratch_[rows.first == 0 ? 0 : 1];
+    scratch.depth_m.resize(static_cast<std::size_t>(bounds.width + 16));
+    scratch.place.resize(static_cast<std::size_t>(bounds.width + 16));
+    for (int y = bounds.y + rows.first; y < bounds.y + rows.last; ++y) {
+      const DepthPart::Columns& columns = part.columns(y);
+      const depth_rows::Places places{ray_side_.row(y) + columns.first,
+                                      ray_ahead_.row(y) + columns.first, side_m, ahead_m};
+      depth_rows::remove_hidden(places, unit_m, margin, threshold_m, columns.count(),
+                                cleaned.row(y) + columns.first, scratch.depth_m.data(),
+                                scratch.place.data());
+    }
+  });
+}
+
+/// First along rows, then along columns.
+void DepthCleaner::smooth(const DepthPart& part, Image<std::uint16_t>& cleaned) {
+  half_smooth_ = cleaned;
+  const Rect inner = inside(cleaned);
+  for_each_row(part, {inner.x, 0, inner.width, cleaned.height()},
+               [&](int y, const DepthPart::Columns& columns) {
+                 depth_rows::smooth(row(cleaned, y, columns), 1,
+                                    half_smooth_.row(y) + columns.first);
+               });
+  for_each_row(part, inner, [&](int y, const DepthPart::Columns& columns) {
+    depth_rows::smooth(row(half_smooth_, y, columns), cleaned.width(),
+                       cleaned.row(y) + columns.first);
+  });
+}
+
+depth_rows::Row DepthCleaner::row(const Image<std::uint16_t>& depth, int y,
+                                  const DepthPart::Columns& columns) const {
+  return {
+      depth.row(y) + columns.first, columns.count(), static_cast<float>(camera_.depth_unit_m), {}};
+}
+
+}  // namespace diminish

@@ -1,0 +1,254 @@
+#include "depth/depth_rows.h"
+
+#include <limits>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "depth/depth_rows.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "depth/row_vectors-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace diminish::depth_rows::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using diminish::HWY_NAMESPACE::ForEachVector;
+using diminish::HWY_NAMESPACE::most_lanes;
+using diminish::HWY_NAMESPACE::NoiseAt;
+using diminish::HWY_NAMESPACE::StoreBytes;
+
+template <class D>
+HWY_INLINE hn::Vec<D> Load(D d, const std::uint16_t* depth) {
+  const hn::RebindToSigned<D> ints;
+  const hn::Rebind<std::uint16_t, D> words;
+  return hn::ConvertTo(d, hn::PromoteTo(ints, hn::LoadU(words, depth)));
+}
+template <class D>
+HWY_INLINE void Store(D, hn::Vec<D> values, std::uint16_t* depth) {
+  const hn::RebindToSigned<D> ints;
+  const hn::Rebind<std::uint16_t, D> words;
+  hn::StoreU(hn::DemoteTo(words, hn::ConvertTo(ints, values)), words, depth);
+}
+
+/// Whether a surface goes on to depth z. first, second: its pixels beside that, and one further.
+template <class D>
+HWY_INLINE hn::Mask<D> Continues(D d, hn::Vec<D> first, hn::Vec<D> second, hn::Vec<D> z,
+                                 hn::Vec<D> noise) {
+  const auto zero = hn::Zero(d);
+  const auto one = hn::Set(d, 1.F);
+  const auto is_near = hn::Le(hn::Abs(hn::Sub(first, z)), hn::Mul(hn::Set(d, 1.5F), noise));
+  // Along a plane 1/z changes evenly.
+  const auto inverse_first = hn::Div(one, first);
+  const auto inverse = hn::IfThenElse(
+      hn::Gt(second, zero), hn::Sub(hn::Add(inverse_first, inverse_first), hn::Div(one, second)),
+      inverse_first);
+  const auto off = hn::Mul(hn::Abs(hn::Sub(one, hn::Mul(inverse, z))), z);
+  const auto is_on_plane = hn::Le(off, hn::Mul(hn::Set(d, 2.5F), noise));
+  return hn::And(hn::Gt(first, zero), hn::Or(is_near, is_on_plane));
+}
+
+void RemoveFlying(const Row& row, std::ptrdiff_t pitch, std::uint16_t* result) {
+  ForEachVector(row.count, [&](auto d, int x) HWY_ATTR {
+    const std::uint16_t* pixel = row.depth + x;
+    const auto unit = hn::Set(d, row.unit_m);
+    const auto depth_at = [&](std::ptrdiff_t offset)
+                              HWY_ATTR { return hn::Mul(Load(d, pixel + offset), unit); };
+    const auto zero = hn::Zero(d);
+    const auto z = depth_at(0);
+    const auto noise = NoiseAt(d, row.noise, z);
+    const auto edge = hn::Mul(hn::Set(d, 2.5F), noise);
+    auto flying = hn::Lt(z, zero);
+    for (const std::ptrdiff_t offset : {std::ptrdiff_t{1}, std::ptrdiff_t{-1}, pitch, -pitch}) {
+      const auto other = depth_at(offset);
+      const auto beyond = hn::And(hn::Gt(other, zero), hn::Gt(hn::Abs(hn::Sub(other, z)), edge));
+      if (hn::AllFalse(d, beyond)) continue;
+      const auto continues = Continues(d, depth_at(-offset), depth_at(-2 * offset), z, noise);
+      flying = hn::Or(flying, hn::AndNot(continues, beyond));
+    }
+    if (hn::AllFalse(d, flying)) return;
+    Store(d, hn::IfThenZeroElse(flying, Load(d, result + x)), result + x);
+  });
+}
+
+void Smooth(const Row& row, std::ptrdiff_t step, std::uint16_t* result) {
+  ForEachVector(row.count, [&](auto d, int x) HWY_ATTR {
+    const std::uint16_t* pixel = row.depth + x;
+    const auto zero = hn::Zero(d);
+    const auto half = hn::Set(d, 0.5F);
+    const auto own = Load(d, pixel);
+    const auto limit = hn::Mul(NoiseAt(d, row.noise, hn::Mul(own, hn::Set(d, row.unit_m))),
+                               hn::Set(d, 1 / row.unit_m));
+    auto same = hn::Gt(own, zero);
+    auto sum = own;
+    auto count = hn::Set(d, 1.F);
+    for (int k = 1; k <= reach; ++k) {
+      const auto before = Load(d, pixel - k * step);
+      const auto after = Load(d, pixel + k * step);
+      const auto pair = hn::Add(before, after);
+      const auto is_close = hn::Le(hn::Abs(hn::Sub(hn::Mul(pair, half), own)), limit);
+      same = hn::And(hn::And(same, is_close), hn::Gt(hn::Min(before, after), zero));
+      sum = hn::Add(sum, hn::IfThenElseZero(same, pair));
+      count = hn::Add(count, hn::IfThenElseZero(same, hn::Set(d, 2.F)));
+    }
+    // 0 stays 0.
+    const auto mean = hn::Add(hn::Div(sum, count), half);
+    Store(d, mean, result + x);
+  });
+}
+
+/// The frontmost of what was passed so far: its place in the colour image, and its depth.
+struct Front {
+  float place, depth_m;
+};
+
+void RemoveHidden(const Places& places, float unit_m, float margin, float threshold_m, int count,
+                  std::uint16_t* depth, float* depth_m, float* place) {
+  ForEachVector(count, [&](auto d, int x) HWY_ATTR {
+    const auto z = hn::Mul(Load(d, depth + x), hn::Set(d, unit_m));
+    const auto side = hn::Add(hn::Mul(hn::LoadU(d, places.side + x), z), hn::Set(d, places.side_m));
+    const auto ahead =
+        hn::Add(hn::Mul(hn::LoadU(d, places.ahead + x), z), hn::Set(d, places.ahead_m));
+    hn::StoreU(z, d, depth_m + x);
+    hn::StoreU(hn::Div(side, hn::Max(ahead, hn::Set(d, 1e-3F))), d, place + x);
+  });
+  const hn::CappedTag<float, most_lanes> d;
+  const auto lanes = static_cast<int>(hn::Lanes(d));
+  const auto threshold = hn::Set(d, threshold_m);
+  // From pixel x on, a vector's pixels are measured, in order, and none is far behind the next:
+  // they hide nothing of each other.
+  const auto in_order = [&](int x) HWY_ATTR {
+    const auto pairs = hn::FirstN(d, static_cast<std::size_t>(lanes - 1));
+    const auto z = hn::LoadU(d, depth_m + x);
+    const auto next_z = hn::LoadU(d, depth_m + x + 1);
+    const auto step = hn::Lt(hn::LoadU(d, place + x), hn::LoadU(d, place + x + 1));
+    const auto fits = hn::AndNot(hn::Lt(z, hn::Sub(next_z, threshold)),
+                                 hn::Not(hn::Lt(next_z, hn::Sub(z, threshold))));
+    const auto all = hn::And(step, fits);
+    return hn::AllTrue(d, hn::Or(all, hn::Not(pairs))) && hn::AllTrue(d, hn::Gt(z, hn::Zero(d)));
+  };
+  // The end of the last whole vector; what is beyond is looked at a pixel at a time.
+  const int whole = count / lanes * lanes;
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  const auto pass = [&](int x, float direction, Front& front) {
+    if (depth[x] == 0) return;
+    const float own = direction * place[x];
+    if (front.place > own - margin && front.depth_m < depth_m[x] - threshold_m) {
+      depth[x] = 0;
+      depth_m[x] = 0;
+    } else if (own > front.place) {
+      front = {own, depth_m[x]};
+    }
+  };
+  const auto passes_freely = [&](int x, float direction, const Front& front) {
+    const float own = direction * place[x];
+    return front.place < own &&
+           !(front.place > own - margin && front.depth_m < depth_m[x] - threshold_m);
+  };
+  Front front{-infinity, 0};
+  for (int x = 0; x < count;) {
+    if (x < whole && x % lanes == 0 && passes_freely(x, 1, front) && in_order(x)) {
+      x += lanes;
+      front = {place[x - 1], depth_m[x - 1]};
+    } else {
+      pass(x++, 1, front);
+    }
+  }
+  front = {-infinity, 0};
+  for (int x = count; x > 0;) {
+    if (x <= whole && x % lanes == 0 && passes_freely(x - 1, -1, front) && in_order(x - lanes)) {
+      x -= lanes;
+      front = {-place[x], depth_m[x]};
+    } else {
+      pass(--x, -1, front);
+    }
+  }
+}
+
+void FindJumps(const std::uint16_t* depth, int count, std::ptrdiff_t step, int steps,
+               std::uint16_t limit, std::uint8_t* has_jump) {
+  const hn::CappedTag<std::uint16_t, piece> d;
+  const auto lanes = static_cast<int>(hn::Lanes(d));
+  const auto zero = hn::Zero(d);
+  for (int first = 0; first + piece <= count; first += piece) {
+    auto widest = zero;
+    for (int x = first; x < first + piece; x += lanes) {
+      const auto own = hn::LoadU(d, depth + x);
+      for (int k = 1; k <= steps; ++k) {
+        const auto other = hn::LoadU(d, depth + x + k * step);
+        const auto apart = hn::Or(hn::SaturatedSub(own, other), hn::SaturatedSub(other, own));
+        // What is 0 is the lesser of both.
+        widest = hn::Max(widest, hn::IfThenZeroElse(hn::Eq(hn::Min(own, other), zero), apart));
+      }
+    }
+    const auto beyond = hn::SaturatedSub(widest, hn::Set(d, limit));
+    has_jump[first / piece] = hn::AllTrue(d, hn::Eq(beyond, zero)) ? 0 : 1;
+  }
+}
+
+void KeepGaps(const std::uint16_t* depth, std::ptrdiff_t pitch, int count, const Gap& gap,
+              std::uint8_t* flags) {
+  ForEachVector(count, [&](auto d, int x) HWY_ATTR {
+    const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
+    if (std::find(flags + x, flags + x + lanes, 1) == flags + x + lanes) return;
+    const auto none = hn::Set(d, 65535.F);
+    auto least = none;
+    auto most = hn::Zero(d);
+    for (int row = -reach; row <= reach; ++row) {
+      const int side = row == 0 ? reach : row == reach || row == -reach ? 0 : 1;
+      for (int column = -side; column <= side; ++column) {
+        const auto z = Load(d, depth + x + row * pitch + column);
+        least = hn::Min(least, hn::IfThenElse(hn::Gt(z, hn::Zero(d)), z, none));
+        most = hn::Max(most, z);
+      }
+    }
+    const auto wide = hn::Max(hn::Set(d, gap.least),
+                              hn::Add(hn::Set(d, gap.constant),
+                                      hn::Mul(hn::Mul(hn::Set(d, gap.by_square), least), least)));
+    const auto has_gap = hn::Gt(hn::Sub(most, least), wide);
+    const hn::RebindToSigned<decltype(d)> di;
+    const hn::Rebind<std::uint8_t, decltype(d)> d8;
+    const auto old = hn::PromoteTo(di, hn::LoadU(d8, flags + x));
+    StoreBytes(d, hn::IfThenElseZero(hn::RebindMask(di, has_gap), old), flags + x);
+  });
+}
+
+}  // namespace
+}  // namespace diminish::depth_rows::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace diminish::depth_rows {
+namespace {
+
+HWY_EXPORT(RemoveFlying);
+HWY_EXPORT(Smooth);
+HWY_EXPORT(RemoveHidden);
+HWY_EXPORT(FindJumps);
+HWY_EXPORT(KeepGaps);
+
+}  // namespace
+
+void remove_flying(const Row& row, std::ptrdiff_t pitch, std::uint16_t* result) {
+  HWY_DYNAMIC_DISPATCH(RemoveFlying)(row, pitch, result);
+}
+void smooth(const Row& row, std::ptrdiff_t step, std::uint16_t* result) {
+  HWY_DYNAMIC_DISPATCH(Smooth)(row, step, result);
+}
+void remove_hidden(const Places& places, float unit_m, float margin, float threshold_m, int count,
+                   std::uint16_t* depth, float* depth_m, float* place) {
+  HWY_DYNAMIC_DISPATCH(RemoveHidden)
+  (places, unit_m, margin, threshold_m, count, depth, depth_m, place);
+}
+void find_jumps(const std::uint16_t* depth, int count, std::ptrdiff_t step, int steps,
+                std::uint16_t limit, std::uint8_t* has_jump) {
+  HWY_DYNAMIC_DISPATCH(FindJumps)(depth, count, step, steps, limit, has_jump);
+}
+void keep_gaps(const std::uint16_t* depth, std::ptrdiff_t pitch, int count, const Gap& gap,
+               std::uint8_t* flags) {
+  HWY_DYNAMIC_DISPATCH(KeepGaps)(depth, pitch, count, gap, flags);
+}
+
+}  // namespace diminish::depth_rows
+#endif

@@ -1,0 +1,65 @@
+// Included once for each instruction set: what kernels on rows of depths have in common.
+#if defined(DIMINISH_ROW_VECTORS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef DIMINISH_ROW_VECTORS_INL_H
+#undef DIMINISH_ROW_VECTORS_INL_H
+#else
+#define DIMINISH_ROW_VECTORS_INL_H
+#endif
+
+#include <hwy/highway.h>
+
+#include "depth/depth_noise.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace diminish::HWY_NAMESPACE {
+namespace {
+
+constexpr int most_lanes = 16;
+
+/// Visits a row a vector at a time, what is left over a pixel at a time.
+template <class Visit>
+HWY_INLINE void ForEachVector(int count, const Visit& visit) {
+  const hwy::HWY_NAMESPACE::CappedTag<float, most_lanes> d;
+  const auto lanes = static_cast<int>(hwy::HWY_NAMESPACE::Lanes(d));
+  int x = 0;
+  for (; x + lanes <= count; x += lanes) visit(d, x);
+  for (; x < count; ++x) visit(hwy::HWY_NAMESPACE::CappedTag<float, 1>(), x);
+}
+
+/// Visits vectors of pixels that cover a row; the last may overlap the one before it, so that only
+/// what does not depend on earlier visits may be done. Rows shorter than a vector are walked pixel
+/// by pixel.
+template <class Visit>
+HWY_INLINE void ForEachOverlappingVector(int count, const Visit& visit) {
+  const hwy::HWY_NAMESPACE::CappedTag<float, most_lanes> d;
+  const auto lanes = static_cast<int>(hwy::HWY_NAMESPACE::Lanes(d));
+  if (count < lanes) {
+    for (int x = 0; x < count; ++x) visit(hwy::HWY_NAMESPACE::CappedTag<float, 1>(), x);
+    return;
+  }
+  for (int x = 0; x + lanes <= count; x += lanes) visit(d, x);
+  if (count % lanes != 0) visit(d, count - lanes);
+}
+
+/// One byte a lane, of integers (cut to 0 to 255). D: a tag of as many floats.
+template <class D>
+HWY_INLINE void StoreBytes(D /*d*/,
+                           hwy::HWY_NAMESPACE::Vec<hwy::HWY_NAMESPACE::RebindToSigned<D>> values,
+                           std::uint8_t* to) {
+  namespace hn = hwy::HWY_NAMESPACE;
+  const hn::Rebind<std::uint8_t, D> bytes;
+  hn::StoreU(hn::DemoteTo(bytes, values), bytes, to);
+}
+
+/// Of a depth in metres.
+template <class D, class V = hwy::HWY_NAMESPACE::Vec<D>>
+HWY_INLINE V NoiseAt(D d, const DepthNoise& noise, V z) {
+  namespace hn = hwy::HWY_NAMESPACE;
+  return hn::Add(hn::Set(d, noise.constant_m), hn::Mul(hn::Mul(hn::Set(d, noise.by_square), z), z));
+}
+
+}  // namespace
+}  // namespace diminish::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

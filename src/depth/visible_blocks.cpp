@@ -1,0 +1,206 @@
+#include "depth/visible_blocks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/rows.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "depth/visible_blocks.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace diminish::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Of each column of some rows, the nearest and the farthest depth; 65535 and 0 where there is
+/// none.
+void FindDepths(const std::uint16_t* first, std::ptrdiff_t pitch, int rows, int columns,
+                std::uint16_t* nearest, std::uint16_t* farthest) {
+  const auto find = [&](auto d, int x) HWY_ATTR {
+    const auto one = hn::Set(d, std::uint16_t{1});
+    auto least = hn::Set(d, std::uint16_t{65535});
+    auto greatest = hn::Zero(d);
+    for (int y = 0; y < rows; ++y) {
+      const auto depth = hn::LoadU(d, first + y * pitch + x);
+      // 0 becomes the greatest.
+      least = hn::Min(least, hn::Sub(depth, one));
+      greatest = hn::Max(greatest, depth);
+    }
+    hn::StoreU(hn::SaturatedAdd(least, one), d, nearest + x);
+    hn::StoreU(greatest, d, farthest + x);
+  };
+  const hn::ScalableTag<std::uint16_t> d;
+  const auto lanes = static_cast<int>(hn::Lanes(d));
+  int x = 0;
+  for (; x + lanes <= columns; x += lanes) find(d, x);
+  for (; x < columns; ++x) find(hn::CappedTag<std::uint16_t, 1>(), x);
+}
+
+}  // namespace
+}  // namespace diminish::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace diminish {
+namespace {
+
+HWY_EXPORT(FindDepths);
+
+/// For what rounding vertices may move, and between the points that are undistorted.
+constexpr int margin_px = 4;
+constexpr int points_of_side = 16;
+
+/// The pixels of a block and those beside it.
+Rect with_neighbours(int column, int row, const Rect& image) {
+  return intersect(grow({column * VisibleBlocks::width, row * VisibleBlocks::height,
+                         VisibleBlocks::width, VisibleBlocks::height},
+                        1),
+                   image);
+}
+
+}  // namespace
+
+VisibleBlocks::VisibleBlocks(const RgbdCamera& camera, const Intrinsics& color)
+    : color_(color),
+      unit_m_(static_cast<float>(camera.depth_unit_m)),
+      image_width_(camera.depth.width),
+      image_height_(camera.depth.height),
+      columns_((image_width_ + width - 1) / width),
+      rows_((image_height_ + height - 1) / height) {
+  const Lens lens(camera.depth);
+  for (int row = 0; row < rows_; ++row) {
+    for (int column = 0; column < columns_; ++column) {
+      // A block is small: its other rays hardly lie beyond these, by less than the margin.
+      const Rect pixels = with_neighbours(column, row, camera.depth.bounds());
+      Eigen::Array2d least = lens.undistort({pixels.x, pixels.y});
+      Eigen::Array2d greatest = least;
+      for (const int y : {pixels.y, pixels.y + pixels.height / 2, pixels.bottom() - 1}) {
+        for (const int x : {pixels.x, pixels.x + pixels.width / 2, pixels.right() - 1}) {
+          const Eigen::Array2d ray = lens.undistort({x, y});
+          least = least.min(ray);
+          greatest = greatest.max(ray);
+        }
+      }
+      const auto range = [&](int axis) {
+        return Range{static_cast<float>(least[axis]), static_cast<float>(greatest[axis])};
+      };
+      rays_.push_back({range(0), range(1)});
+    }
+  }
+  visible_.resize(rays_.size());
+}
+
+void VisibleBlocks::find(const Image<std::uint16_t>& depth, const RigidTransform& color_from_depth,
+                         const Rect& region) {
+  find_sides(color_from_depth, region);
+  for_rows(image_height_, [&](Rows rows) {
+    Depths& depths = depths_[rows.first == 0 ? 0 : 1];
+    depths.nearest.resize(static_cast<std::size_t>(image_width_));
+    depths.farthest.resize(depths.nearest.size());
+    for (int row = rows.first / height; row * height < rows.last; ++row) {
+      const Rect band = with_neighbours(0, row, depth.bounds());
+      HWY_DYNAMIC_DISPATCH(FindDepths)
+      (depth.row(band.y), depth.width(), band.height, depth.width(), depths.nearest.data(),
+       depths.farthest.data());
+      for (int column = 0; column < columns_; ++column) {
+        const Rect pixels = with_neighbours(column, row, depth.bounds());
+        const auto first = static_cast<std::size_t>(pixels.x);
+        const auto last = static_cast<std::size_t>(pixels.right());
+        std::uint16_t nearest = 65535;
+        std::uint16_t farthest = 0;
+        for (std::size_t x = first; x < last; ++x) {
+          nearest = std::min(nearest, depths.nearest[x]);
+          farthest = std::max(farthest, depths.farthest[x]);
+        }
+        const auto block = index(column, row);
+        visible_[block] =
+            farthest > 0 && is_visible(rays_[block], {static_cast<float>(nearest) * unit_m_,
+                                                      static_cast<float>(farthest) * unit_m_})
+                ? 1
+                : 0;
+      }
+    }
+  });
+  find_part();
+}
+
+void VisibleBlocks::clear() {
+  std::fill(visible_.begin(), visible_.end(), std::uint8_t{0});
+  find_part();
+}
+
+/// The planes that bound the view of the region, as far as its sides have rays.
+void VisibleBlocks::find_sides(const RigidTransform& color_from_depth, const Rect& region) {
+  const Rect wide = grow(region, margin_px);
+  const Eigen::Array2d first(wide.x, wide.y);
+  const Eigen::Array2d size(wide.width, wide.height);
+  sides_.clear();
+  for (const int axis : {0, 1}) {
+    for (const int sign : {-1, 1}) {
+      // The ray's coordinate that is furthest out along this side.
+      double furthest = -std::numeric_limits<double>::infinity();
+      for (int i = 0; i <= points_of_side; ++i) {
+        Eigen::Array2d along;
+        along[axis] = sign < 0 ? 0 : 1;
+        along[1 - axis] = static_cast<double>(i) / points_of_side;
+        const Eigen::Vector2d pixel = first + along * size;
+        const Eigen::Vector2d ray = color_.undistort(pixel);
+        const auto back = color_.distort(ray);
+        const bool has_ray = back && (*back - pixel).norm() < 0.1;
+        furthest = std::max(furthest,
+                            has_ray ? sign * ray[axis] : std::numeric_limits<double>::infinity());
+      }
+      if (!std::isfinite(furthest)) continue;
+      // Beyond it sign * x > furthest * z, in the colour camera's frame.
+      Eigen::Vector3d normal(0, 0, -furthest);
+      normal[axis] = sign;
+      const Eigen::Vector3f in_depth =
+          (color_from_depth.rotation.transpose() * normal).cast<float>();
+      sides_.push_back({in_depth.x(), in_depth.y(), in_depth.z(),
+                        static_cast<float>(normal.dot(color_from_depth.translation))});
+    }
+  }
+}
+
+bool VisibleBlocks::is_visible(const Rays& rays, const Range& depth_m) const {
+  return std::none_of(sides_.begin(), sides_.end(), [&](const Plane& side) {
+    // The point of the body that is least far beyond the plane.
+    const float slope = side.x * (side.x > 0 ? rays.x.least : rays.x.greatest) +
+                        side.y * (side.y > 0 ? rays.y.least : rays.y.greatest) + side.z;
+    return slope * (slope > 0 ? depth_m.least : depth_m.greatest) + side.offset > 0;
+  });
+}
+
+void VisibleBlocks::find_part() {
+  const auto columns_of = [&](int row) {
+    DepthPart::Columns columns{columns_, 0};
+    if (row < 0 || row >= rows_) return columns;
+    for (int column = 0; column < columns_; ++column) {
+      if (visible_[index(column, row)] == 0) continue;
+      columns.first = std::min(columns.first, column - 1);
+      columns.last = column + 2;
+    }
+    return columns;
+  };
+  part_.begin(height);
+  for (int row = 0; row < rows_; ++row) {
+    DepthPart::Columns columns = columns_of(row);
+    for (const int beside : {row - 1, row + 1}) {
+      columns.first = std::min(columns.first, columns_of(beside).first);
+      columns.last = std::max(columns.last, columns_of(beside).last);
+    }
+    DepthPart::Columns pixels;
+    if (columns.count() > 0) {
+      pixels = {std::max(0, columns.first * width), std::min(image_width_, columns.last * width)};
+    }
+    part_.add_band(pixels, std::min(image_height_, (row + 1) * height));
+  }
+}
+
+}  // namespace diminish
+#endif

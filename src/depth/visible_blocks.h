@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "depth/depth_part.h"
+#include "diminish/image.h"
+#include "diminish/rig.h"
+
+namespace diminish {
+
+/// The blocks of a depth image that may show up in a region of the colour camera's picture. A
+/// block's rays, between its least and its greatest depth, span a convex body; the block is out of
+/// view if all of that lies beyond one of the planes through the camera and the region's sides.
+/// What is left out shows nothing there, nor does a triangle with a vertex in it.
+class VisibleBlocks {
+ public:
+  static constexpr int width = 16, height = 8;  ///< pixels
+
+  VisibleBlocks(const RgbdCamera& camera, const Intrinsics& color);
+
+  /// color_from_depth: from the depth sensor's frame to the colour camera's. Cost: 1 ns a pixel.
+  void find(const Image<std::uint16_t>& depth, const RigidTransform& color_from_depth,
+            const Rect& region);
+  /// Nothing is visible.
+  void clear();
+
+  /// Of each block along a row of pixels, whether it may be seen.
+  const std::uint8_t* row(int y) const { return visible_.data() + index(0, y / height); }
+  /// From the first to the last visible block of each row, and a block more on all sides.
+  const DepthPart& part() const { return part_; }
+
+ private:
+  struct Range {
+    float least, greatest;
+  };
+  /// The rays (x, y, 1) of a block's pixels, and of those beside it.
+  struct Rays {
+    Range x, y;
+  };
+  /// Of the columns of a row of blocks.
+  struct Depths {
+    std::vector<std::uint16_t> nearest, farthest;
+  };
+  /// In the depth sensor's frame; positive beyond a side of the region.
+  struct Plane {
+    float x, y, z, offset;
+  };
+
+  void find_sides(const RigidTransform& color_from_depth, const Rect& region);
+  bool is_visible(const Rays& rays, const Range& depth_m) const;
+  void find_part();
+  std::size_t index(int column, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+           static_cast<std::size_t>(column);
+  }
+
+  Lens color_;
+  float unit_m_;
+  int image_width_, image_height_, columns_, rows_;
+  std::vector<Rays> rays_;
+  std::vector<Plane> sides_;
+  Depths depths_[2];  ///< of each thread
+  std::vector<std::uint8_t> visible_;
+  DepthPart part_;
+};
+
+}  // namespace diminish

@@ -1,0 +1,131 @@
+#include <gtest/gtest.h>
+
+#include <opencv2/imgproc.hpp>
+#include <random>
+
+#include "core/mat.h"
+#include "detect/color_blob/extremum_filters.h"
+#include "detect/color_blob/shrink_picture.h"
+#include "detect/color_blob/smooth_picture.h"
+
+namespace diminish {
+namespace {
+
+Image<Bgr> noise(int width, int height) {
+  Image<Bgr> image(width, height);
+  std::mt19937 random(5);
+  for (Bgr& color : image) {
+    const std::uint_fast32_t value = random();
+    color = {static_cast<std::uint8_t>(value), static_cast<std::uint8_t>(value >> 8),
+             static_cast<std::uint8_t>(value >> 16 & 1 ? 255 : 0)};
+  }
+  return image;
+}
+
+template <class Pixel>
+void expect_same(const Image<Pixel>& image, const cv::Mat& expected) {
+  ASSERT_EQ(cv::Size(image.width(), image.height()), expected.size());
+  EXPECT_EQ(cv::norm(as_mat(image), expected, cv::NORM_INF), 0);
+}
+
+TEST(ShrinkPicture, IsTheRoundedMean) {
+  const Image<Bgr> image = noise(101, 83);
+  std::vector<std::uint16_t> scratch;
+  Image<Bgr> small;
+  for (int scale = 1; scale <= 16; ++scale) {
+    SCOPED_TRACE(scale);
+    shrink_picture(image, scale, shrunk_bounds(image, scale), scratch, small);
+    ASSERT_EQ(small.bounds(), (Rect{0, 0, 101 / scale, 83 / scale}));
+    for (int y = 0; y < small.height(); ++y) {
+      for (int x = 0; x < small.width(); ++x) {
+        const cv::Rect cell(x * scale, y * scale, scale, scale);
+        const cv::Scalar sum = cv::sum(as_mat(image)(cell));
+        const auto mean = [&](int channel) {
+          return static_cast<int>(std::floor(sum[channel] / cell.area() + 0.5));
+        };
+        ASSERT_EQ(small(x, y).b, mean(0)) << x << ' ' << y;
+        ASSERT_EQ(small(x, y).g, mean(1)) << x << ' ' << y;
+        ASSERT_EQ(small(x, y).r, mean(2)) << x << ' ' << y;
+      }
+    }
+  }
+}
+
+TEST(ShrinkPicture, APictureThinnerThanTheScaleBecomesOnePixelWide) {
+  Image<Bgr> image(40, 2, {10, 20, 30});
+  image.fill({0, 1, 40, 1}, {30, 20, 10});
+  std::vector<std::uint16_t> scratch;
+  Image<Bgr> small;
+  shrink_picture(image, 4, shrunk_bounds(image, 4), scratch, small);
+  EXPECT_EQ(small, Image<Bgr>(10, 1, {20, 20, 20}));
+}
+
+TEST(ShrinkPicture, APartIsThePartOfTheWhole) {
+  const Image<Bgr> image = noise(101, 83);
+  const Rect part{4, 7, 19, 11};
+  std::vector<std::uint16_t> scratch;
+  Image<Bgr> whole, small;
+  shrink_picture(image, 4, shrunk_bounds(image, 4), scratch, whole);
+  shrink_picture(image, 4, part, scratch, small);
+  expect_same(small, as_mat(whole)(as_cv(part)));
+}
+
+TEST(PictureSmoother, IsOpenCvsGaussian) {
+  const Image<Bgr> image = noise(61, 37);
+  cv::Mat expected;
+  cv::GaussianBlur(as_mat(image), expected, {3, 3}, 0, 0, cv::BORDER_REPLICATE);
+  PictureSmoother smoother;
+  Image<Bgr> smooth(61, 37);
+  for (int y = 0; y < 37; ++y) smoother.smooth_row(image, image.bounds(), y, 0, 61, smooth.row(y));
+  expect_same(smooth, expected);
+}
+
+TEST(PictureSmoother, APartMayReachBeyondThePicture) {
+  const Image<Bgr> image = noise(30, 20);
+  const Rect part{-5, 9, 40, 17};
+  cv::Mat larger;
+  cv::copyMakeBorder(as_mat(image), larger, 10, 10, 10, 10, cv::BORDER_REPLICATE);
+  cv::GaussianBlur(larger, larger, {3, 3}, 0);
+  PictureSmoother smoother;
+  Image<Bgr> smooth(40 - 7, 17);
+  for (int y = 0; y < 17; ++y) smoother.smooth_row(image, part, y, 3, 36, smooth.row(y));
+  expect_same(smooth, larger(cv::Rect(part.x + 3 + 10, part.y + 10, 33, 17)));
+}
+
+TEST(ExtremumFilters, AreOpenCvs) {
+  const Image<Bgr> image = noise(45, 31);
+  Mask mask;
+  cv::Mat blue;
+  cv::extractChannel(as_mat(image), blue, 0);
+  copy_from(blue, mask);
+  for (const Reach reach : {Reach{1, 1}, Reach{2, 2}, Reach{2, 1}, Reach{0, 2}, Reach{3, 0}}) {
+    const cv::Mat kernel =
+        cv::getStructuringElement(cv::MORPH_RECT, {2 * reach.x + 1, 2 * reach.y + 1});
+    cv::Mat expected;
+    Image<Bgr> colors, color_scratch;
+    Mask values, scratch;
+    cv::dilate(as_mat(image), expected, kernel);
+    dilate(image, reach, color_scratch, colors);
+    expect_same(colors, expected);
+    cv::erode(as_mat(image), expected, kernel);
+    erode(image, reach, color_scratch, colors);
+    expect_same(colors, expected);
+    cv::dilate(blue, expected, kernel);
+    dilate(mask, reach, scratch, values);
+    expect_same(values, expected);
+    cv::erode(blue, expected, kernel);
+    erode(mask, reach, scratch, values);
+    expect_same(values, expected);
+  }
+}
+
+TEST(ExtremumFilters, ReachBeyondASmallImage) {
+  Mask mask(2, 3, 7);
+  mask(1, 2) = 200;
+  Mask result, scratch;
+  dilate(mask, {4, 4}, scratch, result);
+  EXPECT_EQ(result, Mask(2, 3, 200));
+}
+
+}  // namespace
+}  // namespace diminish

@@ -1,0 +1,109 @@
+#include "detect/color_blob/shrink_picture.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "detect/color_blob/shrink_picture.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace diminish::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// sums[i]: of `rows` bytes, `pitch` apart, from bytes[i] on.
+void SumRows(const std::uint8_t* bytes, std::ptrdiff_t pitch, int rows, int count,
+             std::uint16_t* sums) {
+  const hn::ScalableTag<std::uint16_t> d;
+  const hn::Rebind<std::uint8_t, decltype(d)> d_bytes;
+  const auto lanes = static_cast<int>(hn::Lanes(d));
+  int i = 0;
+  for (; i + lanes <= count; i += lanes) {
+    auto sum = hn::PromoteTo(d, hn::LoadU(d_bytes, bytes + i));
+    for (int row = 1; row < rows; ++row) {
+      sum = hn::Add(sum, hn::PromoteTo(d, hn::LoadU(d_bytes, bytes + row * pitch + i)));
+    }
+    hn::StoreU(sum, d, sums + i);
+  }
+  for (; i < count; ++i) {
+    unsigned sum = 0;
+    for (int row = 0; row < rows; ++row) sum += bytes[row * pitch + i];
+    sums[i] = static_cast<std::uint16_t>(sum);
+  }
+}
+
+/// means[i]: of `columns` sums, a pixel (3) apart, from sums[i] on, each of `rows` values.
+/// Reads up to 3 * columns + a vector beyond the last, and writes up to a vector.
+void AverageColumns(const std::uint16_t* sums, int columns, int rows, int count,
+                    std::uint8_t* means) {
+  const hn::ScalableTag<std::uint16_t> d;
+  const hn::RebindToSigned<decltype(d)> d_signed;
+  const hn::Rebind<std::uint8_t, decltype(d)> d_bytes;
+  const auto lanes = static_cast<int>(hn::Lanes(d));
+  const int area = columns * rows;
+  const auto half = hn::Set(d, static_cast<std::uint16_t>(area / 2));
+  const auto divisor = hn::Set(d, static_cast<std::uint16_t>(area));
+  const auto largest_remainder = hn::Set(d_signed, static_cast<std::int16_t>(area - 1));
+  const auto reciprocal = hn::Set(d, static_cast<std::uint16_t>(65536 / area));
+  for (int i = 0; i < count; i += lanes) {
+    auto sum = hn::Add(half, hn::LoadU(d, sums + i));
+    for (int column = 1; column < columns; ++column) {
+      sum = hn::Add(sum, hn::LoadU(d, sums + i + 3 * column));
+    }
+    // The reciprocal is at most too small: the quotient is right or one less.
+    const auto quotient = hn::MulHigh(sum, reciprocal);
+    const auto remainder = hn::BitCast(d_signed, hn::Sub(sum, hn::Mul(quotient, divisor)));
+    const auto one_less = hn::VecFromMask(d_signed, hn::Gt(remainder, largest_remainder));
+    const auto mean = hn::Sub(hn::BitCast(d_signed, quotient), one_less);
+    hn::StoreU(hn::DemoteTo(d_bytes, mean), d_bytes, means + i);
+  }
+}
+
+}  // namespace
+}  // namespace diminish::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+#include <algorithm>
+
+namespace diminish {
+namespace {
+
+HWY_EXPORT(SumRows);
+HWY_EXPORT(AverageColumns);
+
+}  // namespace
+
+void shrink_picture(const Image<Bgr>& image, int scale, const Rect& part,
+                    std::vector<std::uint16_t>& scratch, Image<Bgr>& small) {
+  small.resize(part.width, part.height);
+  const int rows = std::min(scale, image.height());
+  const int columns = std::min(scale, image.width());
+  if (rows * columns == 1) {
+    for (int y = 0; y < part.height; ++y) {
+      std::copy_n(image.row((part.y + y) * scale) + std::ptrdiff_t{part.x} * scale, part.width,
+                  small.row(y));
+    }
+    return;
+  }
+  const int count = 3 * part.width * columns;
+  constexpr int beyond = 3 * 16 + HWY_MAX_BYTES;
+  const auto room = static_cast<std::size_t>(count + beyond);
+  scratch.resize(room + room / 2 + 1);
+  auto* const means = reinterpret_cast<std::uint8_t*>(scratch.data() + room);
+  const std::ptrdiff_t pitch = std::ptrdiff_t{3} * image.width();
+  for (int y = 0; y < part.height; ++y) {
+    const Bgr* const cells = image.row((part.y + y) * scale) + std::ptrdiff_t{part.x} * scale;
+    HWY_DYNAMIC_DISPATCH(SumRows)
+    (reinterpret_cast<const std::uint8_t*>(cells), pitch, rows, count, scratch.data());
+    HWY_DYNAMIC_DISPATCH(AverageColumns)(scratch.data(), columns, rows, count, means);
+    Bgr* const pixels = small.row(y);
+    const std::uint8_t* mean = means;
+    for (int x = 0; x < part.width; ++x, mean += std::ptrdiff_t{3} * columns) {
+      pixels[x] = {mean[0], mean[1], mean[2]};
+    }
+  }
+}
+
+}  // namespace diminish
+#endif

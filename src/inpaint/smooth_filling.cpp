@@ -1,0 +1,198 @@
+#include "inpaint/smooth_filling.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace diminish {
+namespace {
+
+/// The cells that hold the rectangle's.
+Rect coarser_box(const Rect& box) {
+  const int x = box.x >> 1;
+  const int y = box.y >> 1;
+  return {x, y, ((box.right() + 1) >> 1) - x, ((box.bottom() + 1) >> 1) - y};
+}
+
+/// Calls visit(i) for each of `count` bytes that is not 0.
+template <class Visit>
+void for_each_set(const std::uint8_t* bytes, int count, const Visit& visit) {
+  std::uint64_t some = 0;
+  constexpr int step = sizeof some;
+  int i = 0;
+  for (; i + step <= count; i += step) {
+    std::memcpy(&some, bytes + i, sizeof some);
+    if (some == 0) continue;
+    for (int k = i; k < i + step; ++k) {
+      if (bytes[k] != 0) visit(k);
+    }
+  }
+  for (; i < count; ++i) {
+    if (bytes[i] != 0) visit(i);
+  }
+}
+
+}  // namespace
+
+void SmoothFilling::Grid::begin(const Rect& open_box) {
+  box = open_box;
+  kinds.resize(box.width + 2, box.height + 2);
+  colors.resize(box.width + 2, box.height + 2);
+  known.clear();
+}
+
+void SmoothFilling::Grid::find_open() {
+  runs.clear();
+  row_begin.clear();
+  for (int y = 0; y < box.height; ++y) {
+    row_begin.push_back(runs.size());
+    const Kind* const row_kinds = kinds.row(y + 1) + 1;
+    for (int x = 0; x < box.width;) {
+      const void* const found =
+          std::memchr(row_kinds + x, open, static_cast<std::size_t>(box.width - x));
+      if (found == nullptr) break;
+      const int first = static_cast<int>(static_cast<const Kind*>(found) - row_kinds);
+      // The rim is not open.
+      x = first + 1;
+      while (row_kinds[x] == open) ++x;
+      runs.push_back({box.x + first, box.x + x});
+    }
+  }
+  row_begin.push_back(runs.size());
+}
+
+/// What is beside an open cell is listed if it is known, else has no colour; all other known cells
+/// become absent.
+void SmoothFilling::Grid::find_known() {
+  const int width = kinds.width();
+  row.resize(static_cast<std::size_t>(width));
+  for (int y = 0; y < kinds.height(); ++y) {
+    // In the rim, its own row does for the one beyond: neither holds an open cell.
+    const Kind* const above = kinds.row(std::max(y - 1, 0));
+    const Kind* const below = kinds.row(std::min(y + 1, kinds.height() - 1));
+    Kind* const here = kinds.row(y);
+    Kind* const beside = row.data();
+    beside[0] = here[1] & open;
+    beside[width - 1] = here[width - 2] & open;
+    for (int x = 1; x < width - 1; ++x) {
+      beside[x] = (above[x] | below[x] | here[x - 1] | here[x + 1]) & ~here[x] & open;
+    }
+    for (int x = 0; x < width; ++x) {
+      here[x] &= static_cast<Kind>(open | (beside[x] << 1));
+    }
+    Color* const row_colors = colors.row(y);
+    for_each_set(beside, width, [&](int x) {
+      if (here[x] == SmoothFilling::known) {
+        known.push_back({box.x - 1 + x, box.y - 1 + y});
+      } else {
+        row_colors[x].setZero();
+      }
+    });
+  }
+}
+
+void SmoothFilling::Grid::coarsen(const Grid& fine) {
+  begin(coarser_box(fine.box));
+  // The fine grid's place in this one's, in fine cells.
+  const int left = fine.box.x - 1 - 2 * (box.x - 1);
+  const int top = fine.box.y - 1 - 2 * (box.y - 1);
+  row.assign(2 * static_cast<std::size_t>(kinds.width()), absent);
+  for (int y = 0; y < kinds.height(); ++y) {
+    const int last = fine.kinds.height() - 1;
+    const int first_row = 2 * y - top;
+    Kind* const here = kinds.row(y);
+    if (first_row + 1 < 0 || first_row > last) {
+      std::fill_n(here, kinds.width(), absent);
+      continue;
+    }
+    const Kind* const upper = fine.kinds.row(std::max(first_row, 0));
+    const Kind* const lower = fine.kinds.row(std::min(first_row + 1, last));
+    Kind* const both = row.data() + left;
+    const int fine_width = fine.kinds.width();
+    for (int x = 0; x < fine_width; ++x) both[x] = std::max(upper[x], lower[x]);
+    const Kind* const pairs = row.data();
+    const int width = kinds.width();
+    for (int x = 0; x < width; ++x) here[x] = std::max(pairs[2 * x], pairs[2 * x + 1]);
+  }
+  find_open();
+  colors.fill(Color::Zero());
+  for (const Place place : fine.known) {
+    Color& color = color_row(place.y >> 1)[place.x >> 1];
+    if (color[3] == 0) known.push_back({place.x >> 1, place.y >> 1});
+    color += fine.color_row(place.y)[place.x];
+  }
+  for (const Place place : known) {
+    Color& color = color_row(place.y)[place.x];
+    color /= Color::Constant(color[3]);
+  }
+}
+
+/// Bilinear, of the cells that are there. Black cells alone: the red ones are relaxed next, from
+/// these; but for single cells, which may have no neighbour at all.
+void SmoothFilling::Grid::interpolate_row(const Grid& coarse, int y) {
+  for_each_run(y, [&](Run run) {
+    const Color* const near_row = coarse.color_row(y >> 1);
+    const Color* const far_row = coarse.color_row((y >> 1) + (y % 2 == 0 ? -1 : 1));
+    Color* const here = color_row(y);
+    const bool is_single = run.last - run.first == 1;
+    for (int x = run.first + (is_single ? 0 : (run.first + y + 1) & 1); x < run.last; x += 2) {
+      const int near = x >> 1;
+      const int far = near + (x % 2 == 0 ? -1 : 1);
+      const Color sum = 9 * near_row[near] + 3 * (near_row[far] + far_row[near]) + far_row[far];
+      here[x] = sum / Color::Constant(sum[3]);
+    }
+  });
+}
+
+/// The cells where x + y is even (parity 0: red) or odd (1: black).
+void SmoothFilling::Grid::relax_row(int y, int parity, float factor) {
+  for_each_run(y, [&](Run run) {
+    const Color* const above = color_row(y - 1);
+    const Color* const below = color_row(y + 1);
+    Color* const here = color_row(y);
+    for (int x = run.first + ((run.first + y + parity) & 1); x < run.last; x += 2) {
+      const Color sum = (here[x - 1] + here[x + 1]) + (above[x] + below[x]);
+      if (sum[3] == 0) continue;
+      const Color mean = sum / Color::Constant(sum[3]);
+      // The first time there is nothing to start from.
+      here[x] = factor == 1 ? mean : here[x] + factor * (mean - here[x]);
+    }
+  });
+}
+
+/// All sweeps go over the grid together, each a row behind the one before it: what they read is in
+/// the cache.
+void SmoothFilling::Grid::refine(const Grid& coarse, const Relaxation& relaxation) {
+  const int half_sweeps = relaxation.half_sweeps;
+  float factors[most_half_sweeps];
+  for (int k = 0; k < half_sweeps; ++k) factors[k] = relaxation.factor(k);
+  for (int y = box.y; y < box.bottom() + half_sweeps; ++y) {
+    interpolate_row(coarse, y);
+    for (int k = 0; k < half_sweeps; ++k) relax_row(y - 1 - k, k % 2, factors[k]);
+  }
+}
+
+float SmoothFilling::Relaxation::factor(int k) const {
+  const float square = spectral_radius * spectral_radius;
+  float factor = 1;
+  for (int i = 0; i < k; ++i) factor = 1 / (1 - square * factor / (i == 0 ? 2 : 4));
+  return factor;
+}
+
+Image<SmoothFilling::Kind>& SmoothFilling::begin(const Rect& box) {
+  grids_.front().begin(box);
+  return grids_.front().kinds;
+}
+
+void SmoothFilling::solve() {
+  std::size_t count = 1;
+  while (!grids_[count - 1].runs.empty()) {
+    if (grids_.size() == count) grids_.emplace_back();
+    grids_[count].coarsen(grids_[count - 1]);
+    ++count;
+  }
+  for (std::size_t l = count - 1; l-- > 0;) {
+    grids_[l].refine(grids_[l + 1], l == 0 ? finest : coarser);
+  }
+}
+
+}  // namespace diminish

@@ -1,0 +1,235 @@
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/parallel_invoke.h>
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "core/channels.h"
+#include "core/rows.h"
+#include "detect/color_blob/connected_regions.h"
+#include "diminish/inpainter.h"
+#include "inpaint/plane_colors.h"
+#include "inpaint/smooth_filling.h"
+#include "inpaint/surface_rules.h"
+
+namespace diminish {
+namespace {
+
+/// A pixel of the window: what it shows (surface_label, in seven bits), and whether it is open,
+/// that is, still to be filled.
+namespace state {
+using Code = std::uint8_t;
+constexpr Code open = 0x80;
+constexpr Code label_bits = 0x7F;
+constexpr Code foreground = surface_label::foreground & label_bits;
+/// Beyond the picture: never filled, and nothing to fill from.
+constexpr Code outside = open | label_bits;
+}  // namespace state
+
+/// Fills each plane of the background from its own pixels alone, as smoothly as can be: what stands
+/// in front of a wall does not bleed onto it, and where table and wall meet there is an edge. What
+/// is left is filled from all pixels around.
+class SurfaceInpainting : public Inpainter {
+ public:
+  bool uses_surfaces() const override { return true; }
+
+  bool inpaint(const Holes& holes, const Options&, Image<Bgr>& picture) override {
+    window_ = grow(bounding_box(holes.missing), 1);
+    if (window_.empty()) return true;
+    oneapi::tbb::parallel_invoke(
+        [&] { plane_colors_.collect(holes.occlusion, holes.reconstruction, picture); },
+        [&] {
+          collect_states(holes);
+          find_holes();
+        });
+    // They do not depend on each other: what one fills no other takes for known.
+    std::array<bool, label_count> filled{};
+    oneapi::tbb::parallel_for(std::size_t{0}, label_count, [&](std::size_t k) {
+      filled[k] = fill(static_cast<Label>(k), holes, picture);
+    });
+    return fill_rest(filled, holes, picture);
+  }
+
+ private:
+  using Label = std::uint8_t;
+  static constexpr std::size_t label_count = surface_rules::labels;
+
+  /// Row y of the picture, to be indexed by the picture's x.
+  state::Code* state_row(int y) { return states_.row(y - window_.y) - window_.x; }
+  const state::Code* state_row(int y) const { return states_.row(y - window_.y) - window_.x; }
+
+  void collect_states(const Holes& holes) {
+    states_.resize(window_.width, window_.height);
+    const Reconstruction& reconstruction = holes.reconstruction;
+    const Rect seen = intersect(window_, holes.missing.bounds());
+    const Rect drawn =
+        intersect(intersect(reconstruction.region, reconstruction.surface.bounds()), seen);
+    for (int y = window_.y; y < window_.bottom(); ++y) {
+      state::Code* const states = state_row(y);
+      std::fill(states + window_.x, states + window_.right(), state::outside);
+      if (y < seen.y || y >= seen.bottom()) continue;
+      const std::uint8_t* const missing = holes.missing.row(y);
+      for (int x = seen.x; x < seen.right(); ++x) states[x] = missing[x] & state::open;
+      if (y < drawn.y || y >= drawn.bottom()) continue;
+      const std::uint8_t* const surface = reconstruction.surface.row(y);
+      for (int x = drawn.x; x < drawn.right(); ++x) {
+        const bool is_filled_alone = surface[x] < label_count;
+        const state::Code label = surface[x] & state::label_bits;
+        states[x] |= states[x] == 0 || is_filled_alone ? label : surface_label::unknown;
+      }
+    }
+  }
+
+  /// Finds where the holes of each label are, and takes the label from those that mostly border on
+  /// what is in front of their plane.
+  void find_holes() {
+    boxes_.fill({});
+    open_.resize(window_.width, window_.height);
+    for (std::size_t k = 0; k < label_count; ++k) {
+      const auto label = static_cast<Label>(k);
+      const state::Code code = state::open | label;
+      std::uint8_t* const open = open_.data();
+      const state::Code* const states = states_.data();
+      const std::size_t pixels = states_.size();
+      for (std::size_t i = 0; i < pixels; ++i) open[i] = states[i] == code ? 255 : 0;
+      regions_.find(open_, 255, Connectivity::four);
+      if (label != surface_label::unknown) count_rims(label);
+      for (std::size_t i = 0; i < regions_.regions().size(); ++i) {
+        const bool is_kept = label == surface_label::unknown || is_on_plane(rims_[i]);
+        Rect& box = boxes_[is_kept ? k : std::size_t{surface_label::unknown}];
+        box = join(box, regions_.regions()[i].box);
+      }
+      if (label == surface_label::unknown) continue;
+      for (const ConnectedRegions::Run& run : regions_.runs()) {
+        if (is_on_plane(rims_[static_cast<std::size_t>(run.region)])) continue;
+        state::Code* const row = states_.row(run.y);
+        std::fill(row + run.first, row + run.last, state::open | surface_label::unknown);
+      }
+    }
+    // They were found in the window.
+    for (Rect& box : boxes_) {
+      box.x += window_.x;
+      box.y += window_.y;
+    }
+  }
+
+  /// Pixels beside a hole.
+  struct Rim {
+    int plane = 0, foreground = 0;
+  };
+  static bool is_on_plane(const Rim& rim) {
+    return 100 * rim.plane >= surface_rules::plane_rim_percent * (rim.plane + rim.foreground);
+  }
+
+  void count_rims(Label label) {
+    rims_.assign(regions_.regions().size(), {});
+    for (const ConnectedRegions::Run& run : regions_.runs()) {
+      Rim& rim = rims_[static_cast<std::size_t>(run.region)];
+      const auto count = [&](int y, int first, int last) {
+        const state::Code* const row = states_.row(y);
+        int plane = 0;
+        int foreground = 0;
+        for (int x = first; x < last; ++x) {
+          plane += row[x] == label ? 1 : 0;
+          foreground += row[x] == state::foreground ? 1 : 0;
+        }
+        rim.plane += plane;
+        rim.foreground += foreground;
+      };
+      // The window holds a pixel more on each side.
+      count(run.y, run.first - 1, run.first);
+      count(run.y, run.last, run.last + 1);
+      count(run.y - 1, run.first, run.last);
+      count(run.y + 1, run.first, run.last);
+    }
+  }
+
+  /// What has a label of which nothing is known. What has been filled is known now.
+  bool fill_rest(const std::array<bool, label_count>& filled, const Holes& holes,
+                 Image<Bgr>& picture) {
+    if (std::all_of(filled.begin(), filled.end(), [](bool is) { return is; })) return true;
+    Rect& rest = boxes_[surface_label::unknown];
+    if (filled[surface_label::unknown]) rest = {};
+    for (std::size_t k = surface_label::first_plane; k < label_count; ++k) {
+      if (!filled[k]) rest = join(rest, boxes_[k]);
+    }
+    for (state::Code& code : states_) {
+      const Label label = code & state::label_bits;
+      if ((code & state::open) == 0 || label >= label_count) continue;
+      code = filled[label] ? label : state::open | surface_label::unknown;
+    }
+    if (fill(surface_label::unknown, holes, picture)) return true;
+    for (int y = rest.y; y < rest.bottom(); ++y) {
+      const state::Code* const states = state_row(y);
+      for (int x = rest.x; x < rest.right(); ++x) {
+        if ((states[x] & state::open) != 0) picture(x, y) = {};
+      }
+    }
+    return false;
+  }
+
+  /// The colour that a known pixel hands on.
+  Eigen::Array3f color_of(int x, int y, const Holes& holes, const Image<Bgr>& picture) const {
+    const Eigen::Array3f own = to_channels(picture(x, y));
+    Eigen::Array3f around;
+    const Label label = state_row(y)[x];
+    if (holes.occlusion(x, y) != 0 || !plane_colors_.around(x, y, label, around)) return own;
+    return own.sum() < surface_rules::shadow * around.sum() ? around : own;
+  }
+
+  /// By value, so that the loop is vectorised.
+  static void find_kinds(const state::Code* states, int width, state::Code label, state::Code open,
+                         state::Code known_bits, SmoothFilling::Kind* kinds) {
+    for (int x = 0; x < width; ++x) {
+      const bool is_known = (states[x] & known_bits) == label;
+      kinds[x] = static_cast<SmoothFilling::Kind>((is_known ? SmoothFilling::known : 0) |
+                                                  (states[x] == open ? SmoothFilling::open : 0));
+    }
+  }
+
+  /// Fills the open pixels with this label. Returns false if nothing is known beside them.
+  bool fill(Label label, const Holes& holes, Image<Bgr>& picture) {
+    const Rect& box = boxes_[label];
+    if (box.empty()) return true;
+    SmoothFilling& filling = fillings_[label];
+    Image<SmoothFilling::Kind>& kinds = filling.begin(box);
+    const state::Code open = state::open | label;
+    const state::Code known_bits =
+        label == surface_label::unknown ? state::open : static_cast<state::Code>(0xFF);
+    for_rows(kinds.height(), [&](Rows rows) {
+      for (int y = rows.first; y < rows.last; ++y) {
+        find_kinds(state_row(box.y - 1 + y) + box.x - 1, kinds.width(), label, open, known_bits,
+                   kinds.row(y));
+      }
+    });
+    if (!filling.connect([&](int x, int y) { return color_of(x, y, holes, picture); })) {
+      return false;
+    }
+    filling.solve();
+    filling.for_each_run([&](int y, int first, int last, const Eigen::Array4f* colors) {
+      Bgr* const row = picture.row(y);
+      for (int x = first; x < last; ++x) {
+        const Eigen::Array4i levels = (colors[x].max(0.F).min(255.F) + 0.5F).cast<int>();
+        const auto level = [&](int c) { return static_cast<std::uint8_t>(levels[c]); };
+        row[x] = {level(0), level(1), level(2)};
+      }
+    });
+    return true;
+  }
+
+  PlaneColors plane_colors_;
+  Rect window_;  ///< in the picture, which it may reach out of
+  Image<state::Code> states_;
+  std::array<Rect, label_count> boxes_;              ///< of the holes of each label, in the picture
+  std::array<SmoothFilling, label_count> fillings_;  ///< by label
+  Mask open_;
+  ConnectedRegions regions_;
+  std::vector<Rim> rims_;
+};
+
+const bool registered =
+    Registry<Inpainter>::add("surfaces", [] { return std::make_unique<SurfaceInpainting>(); });
+
+}  // namespace
+}  // namespace diminish

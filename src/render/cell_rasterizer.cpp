@@ -1,0 +1,417 @@
+#include "render/cell_rasterizer.h"
+
+#include <algorithm>
+#include <bit>
+#include <climits>
+
+#include "render/sdct.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "render/cell_rasterizer.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace diminish::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Most cells are less than 8 pixels wide.
+using Floats = hn::CappedTag<float, 8>;
+using Ints = hn::RebindToSigned<Floats>;
+using Vector = hn::Vec<Floats>;
+using IntVector = hn::Vec<Ints>;
+using LaneMask = hn::Mask<Floats>;
+
+/// Larger cells are drawn in 64 bits.
+constexpr int max_cell_px = 64;
+
+/// Vertices of neighbouring cells that have the same place in their cells.
+struct Corner {
+  IntVector x, y;
+  Vector depth, inverse_z, u_over_z, v_over_z;
+  LaneMask valid;
+
+  HWY_INLINE Corner(const VertexRow& row, int i) {
+    const Floats d;
+    const Ints di;
+    x = hn::LoadU(di, row.x.data() + i);
+    y = hn::LoadU(di, row.y.data() + i);
+    depth = hn::LoadU(d, row.depth_m.data() + i);
+    inverse_z = hn::LoadU(d, row.inverse_z.data() + i);
+    u_over_z = hn::LoadU(d, row.u_over_z.data() + i);
+    v_over_z = hn::LoadU(d, row.v_over_z.data() + i);
+    valid = hn::Gt(inverse_z, hn::Zero(d));
+  }
+};
+
+HWY_INLINE LaneMask Joined(const Corner& a, const Corner& b, const Corner& c,
+                           const sdct::Threshold& threshold) {
+  const Vector most = hn::Max(hn::Max(a.depth, b.depth), c.depth);
+  const Vector least = hn::Min(hn::Min(a.depth, b.depth), c.depth);
+  const Floats d;
+  const Vector relative = hn::Mul(least, hn::Set(d, threshold.inverse_reach));
+  const Vector limit = hn::Mul(hn::Max(hn::Set(d, 1.F), hn::Mul(relative, relative)),
+                               hn::Set(d, threshold.constant_m));
+  return hn::And(hn::And(a.valid, b.valid), hn::And(c.valid, hn::Lt(hn::Sub(most, least), limit)));
+}
+
+/// Edge functions from a to b, an edge of each cell. Coordinates: relative to the cell's first
+/// pixel.
+struct Edge {
+  IntVector step_x, step_y, value;
+
+  HWY_INLINE Edge(IntVector ax, IntVector ay, IntVector bx, IntVector by)
+      : step_x(hn::Sub(ay, by)),
+        step_y(hn::Sub(bx, ax)),
+        value(hn::Neg(hn::Add(hn::Mul(step_x, ax), hn::Mul(step_y, ay)))) {}
+
+  /// The value that is negative where a pixel is outside: edges that are neither top nor left do
+  /// not own the pixels on them.
+  HWY_INLINE IntVector Biased() const {
+    const Ints d;
+    const auto zero = hn::Zero(d);
+    const auto top_or_left =
+        hn::Or(hn::Gt(step_x, zero), hn::And(hn::Eq(step_x, zero), hn::Gt(step_y, zero)));
+    return hn::Add(value, hn::IfThenElse(top_or_left, zero, hn::Set(d, -1)));
+  }
+};
+
+/// Functions that are linear in the picture, one of each cell in each lane: at the cell's first
+/// pixel, and from a pixel to the next.
+template <class T>
+struct alignas(64) LinearFunctions {
+  T value[VertexRow::block], step_x[VertexRow::block], step_y[VertexRow::block];
+};
+
+/// What a block's cells are drawn with. The triangles of a cell
+///   a b
+///   c e
+/// are a b c and b e c; `diagonal` is negative on the second's side.
+struct Cells {
+  LinearFunctions<std::int32_t> diagonal, first_edges[2], second_edges[2];
+  LinearFunctions<float> first_planes[3], second_planes[3];  ///< 1 / z, u / z, v / z
+  std::int32_t place[VertexRow::block], columns[VertexRow::block], rows[VertexRow::block];
+};
+
+HWY_INLINE void StoreEdge(const Edge& edge, IntVector value, hn::Mask<Ints> exists,
+                          LinearFunctions<std::int32_t>& out) {
+  const Ints d;
+  constexpr int bits = sdct::subpixel_bits;
+  hn::Store(hn::IfThenElse(exists, value, hn::Set(d, -1)), d, out.value);
+  hn::Store(hn::IfThenElseZero(exists, hn::ShiftLeft<bits>(edge.step_x)), d, out.step_x);
+  hn::Store(hn::IfThenElseZero(exists, hn::ShiftLeft<bits>(edge.step_y)), d, out.step_y);
+}
+
+/// The plane through the values a, b and c, whose opposite edges are ea, eb and ec.
+HWY_INLINE void StorePlane(const Edge& ea, const Edge& eb, const Edge& ec, Vector a, Vector b,
+                           Vector c, Vector scale, LinearFunctions<float>& out) {
+  const Floats d;
+  const auto sum = [&](IntVector wa, IntVector wb, IntVector wc) HWY_ATTR {
+    return hn::MulAdd(hn::ConvertTo(d, wa), a,
+                      hn::MulAdd(hn::ConvertTo(d, wb), b, hn::Mul(hn::ConvertTo(d, wc), c)));
+  };
+  const Vector pixel_scale = hn::Mul(scale, hn::Set(d, static_cast<float>(sdct::subpixels)));
+  hn::Store(hn::Mul(sum(ea.value, eb.value, ec.value), scale), d, out.value);
+  hn::Store(hn::Mul(sum(ea.step_x, eb.step_x, ec.step_x), pixel_scale), d, out.step_x);
+  hn::Store(hn::Mul(sum(ea.step_y, eb.step_y, ec.step_y), pixel_scale), d, out.step_y);
+}
+
+/// The three planes of a triangle a b c of each cell.
+HWY_INLINE void StorePlanes(const Edge& bc, const Edge& ca, const Edge& ab, const Corner& a,
+                            const Corner& b, const Corner& c, IntVector area,
+                            LinearFunctions<float> (&out)[3]) {
+  const Floats d;
+  const Vector scale =
+      hn::Div(hn::Set(d, 1.F), hn::ConvertTo(d, hn::Max(area, hn::Set(Ints(), 1))));
+  StorePlane(bc, ca, ab, a.inverse_z, b.inverse_z, c.inverse_z, scale, out[0]);
+  StorePlane(bc, ca, ab, a.u_over_z, b.u_over_z, c.u_over_z, scale, out[1]);
+  StorePlane(bc, ca, ab, a.v_over_z, b.v_over_z, c.v_over_z, scale, out[2]);
+}
+
+/// A linear function along a few pixels of a row, a pixel in each lane.
+struct IntWalk {
+  IntVector value, step_y;
+
+  HWY_INLINE IntWalk(const LinearFunctions<std::int32_t>& f, int lane, IntVector x)
+      : value(hn::Add(hn::Set(Ints(), f.value[lane]), hn::Mul(x, hn::Set(Ints(), f.step_x[lane])))),
+        step_y(hn::Set(Ints(), f.step_y[lane])) {}
+  HWY_INLINE void Down() { value = hn::Add(value, step_y); }
+};
+struct FloatWalk {
+  Vector value, step_y;
+
+  HWY_INLINE FloatWalk(const LinearFunctions<float>& f, int lane, Vector x)
+      : value(hn::MulAdd(x, hn::Set(Floats(), f.step_x[lane]), hn::Set(Floats(), f.value[lane]))),
+        step_y(hn::Set(Floats(), f.step_y[lane])) {}
+  HWY_INLINE void Down() { value = hn::Add(value, step_y); }
+};
+
+/// Draws the cell of one lane: both its triangles at once, a vector of pixels at a time.
+HWY_INLINE void DrawCell(const Cells& cells, int lane, SurfaceBuffer& surface) {
+  const Floats d;
+  const Ints di;
+  const auto lanes = static_cast<int>(hn::Lanes(d));
+  const int rows = cells.rows[lane];
+  for (int x = 0; x < cells.columns[lane]; x += lanes) {
+    const IntVector column = hn::Iota(di, x);
+    const Vector float_column = hn::ConvertTo(d, column);
+    IntWalk diagonal(cells.diagonal, lane, column);
+    IntWalk ca(cells.first_edges[0], lane, column), ab(cells.first_edges[1], lane, column);
+    IntWalk be(cells.second_edges[0], lane, column), ec(cells.second_edges[1], lane, column);
+    FloatWalk z1(cells.first_planes[0], lane, float_column);
+    FloatWalk u1(cells.first_planes[1], lane, float_column);
+    FloatWalk v1(cells.first_planes[2], lane, float_column);
+    FloatWalk z2(cells.second_planes[0], lane, float_column);
+    FloatWalk u2(cells.second_planes[1], lane, float_column);
+    FloatWalk v2(cells.second_planes[2], lane, float_column);
+    const std::ptrdiff_t place = cells.place[lane] + x;
+    float* zs = surface.inverse_z.data() + place;
+    float* us = surface.u_over_z.data() + place;
+    float* vs = surface.v_over_z.data() + place;
+    for (int y = 0; y < rows; ++y) {
+      const auto in_second = hn::Lt(diagonal.value, hn::Zero(di));
+      const LaneMask second = hn::RebindMask(d, in_second);
+      const IntVector outside =
+          hn::IfThenElse(in_second, hn::Or(be.value, ec.value), hn::Or(ca.value, ab.value));
+      const Vector old_z = hn::LoadU(d, zs);
+      const Vector z = hn::IfThenElse(second, z2.value, z1.value);
+      const Vector u = hn::IfThenElse(second, u2.value, u1.value);
+      const Vector v = hn::IfThenElse(second, v2.value, v1.value);
+      const LaneMask kept =
+          hn::AndNot(hn::RebindMask(d, hn::Lt(outside, hn::Zero(di))), hn::Gt(z, old_z));
+      const Vector nearest = hn::IfThenElse(kept, z, old_z);
+      hn::StoreU(nearest, d, zs);
+      hn::StoreU(hn::IfThenElse(kept, u, hn::LoadU(d, us)), d, us);
+      hn::StoreU(hn::IfThenElse(kept, v, hn::LoadU(d, vs)), d, vs);
+      for (IntWalk* walk : {&diagonal, &ca, &ab, &be, &ec}) walk->Down();
+      for (FloatWalk* walk : {&z1, &u1, &v1, &z2, &u2, &v2}) walk->Down();
+      zs += surface.pitch;
+      us += surface.pitch;
+      vs += surface.pitch;
+    }
+  }
+}
+
+/// A vertex in a row, by its index.
+struct VertexAt {
+  const VertexRow& row;
+  std::size_t index;
+
+  VertexAt(const VertexRow& row_, int i) : row(row_), index(static_cast<std::size_t>(i)) {}
+  std::int64_t x() const { return row.x[index]; }
+  std::int64_t y() const { return row.y[index]; }
+};
+
+HWY_INLINE void Touch(int first_row, int last_row, SurfaceBuffer& surface) {
+  surface.first_row = std::min(surface.first_row, first_row);
+  surface.last_row = std::max(surface.last_row, last_row);
+}
+
+/// A triangle of any size, pixel by pixel in 64 bits, as draw_triangle does.
+void DrawLarge(const VertexAt (&p)[3], SurfaceBuffer& surface) {
+  const std::int64_t area =
+      sdct::doubled_area(p[0].x(), p[0].y(), p[1].x(), p[1].y(), p[2].x(), p[2].y());
+  if (!sdct::faces_forward(area)) return;
+  const float scale = 1.F / static_cast<float>(area);
+  const Rect& region = surface.region;
+  constexpr int bits = sdct::subpixel_bits;
+  const auto [left, right] = std::minmax({p[0].x(), p[1].x(), p[2].x()});
+  const auto [top, bottom] = std::minmax({p[0].y(), p[1].y(), p[2].y()});
+  const int x0 = std::max(region.x, static_cast<int>((left + sdct::subpixels - 1) >> bits));
+  const int x1 = std::min(region.right() - 1, static_cast<int>(right >> bits));
+  const int y0 = std::max(region.y, static_cast<int>((top + sdct::subpixels - 1) >> bits));
+  const int y1 = std::min(region.bottom() - 1, static_cast<int>(bottom >> bits));
+  if (y0 > y1) return;
+  Touch(y0, y1, surface);
+  for (int y = y0; y <= y1; ++y) {
+    for (int x = x0; x <= x1; ++x) {
+      float inverse_z = 0;
+      float u_over_z = 0;
+      float v_over_z = 0;
+      bool inside = true;
+      for (std::size_t k = 0; k < 3 && inside; ++k) {
+        const VertexAt& from = p[(k + 1) % 3];
+        const VertexAt& to = p[(k + 2) % 3];
+        const std::int64_t step_x = from.y() - to.y();
+        const std::int64_t step_y = to.x() - from.x();
+        const std::int64_t value = step_x * (std::int64_t{x} * sdct::subpixels - from.x()) +
+                                   step_y * (std::int64_t{y} * sdct::subpixels - from.y());
+        const bool top_or_left = step_x > 0 || (step_x == 0 && step_y > 0);
+        inside = value > 0 || (value == 0 && top_or_left);
+        const float weight = static_cast<float>(value) * scale;
+        inverse_z += weight * p[k].row.inverse_z[p[k].index];
+        u_over_z += weight * p[k].row.u_over_z[p[k].index];
+        v_over_z += weight * p[k].row.v_over_z[p[k].index];
+      }
+      const auto place = static_cast<std::size_t>(surface.row(y) + x - region.x);
+      if (!inside || !(inverse_z > surface.inverse_z[place])) continue;
+      surface.inverse_z[place] = inverse_z;
+      surface.u_over_z[place] = u_over_z;
+      surface.v_over_z[place] = v_over_z;
+    }
+  }
+}
+
+HWY_INLINE unsigned Bits(LaneMask mask) {
+  alignas(8) std::uint8_t bits[8] = {};
+  hn::StoreMaskBits(Floats(), mask, bits);
+  return bits[0] & ((1U << hn::Lanes(Floats())) - 1U);
+}
+
+void DrawCells(const VertexRow& upper, const VertexRow& lower, int block,
+               const sdct::Threshold& threshold, SurfaceBuffer& surface) {
+  const Floats d;
+  const Ints di;
+  const auto lanes = static_cast<int>(hn::Lanes(d));
+  const Rect region = surface.region;
+  Cells cells;
+  for (int i = block * VertexRow::block; i < (block + 1) * VertexRow::block; i += lanes) {
+    Corner a(upper, i);
+    const Corner b(upper, i + 1);
+    const Corner c(lower, i);
+    Corner e(lower, i + 1);
+    LaneMask first = Joined(a, b, c, threshold);
+    LaneMask second = Joined(b, e, c, threshold);
+    const LaneMask any = hn::Or(first, second);
+    if (hn::AllFalse(d, any)) continue;
+    // The corner that a lone triangle has not is moved onto one that it has.
+    const auto has_first = hn::RebindMask(di, first);
+    const auto has_second = hn::RebindMask(di, second);
+    a.x = hn::IfThenElse(has_first, a.x, b.x);
+    a.y = hn::IfThenElse(has_first, a.y, b.y);
+    e.x = hn::IfThenElse(has_second, e.x, b.x);
+    e.y = hn::IfThenElse(has_second, e.y, b.y);
+
+    const IntVector left = hn::Min(hn::Min(a.x, b.x), hn::Min(c.x, e.x));
+    const IntVector right = hn::Max(hn::Max(a.x, b.x), hn::Max(c.x, e.x));
+    const IntVector top = hn::Min(hn::Min(a.y, b.y), hn::Min(c.y, e.y));
+    const IntVector bottom = hn::Max(hn::Max(a.y, b.y), hn::Max(c.y, e.y));
+    constexpr int bits = sdct::subpixel_bits;
+    const IntVector round_up = hn::Set(di, sdct::subpixels - 1);
+    const IntVector x0 =
+        hn::Max(hn::ShiftRight<bits>(hn::Add(left, round_up)), hn::Set(di, region.x));
+    const IntVector x1 = hn::Min(hn::ShiftRight<bits>(right), hn::Set(di, region.right() - 1));
+    const IntVector y0 =
+        hn::Max(hn::ShiftRight<bits>(hn::Add(top, round_up)), hn::Set(di, region.y));
+    const IntVector y1 = hn::Min(hn::ShiftRight<bits>(bottom), hn::Set(di, region.bottom() - 1));
+    const LaneMask covers =
+        hn::And(any, hn::RebindMask(d, hn::Not(hn::Or(hn::Gt(x0, x1), hn::Gt(y0, y1)))));
+    if (hn::AllFalse(d, covers)) continue;
+    const IntVector limit = hn::Set(di, max_cell_px * sdct::subpixels);
+    const LaneMask fits = hn::RebindMask(
+        d, hn::And(hn::Lt(hn::Sub(right, left), limit), hn::Lt(hn::Sub(bottom, top), limit)));
+    for (unsigned large = Bits(hn::AndNot(fits, covers)); large != 0; large &= large - 1) {
+      const int k = std::countr_zero(large);
+      const int at = i + k;
+      if ((Bits(first) >> k & 1U) != 0) {
+        DrawLarge({{upper, at}, {upper, at + 1}, {lower, at}}, surface);
+      }
+      if ((Bits(second) >> k & 1U) != 0) {
+        DrawLarge({{upper, at + 1}, {lower, at + 1}, {lower, at}}, surface);
+      }
+    }
+
+    // Relative to each cell's first pixel.
+    const LaneMask drawn = hn::And(covers, fits);
+    const IntVector base_x = hn::ShiftLeft<bits>(x0);
+    const IntVector base_y = hn::ShiftLeft<bits>(y0);
+    const IntVector ax = hn::Sub(a.x, base_x), ay = hn::Sub(a.y, base_y);
+    const IntVector bx = hn::Sub(b.x, base_x), by = hn::Sub(b.y, base_y);
+    const IntVector cx = hn::Sub(c.x, base_x), cy = hn::Sub(c.y, base_y);
+    const IntVector ex = hn::Sub(e.x, base_x), ey = hn::Sub(e.y, base_y);
+    const auto area = [&](IntVector px, IntVector py, IntVector qx, IntVector qy, IntVector rx,
+                          IntVector ry) HWY_ATTR {
+      return hn::Sub(hn::Mul(hn::Sub(qx, px), hn::Sub(ry, py)),
+                     hn::Mul(hn::Sub(rx, px), hn::Sub(qy, py)));
+    };
+    const IntVector first_area = area(ax, ay, bx, by, cx, cy);
+    const IntVector second_area = area(bx, by, ex, ey, cx, cy);
+    first = hn::And(hn::And(first, drawn), hn::RebindMask(d, hn::Gt(first_area, hn::Zero(di))));
+    second = hn::And(hn::And(second, drawn), hn::RebindMask(d, hn::Gt(second_area, hn::Zero(di))));
+    unsigned forward = Bits(hn::Or(first, second));
+    if (forward == 0) continue;
+
+    const Edge bc(bx, by, cx, cy), ca(cx, cy, ax, ay), ab(ax, ay, bx, by);
+    const Edge ec(ex, ey, cx, cy), cb(cx, cy, bx, by), be(bx, by, ex, ey);
+    const auto in_first = hn::RebindMask(di, first);
+    const auto in_second = hn::RebindMask(di, second);
+    // Both triangles' values on the diagonal are each other's complement.
+    StoreEdge(bc, bc.Biased(), hn::RebindMask(di, hn::Or(first, second)), cells.diagonal);
+    StoreEdge(ca, ca.Biased(), in_first, cells.first_edges[0]);
+    StoreEdge(ab, ab.Biased(), in_first, cells.first_edges[1]);
+    StoreEdge(be, be.Biased(), in_second, cells.second_edges[0]);
+    StoreEdge(ec, ec.Biased(), in_second, cells.second_edges[1]);
+    StorePlanes(bc, ca, ab, a, b, c, first_area, cells.first_planes);
+    StorePlanes(ec, cb, be, b, e, c, second_area, cells.second_planes);
+    hn::Store(hn::Add(hn::Mul(hn::Sub(y0, hn::Set(di, region.y)),
+                              hn::Set(di, static_cast<std::int32_t>(surface.pitch))),
+                      hn::Sub(x0, hn::Set(di, region.x))),
+              di, cells.place);
+    const IntVector one = hn::Set(di, 1);
+    hn::Store(hn::Add(hn::Sub(x1, x0), one), di, cells.columns);
+    hn::Store(hn::Add(hn::Sub(y1, y0), one), di, cells.rows);
+    const auto drawn_cells = hn::RebindMask(di, hn::Or(first, second));
+    Touch(hn::GetLane(hn::MinOfLanes(di, hn::IfThenElse(drawn_cells, y0, hn::Set(di, INT_MAX)))),
+          hn::GetLane(hn::MaxOfLanes(di, hn::IfThenElse(drawn_cells, y1, hn::Set(di, INT_MIN)))),
+          surface);
+    for (; forward != 0; forward &= forward - 1) {
+      DrawCell(cells, std::countr_zero(forward), surface);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace diminish::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace diminish {
+
+HWY_EXPORT(DrawCells);
+
+void SurfaceBuffer::clear(const Rect& region_) {
+  region = region_;
+  pitch = region.width + VertexRow::block;
+  const auto size = static_cast<std::size_t>(pitch) * static_cast<std::size_t>(region.height);
+  inverse_z.assign(size, 0.F);
+  first_row = region.bottom();
+  last_row = region.y - 1;
+  // Undefined where inverse_z is 0.
+  u_over_z.resize(size);
+  v_over_z.resize(size);
+}
+
+void keep_nearest(const SurfaceBuffer& from, int y, SurfaceBuffer& into) {
+  const std::ptrdiff_t row = into.row(y);
+  const float* const new_z = from.inverse_z.data() + row;
+  const float* const new_u = from.u_over_z.data() + row;
+  const float* const new_v = from.v_over_z.data() + row;
+  float* const z = into.inverse_z.data() + row;
+  float* const u = into.u_over_z.data() + row;
+  float* const v = into.v_over_z.data() + row;
+  const int width = into.region.width;
+  // Without branches, so that the compiler takes many pixels at a time.
+  for (int i = 0; i < width; ++i) {
+    const bool is_nearer = new_z[i] > z[i];
+    z[i] = is_nearer ? new_z[i] : z[i];
+    u[i] = is_nearer ? new_u[i] : u[i];
+    v[i] = is_nearer ? new_v[i] : v[i];
+  }
+}
+
+int count_drawn(const SurfaceBuffer& surface, int y) {
+  const float* const z = surface.inverse_z.data() + surface.row(y);
+  int count = 0;
+  for (int i = 0; i < surface.region.width; ++i) count += z[i] > 0 ? 1 : 0;
+  return count;
+}
+
+void draw_cells(const VertexRow& upper, const VertexRow& lower, int block,
+                const sdct::Threshold& threshold, SurfaceBuffer& surface) {
+  HWY_DYNAMIC_DISPATCH(DrawCells)(upper, lower, block, threshold, surface);
+}
+
+}  // namespace diminish
+#endif

@@ -1,0 +1,256 @@
+#include "render/vertex_row.h"
+
+#include <algorithm>
+
+#include "render/sdct.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "render/vertex_row.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace diminish::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Floats = hn::CappedTag<float, VertexRow::block>;
+using Ints = hn::RebindToSigned<Floats>;
+using Vector = hn::Vec<Floats>;
+using LaneMask = hn::Mask<Floats>;
+
+// Products and sums are kept apart (no fused multiply-add) and in the order of Projection and
+// FloatTransform, so that every processor computes the plain version's bits.
+
+HWY_INLINE Vector Set(float value) {
+  return hn::Set(Floats(), value);
+}
+HWY_INLINE Vector Apply(const FloatTransform& t, int axis, Vector x, Vector y, Vector z) {
+  return hn::Add(hn::Add(hn::Add(hn::Mul(Set(t.r[axis][0]), x), hn::Mul(Set(t.r[axis][1]), y)),
+                         hn::Mul(Set(t.r[axis][2]), z)),
+                 Set(t.t[axis]));
+}
+/// Projection::distort; the mask of lanes inside the valid radius.
+HWY_INLINE LaneMask Distort(const Projection& p, Vector x, Vector y, Vector& u, Vector& v) {
+  const Vector xx = hn::Mul(x, x);
+  const Vector yy = hn::Mul(y, y);
+  const Vector xy = hn::Mul(x, y);
+  const Vector r2 = hn::Add(xx, yy);
+  const Vector two = Set(2.F);
+  const Vector radial = hn::Add(
+      Set(1.F),
+      hn::Mul(r2, hn::Add(Set(p.k1), hn::Mul(r2, hn::Add(Set(p.k2), hn::Mul(r2, Set(p.k3)))))));
+  const Vector xd = hn::Add(
+      hn::Mul(x, radial),
+      hn::Add(hn::Mul(Set(2.F * p.p1), xy), hn::Mul(Set(p.p2), hn::Add(r2, hn::Mul(two, xx)))));
+  const Vector yd = hn::Add(
+      hn::Mul(y, radial),
+      hn::Add(hn::Mul(Set(p.p1), hn::Add(r2, hn::Mul(two, yy))), hn::Mul(Set(2.F * p.p2), xy)));
+  u = hn::Add(hn::Mul(Set(p.fx), xd), Set(p.cx));
+  v = hn::Add(hn::Mul(Set(p.fy), yd), Set(p.cy));
+  return hn::Lt(r2, Set(p.max_radius_squared));
+}
+
+/// One row; the arrays are padded to whole blocks.
+void ProjectRow(const VertexRows::Constants& constants, const FloatTransform& to_color,
+                const Rect& region, const std::uint8_t* visible, const std::uint16_t* depth,
+                const std::uint8_t* mask, const float* ray_x, const float* ray_y, VertexRow& row) {
+  const Floats d;
+  const Ints di;
+  const hn::Rebind<std::uint16_t, Floats> d16;
+  const hn::Rebind<std::uint8_t, Floats> d8;
+  const auto lanes = static_cast<int>(hn::Lanes(d));
+  // A pixel more than the region has, for what rounding to 1/256 may move.
+  const Vector left = Set(static_cast<float>(region.x - 1));
+  const Vector right = Set(static_cast<float>(region.right() + 1));
+  const Vector top = Set(static_cast<float>(region.y - 1));
+  const Vector bottom = Set(static_cast<float>(region.bottom() + 1));
+  for (int start = 0; start < constants.width; start += VertexRow::block) {
+    const auto index = static_cast<std::size_t>(start / VertexRow::block);
+    row.has_colors[index] = 0;
+    if (visible[index] == 0) {
+      std::fill_n(row.inverse_z.data() + start, VertexRow::block, 0.F);
+      row.beyond[index] = 15;
+      row.bounds[index] = {};
+      continue;
+    }
+    LaneMask not_left = hn::Lt(hn::Zero(d), hn::Zero(d));
+    LaneMask not_right = not_left;
+    LaneMask not_above = not_left;
+    LaneMask not_below = not_left;
+    Vector least_x = Set(sdct::max_coordinate_px), greatest_x = Set(-sdct::max_coordinate_px);
+    Vector least_y = least_x, greatest_y = greatest_x;
+    for (int i = start; i < start + VertexRow::block; i += lanes) {
+      hn::Vec<decltype(d16)> values;
+      hn::Vec<decltype(d8)> masked;
+      if (i + lanes <= constants.width) {
+        values = hn::LoadU(d16, depth + i);
+        masked = hn::LoadU(d8, mask + i);
+      } else {
+        HWY_ALIGN std::uint16_t last_values[VertexRow::block] = {};
+        HWY_ALIGN std::uint8_t last_masked[VertexRow::block] = {};
+        const int count = std::max(0, constants.width - i);
+        std::copy_n(depth + i, count, last_values);
+        std::copy_n(mask + i, count, last_masked);
+        values = hn::LoadU(d16, last_values);
+        masked = hn::LoadU(d8, last_masked);
+      }
+      const auto measured = hn::Ne(hn::PromoteTo(di, values), hn::Zero(di));
+      const auto free = hn::Eq(hn::PromoteTo(di, masked), hn::Zero(di));
+      LaneMask valid = hn::RebindMask(d, hn::And(measured, free));
+      if (hn::AllFalse(d, valid)) {
+        hn::StoreU(hn::Zero(d), d, row.inverse_z.data() + i);
+        continue;
+      }
+      const Vector z = hn::Mul(hn::ConvertTo(d, hn::PromoteTo(di, values)), Set(constants.unit_m));
+      const Vector x = hn::Mul(hn::LoadU(d, ray_x + i), z);
+      const Vector y = hn::Mul(hn::LoadU(d, ray_y + i), z);
+      const Vector color_z = Apply(to_color, 2, x, y, z);
+      valid = hn::And(valid, hn::Gt(color_z, Set(sdct::near_plane_m)));
+      Vector px, py;
+      valid = hn::And(valid, Distort(constants.color, hn::Div(Apply(to_color, 0, x, y, z), color_z),
+                                     hn::Div(Apply(to_color, 1, x, y, z), color_z), px, py));
+      const Vector limit = Set(sdct::max_coordinate_px);
+      valid = hn::And(valid, hn::And(hn::Lt(hn::Abs(px), limit), hn::Lt(hn::Abs(py), limit)));
+      // What is not valid is 0: comparable, and no trap for the conversion.
+      px = hn::IfThenElseZero(valid, px);
+      py = hn::IfThenElseZero(valid, py);
+      const Vector subpixels = Set(static_cast<float>(sdct::subpixels));
+      hn::StoreU(hn::NearestInt(hn::Mul(px, subpixels)), di, row.x.data() + i);
+      hn::StoreU(hn::NearestInt(hn::Mul(py, subpixels)), di, row.y.data() + i);
+      hn::StoreU(z, d, row.depth_m.data() + i);
+      hn::StoreU(hn::IfThenElseZero(valid, hn::Div(Set(1.F), color_z)), d,
+                 row.inverse_z.data() + i);
+      not_left = hn::Or(not_left, hn::And(valid, hn::Ge(px, left)));
+      not_right = hn::Or(not_right, hn::And(valid, hn::Lt(px, right)));
+      not_above = hn::Or(not_above, hn::And(valid, hn::Ge(py, top)));
+      not_below = hn::Or(not_below, hn::And(valid, hn::Lt(py, bottom)));
+      least_x = hn::IfThenElse(valid, hn::Min(least_x, px), least_x);
+      greatest_x = hn::IfThenElse(valid, hn::Max(greatest_x, px), greatest_x);
+      least_y = hn::IfThenElse(valid, hn::Min(least_y, py), least_y);
+      greatest_y = hn::IfThenElse(valid, hn::Max(greatest_y, py), greatest_y);
+    }
+    const auto bit = [&](LaneMask mask_, int value)
+                         HWY_ATTR { return hn::AllFalse(d, mask_) ? value : 0; };
+    row.beyond[index] = static_cast<std::uint8_t>(bit(not_left, 1) | bit(not_right, 2) |
+                                                  bit(not_above, 4) | bit(not_below, 8));
+    const auto least = [&](Vector values) HWY_ATTR {
+      return static_cast<int>(hn::GetLane(hn::MinOfLanes(d, values))) - 1;
+    };
+    const auto size = [&](Vector values, int first) HWY_ATTR {
+      return static_cast<int>(hn::GetLane(hn::MaxOfLanes(d, values))) + 2 - first;
+    };
+    const int first_x = least(least_x);
+    const int first_y = least(least_y);
+    row.bounds[index] = {first_x, first_y, size(greatest_x, first_x), size(greatest_y, first_y)};
+  }
+}
+
+/// The places of the colours of one block.
+void FindColors(const VertexRows::Constants& constants, const float* ray_x, const float* ray_y,
+                const Mask& color_mask, int start, VertexRow& row) {
+  const Floats d;
+  const Ints di;
+  const auto lanes = static_cast<int>(hn::Lanes(d));
+  for (int i = start; i < start + VertexRow::block; i += lanes) {
+    const Vector inverse_z = hn::LoadU(d, row.inverse_z.data() + i);
+    LaneMask valid = hn::Gt(inverse_z, hn::Zero(d));
+    if (hn::AllFalse(d, valid)) continue;
+    const Vector z = hn::LoadU(d, row.depth_m.data() + i);
+    const Vector x = hn::Mul(hn::LoadU(d, ray_x + i), z);
+    const Vector y = hn::Mul(hn::LoadU(d, ray_y + i), z);
+    const Vector rgbd_z = Apply(constants.to_rgbd_color, 2, x, y, z);
+    valid = hn::And(valid, hn::Gt(rgbd_z, Set(sdct::near_plane_m)));
+    Vector u, v;
+    valid =
+        hn::And(valid, Distort(constants.rgbd_color,
+                               hn::Div(Apply(constants.to_rgbd_color, 0, x, y, z), rgbd_z),
+                               hn::Div(Apply(constants.to_rgbd_color, 1, x, y, z), rgbd_z), u, v));
+    const Vector zero = hn::Zero(d);
+    valid = hn::And(valid, hn::And(hn::And(hn::Ge(u, zero), hn::Le(u, Set(constants.last_column))),
+                                   hn::And(hn::Ge(v, zero), hn::Le(v, Set(constants.last_row)))));
+    u = hn::IfThenElseZero(valid, u);
+    v = hn::IfThenElseZero(valid, v);
+    HWY_ALIGN std::int32_t column[VertexRow::block];
+    HWY_ALIGN std::int32_t line[VertexRow::block];
+    HWY_ALIGN std::int32_t masked[VertexRow::block];
+    hn::Store(hn::NearestInt(u), di, column);
+    hn::Store(hn::NearestInt(v), di, line);
+    for (int k = 0; k < lanes; ++k) masked[k] = color_mask(column[k], line[k]);
+    valid = hn::And(valid, hn::RebindMask(d, hn::Eq(hn::Load(di, masked), hn::Zero(di))));
+    const Vector kept = hn::IfThenElseZero(valid, inverse_z);
+    hn::StoreU(kept, d, row.inverse_z.data() + i);
+    hn::StoreU(hn::Mul(u, kept), d, row.u_over_z.data() + i);
+    hn::StoreU(hn::Mul(v, kept), d, row.v_over_z.data() + i);
+  }
+}
+
+}  // namespace
+}  // namespace diminish::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace diminish {
+
+HWY_EXPORT(ProjectRow);
+HWY_EXPORT(FindColors);
+
+void VertexRow::resize(int width) {
+  const std::size_t blocks = static_cast<std::size_t>((width + block - 1) / block) + 1;
+  const std::size_t size = blocks * block;
+  x.resize(size);
+  y.resize(size);
+  depth_m.resize(size);
+  inverse_z.resize(size);
+  u_over_z.resize(size);
+  v_over_z.resize(size);
+  beyond.resize(blocks);
+  bounds.resize(blocks);
+  has_colors.resize(blocks);
+  std::fill_n(inverse_z.end() - block, block, 0.F);
+  beyond.back() = 15;
+}
+
+VertexRows::VertexRows(const RgbdCamera& camera, const Intrinsics& color)
+    : width_(camera.depth.width),
+      height_(camera.depth.height),
+      padded_width_((width_ + VertexRow::block - 1) / VertexRow::block * VertexRow::block),
+      constants_{Projection(Lens(color)),
+                 Projection(Lens(camera.color)),
+                 FloatTransform(camera.color_from_depth),
+                 static_cast<float>(camera.depth_unit_m),
+                 static_cast<float>(camera.color.width - 1),
+                 static_cast<float>(camera.color.height - 1),
+                 width_} {
+  const Image<Eigen::Vector2f> rays = Lens(camera.depth).rays();
+  const std::size_t size =
+      static_cast<std::size_t>(padded_width_) * static_cast<std::size_t>(height_);
+  ray_x_.assign(size, 0.F);
+  ray_y_.assign(size, 0.F);
+  for (int row = 0; row < height_; ++row) {
+    for (int column = 0; column < width_; ++column) {
+      const auto at = static_cast<std::size_t>(row * padded_width_ + column);
+      ray_x_[at] = rays(column, row).x();
+      ray_y_[at] = rays(column, row).y();
+    }
+  }
+}
+
+void VertexRows::project(const Frame& frame, int row, VertexRow& vertices) const {
+  const std::ptrdiff_t rays = static_cast<std::ptrdiff_t>(row) * padded_width_;
+  HWY_DYNAMIC_DISPATCH(ProjectRow)
+  (constants_, frame.to_color, frame.region, frame.visible.row(row), frame.depth.row(row),
+   frame.depth_mask.row(row), ray_x_.data() + rays, ray_y_.data() + rays, vertices);
+}
+
+void VertexRows::find_colors(const Frame& frame, int row, int block, VertexRow& vertices) const {
+  const std::ptrdiff_t rays = static_cast<std::ptrdiff_t>(row) * padded_width_;
+  HWY_DYNAMIC_DISPATCH(FindColors)
+  (constants_, ray_x_.data() + rays, ray_y_.data() + rays, frame.color_mask,
+   block * VertexRow::block, vertices);
+  vertices.has_colors[static_cast<std::size_t>(block)] = 1;
+}
+
+}  // namespace diminish
+#endif

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "depth/visible_blocks.h"
+#include "diminish/frame_set.h"
+#include "diminish/image.h"
+#include "diminish/rig.h"
+#include "geometry/projection.h"
+
+namespace diminish {
+
+/// The vertices of one row of a depth image (see MeshVertex), an array for each value. Vertices are
+/// worked on in blocks; there is one block more than the row has, of invalid vertices.
+struct VertexRow {
+  static constexpr int block = VisibleBlocks::width;
+
+  std::vector<std::int32_t> x, y;         ///< in the colour camera's image, in 1/256 pixels
+  std::vector<float> depth_m;             ///< z in the depth sensor's frame
+  std::vector<float> inverse_z;           ///< 1 / z in the colour camera's frame; 0: not a vertex
+  std::vector<float> u_over_z, v_over_z;  ///< place in the RGB-D camera's colour image, over z
+  /// A block's valid vertices lie all: 1 left of the region to draw, 2 right of it, 4 above, 8
+  /// below.
+  std::vector<std::uint8_t> beyond;
+  std::vector<Rect> bounds;              ///< of a block's valid vertices, in pixels
+  std::vector<std::uint8_t> has_colors;  ///< u and v are known, and the vertices that have none out
+
+  void resize(int width);
+};
+
+/// Turns rows of one RGB-D camera's depth images into vertices: rule 1 of sdct.h, to the bit what
+/// DepthMesh computes.
+class VertexRows {
+ public:
+  VertexRows(const RgbdCamera& camera, const Intrinsics& color);
+
+  struct Frame {
+    const Image<std::uint16_t>& depth;
+    const Mask& depth_mask;
+    const Mask& color_mask;
+    FloatTransform to_color;
+    Rect region;
+    const VisibleBlocks& visible;  ///< what is not is left out
+  };
+  /// Everything but the colours' places.
+  void project(const Frame& frame, int row, VertexRow& vertices) const;
+  /// The colours' places of one block.
+  void find_colors(const Frame& frame, int row, int block, VertexRow& vertices) const;
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+
+  /// What the kernels read.
+  struct Constants {
+    Projection color, rgbd_color;
+    FloatTransform to_rgbd_color;
+    float unit_m, last_column, last_row;
+    int width;
+  };
+
+ private:
+  int width_, height_, padded_width_;
+  Constants constants_;
+  std::vector<float> ray_x_, ray_y_;
+};
+
+}  // namespace diminish

@@ -1,0 +1,117 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "diminish/image.h"
+#include "diminish/intrinsics.h"
+#include "diminish/reconstruction.h"
+#include "geometry/ray_grid.h"
+#include "scene/background_planes.h"
+#include "scene/shadow_fit.h"
+
+namespace diminish {
+
+/// The shadows that the objects to remove cast on the background's planes: of the light from each
+/// direction they hide what lies behind them, and how much comes from where follows from the
+/// brightness of the samples on the plane (ShadowFit). What the objects, as far as RGB-D cameras
+/// see them, cannot have caused stays: other things' shadows, texture.
+class CastShadows {
+ public:
+  /// A plane with coordinates on it, in metres from the point below the objects' middle.
+  struct Ground {
+    BackgroundPlane plane;
+    Eigen::Vector3f origin, along_u, along_v;
+
+    Ground() = default;
+    Ground(const BackgroundPlane& plane, const Eigen::Vector3f& middle);
+    Eigen::Vector2f coordinates(const Eigen::Vector3f& point_m) const;
+    Eigen::Vector3f point_m(const Eigen::Vector2f& place) const;
+  };
+  /// What is taken from a plane's light, by cells around the ground's origin, whose middles are at
+  /// whole numbers.
+  struct Shadow {
+    Ground ground;
+    std::uint8_t label = 0;       ///< the plane's, as in Reconstruction::surface
+    Image<Eigen::Array3f> light;  ///< the share that is left, by cell
+  };
+  static constexpr float cell_m = 0.02F;
+  static constexpr int grid_cells = 128;
+  /// Light changes little from pixel to pixel: it is looked up at every so many of a row, in every
+  /// so many rows of the picture.
+  static constexpr int node_px = 16;
+  static constexpr int node_rows_px = 8;
+  /// Where less is taken there is no shadow.
+  static constexpr float invisible = 1.F / 256;
+  /// What stands on a plane is labelled as the plane up to some height: shadows fade between this
+  /// and twice this times what a depth may be off by.
+  static constexpr float fading_height = 0.6F;
+
+  explicit CastShadows(const Intrinsics& color);
+
+  /// samples, object_points_m: in the colour camera's frame. Cost: one to three milliseconds.
+  void find(const std::vector<BackgroundPlane>& planes, const std::vector<SceneSample>& samples,
+            const std::vector<Eigen::Vector3f>& object_points_m);
+  void clear() { shadow_count_ = 0; }
+  /// Whether there are any.
+  bool any() const { return shadow_count_ > 0; }
+  std::span<const Shadow> shadows() const { return {shadows_.data(), shadow_count_}; }
+  /// Where they are in the colour camera's picture.
+  Rect bounds() const;
+  /// Fills `reconstruction.light`: shadows end where something stands on their plane.
+  void shade(Reconstruction& reconstruction);
+
+ private:
+  static constexpr std::size_t bits_a_word = 64;
+  static constexpr int azimuths = 16;
+  static constexpr std::array<float, 5> elevations_deg = {25, 38, 51, 64, 77};
+  static constexpr std::size_t directions = azimuths * elevations_deg.size();
+  /// A cell's bits, one for each direction, are in two words.
+  static constexpr int words = 2;
+  static_assert(directions <= bits_a_word * words);
+  using ByDirection = Eigen::Array<float, directions, 1>;
+
+  struct Blocker {
+    Eigen::Vector2f place;
+    float height_m;
+  };
+  struct Lit {
+    Eigen::Vector2f place;
+    Eigen::Array3f levels;
+  };
+  void choose_blockers(const Ground& ground, const std::vector<BackgroundPlane>& planes,
+                       const std::vector<Eigen::Vector3f>& object_points_m);
+  void choose_lit(const Ground& ground, const std::vector<SceneSample>& samples);
+  void find_hidden();
+  bool fit();
+  template <class Visit>
+  static void for_each_direction(const std::uint64_t* bits, const Visit& visit);
+  void draw_light(Image<Eigen::Array3f>& light);
+  static Eigen::Array3f dark_at(const Shadow& cast, const Eigen::Vector2f& ray);
+  void find_nodes(const Rect& region);
+  void shade_row(int y, Reconstruction& reconstruction) const;
+
+  Lens lens_;
+  RayGrid rays_;
+  ByDirection slopes_u_, slopes_v_;  ///< metres along the plane a metre up
+  std::vector<Blocker> blockers_;
+  std::vector<Lit> lit_;
+  std::vector<std::uint32_t> on_plane_;  ///< samples
+  /// Words of cells; the first with a rim around the grid: of one cell, and one more for what is
+  /// beyond.
+  Image<std::uint64_t> struck_, struck_in_column_, hidden_;
+  std::vector<std::uint8_t> hidden_from_;
+  ShadowFit fit_;
+  Image<Eigen::Array4f> dark_;
+  std::vector<Shadow> shadows_;  ///< the first shadow_count_ are this frame's
+  std::size_t shadow_count_ = 0;
+  Rect nodes_box_;  ///< of the nodes around the region, in nodes from the picture's corner
+  /// By shadow: dark_at, and the height above the plane for each metre of z.
+  std::array<Image<Eigen::Array4f>, BackgroundPlanes::most_planes> nodes_;
+  Mask is_shaded_;  ///< by block of pixels between four nodes
+};
+
+}  // namespace diminish

@@ -1,0 +1,78 @@
+#include "scene/color_maps.h"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/channels.h"
+#include "core/even_color.h"
+
+namespace diminish {
+namespace {
+
+/// Where a channel is nearly black or white it no longer tells how much light there was.
+bool is_exposed(const Eigen::Array3f& levels) {
+  return (levels >= 6).all() && (levels <= 245).all();
+}
+
+/// Of each RGB-D camera: more make the map no better.
+constexpr std::size_t most_pairs = 2000;
+
+void add_pair(const Image<Bgr>& camera, const Mask& occlusion, const SceneSample& sample,
+              std::vector<ColorPair>& pairs) {
+  constexpr int rim = even_color_reach_px;
+  const int x = static_cast<int>(std::lrint(sample.pixel.x()));
+  const int y = static_cast<int>(std::lrint(sample.pixel.y()));
+  if (!sample.even || x < rim || y < rim || x >= camera.width() - rim ||
+      y >= camera.height() - rim) {
+    return;
+  }
+  for (const int dy : {-rim, 0, rim}) {
+    for (const int dx : {-rim, 0, rim}) {
+      if (occlusion(x + dx, y + dy) != 0) return;
+    }
+  }
+  const EvenColor color = even_color(camera, x, y);
+  const ColorPair pair{sample.pixel,
+                       to_channels(sample.color),
+                       {color.channels[0], color.channels[1], color.channels[2]}};
+  if (color.even && is_exposed(pair.rgbd) && is_exposed(pair.camera)) pairs.push_back(pair);
+}
+
+}  // namespace
+
+const MappedMethod* find_mapped_method(std::string_view name) {
+  const auto found = std::find_if(mapped_methods.begin(), mapped_methods.end(),
+                                  [&](const MappedMethod& method) { return method.name == name; });
+  return found == mapped_methods.end() ? nullptr : &*found;
+}
+
+void ColorMaps::clear() {
+  std::fill(maps_.begin(), maps_.end(), ColorMap{});
+}
+
+void ColorMaps::fit(const Image<Bgr>& camera, const Mask& occlusion,
+                    const std::vector<SceneSample>& samples, ColorMapModel model) {
+  clear();
+  sources_.clear();
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (i == 0 || samples[i].source != samples[i - 1].source) sources_.push_back({i, i});
+    sources_.back().end = i + 1;
+  }
+  if (pairs_.size() < sources_.size()) {
+    pairs_.resize(sources_.size());
+    fits_.resize(sources_.size());
+  }
+  oneapi::tbb::parallel_for(std::size_t{0}, sources_.size(), [&](std::size_t k) {
+    const auto [begin, end] = sources_[k];
+    pairs_[k].clear();
+    const std::size_t step = (end - begin + most_pairs - 1) / most_pairs;
+    for (std::size_t i = begin; i < end; i += step) {
+      add_pair(camera, occlusion, samples[i], pairs_[k]);
+    }
+    maps_[samples[begin].source] = fits_[k].fit(pairs_[k], model, camera.bounds());
+  });
+}
+
+}  // namespace diminish

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/rows.h"
+
+#include "diminish/frame_set.h"
+#include "diminish/occlusion_masks.h"
+#include "diminish/poses.h"
+#include "diminish/reconstruction.h"
+#include "diminish/rig.h"
+#include "render/depth_mesh.h"
+
+namespace diminish {
+
+/// Takes Reconstruction::samples from the RGB-D images: on a regular grid of depth pixels, those
+/// that lie on surfaces.
+class SceneSampler {
+ public:
+  explicit SceneSampler(const Rig& rig);
+
+  /// masks: grown already. `samples` is sorted by `source`. Cost: about 0.1 us a sample.
+  void sample(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks,
+              Reconstruction& reconstruction);
+
+ private:
+  /// What some rows of a depth image show.
+  struct Half {
+    std::vector<SceneSample> samples;
+    std::vector<Eigen::Vector3f> object_points_m;
+  };
+  struct Camera {
+    DepthMesh mesh;
+    std::array<Half, 2> halves;
+  };
+  struct View {
+    const RgbdFrame& images;
+    const DepthMesh& mesh;
+    DepthMesh::Frame frame;
+    std::uint8_t source;
+  };
+  static void sample_rows(const View& view, Rows rows, Half& half);
+
+  std::vector<Camera> by_camera_;
+};
+
+}  // namespace diminish

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "diminish/intrinsics.h"
+#include "diminish/rigid_transform.h"
+#include "setup/calibrate/target_view.h"
+
+namespace diminish {
+
+/// Finds the transform between two cameras that do not move against each other from targets that
+/// both saw at the same time: least squares of all corners' reprojection errors in both images,
+/// robust (Tukey's weights), each target's pose being unknown, too.
+class FixedPoseFit {
+ public:
+  FixedPoseFit(const Lens& first, const Lens& second);
+
+  /// The same target in both images. Keeps up to 400.
+  void add(const TargetView& in_first, const TargetView& in_second);
+
+  std::size_t size() const { return sightings_.size(); }
+
+  struct Result {
+    RigidTransform first_from_second;
+    /// Root mean square of the corners' errors in both images, pixels, of the sightings that agree.
+    double error_px = 0;
+    /// The same if every sighting had a transform of its own: what the corners themselves leave.
+    double least_error_px = 0;
+    std::size_t agreeing = 0;  ///< sightings
+    /// Standard deviations.
+    double deviation_m = 0;
+    double deviation_deg = 0;
+  };
+  /// Nothing without sightings.
+  std::optional<Result> solve() const;
+
+ private:
+  struct Sighting {
+    TargetView first, second;
+    std::vector<Eigen::Vector2d> first_px, second_px;  ///< without the lens
+  };
+  double transfer_error_px(const Sighting& sighting, const RigidTransform& first_from_second,
+                           RigidTransform* second_from_target) const;
+  RigidTransform start() const;
+
+  Lens first_, second_;
+  std::vector<Sighting> sightings_;
+};
+
+}  // namespace diminish

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+namespace diminish::testing {
+
+/// Where what the tests use lies on this machine.
+std::string recordings_dir();  ///< the bundled recordings
+std::string docs_dir();
+std::string source_test_data();  ///< src/source/test_data
+std::string program();           ///< the built command line tool
+
+}  // namespace diminish::testing
