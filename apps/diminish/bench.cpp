@@ -34,10 +34,10 @@ struct Figures {
   std::size_t frames = 0, left_out = 0, measured = 0;
   std::array<Distribution, stage_count + 1> times_ms;  ///< per stage, and last the whole frame
   double throughput_fps = 0;
-  std::string device;                                         ///< the GPU; empty: the processor
+  std::string device;                                         ///< the GPU; empty: the CPU
   std::vector<std::pair<std::string, double>> gpu_passes_ms;  ///< medians
-  double frame_ms = 0, processor_frame_ms = 0;                ///< medians, by turns
-  Distribution allocated_bytes, allocations;                  ///< a frame
+  double frame_ms = 0, cpu_frame_ms = 0;                      ///< medians, by turns
+  Distribution allocated_bytes, allocations;                  ///< per frame
   std::size_t peak_memory_bytes = 0;
 };
 
@@ -90,7 +90,8 @@ void BenchCommand::measure_latency(const Recording& input, const std::vector<Fra
   Pipeline pipeline(input.rig, input.scene, options);
   pipeline.want_reconstruction(false);
   DiminishedFrame result;
-  for (const FrameSet& frame : loaded) pipeline.process(frame, result);  // memory grows to its size
+  for (const FrameSet& frame : loaded)
+    pipeline.process(frame, result);  // lets memory grow to its final size
 
   constexpr std::size_t fewest_frames = 20;
   std::array<std::vector<double>, stage_count + 1> times;
@@ -118,32 +119,30 @@ void BenchCommand::measure_latency(const Recording& input, const std::vector<Fra
   figures.allocations = distribution_of(std::move(counts));
 }
 
-/// The chosen backend beside the processor's: by turns, so that a machine whose speed drifts slows
-/// both.
+/// The chosen backend beside the CPU's, in turn: a machine whose speed drifts slows both.
 void BenchCommand::measure_backend(const Recording& input, const std::vector<FrameSet>& loaded,
                                    Figures& figures) const {
-  Options by_processor = options;
-  by_processor.backend = "cpu";
+  Options by_cpu = options;
+  by_cpu.backend = "cpu";
   Pipeline chosen(input.rig, input.scene, options);
-  Pipeline processor(input.rig, input.scene, by_processor);
+  Pipeline cpu(input.rig, input.scene, by_cpu);
   chosen.want_reconstruction(false);
   DiminishedFrame result;
   std::vector<double> chosen_ms;
-  std::vector<double> processor_ms;
+  std::vector<double> cpu_ms;
   std::vector<std::pair<std::string, std::vector<double>>> passes;
   constexpr std::size_t fewest_frames = 20;
   const Clock::time_point start = Clock::now();
   for (std::size_t i = 0; i < fewest_frames || seconds_since(start) < seconds; ++i) {
     const FrameSet& frame = loaded[i % loaded.size()];
-    const Clock::time_point processor_start = Clock::now();
-    processor.process(frame, result);
+    const Clock::time_point cpu_start = Clock::now();
+    cpu.process(frame, result);
     const Clock::time_point chosen_start = Clock::now();
     chosen.process(frame, result);
     const DrawingReport& drawing = result.report.drawing;
-    if (i == 0) continue;  // memory grows to its size
+    if (i == 0) continue;  // lets memory grow to its final size
     chosen_ms.push_back(1000 * seconds_since(chosen_start));
-    processor_ms.push_back(
-        std::chrono::duration<double, std::milli>(chosen_start - processor_start).count());
+    cpu_ms.push_back(std::chrono::duration<double, std::milli>(chosen_start - cpu_start).count());
     figures.device = drawing.device;
     passes.resize(drawing.passes.size());
     for (std::size_t k = 0; k < passes.size(); ++k) {
@@ -152,7 +151,7 @@ void BenchCommand::measure_backend(const Recording& input, const std::vector<Fra
     }
   }
   figures.frame_ms = distribution_of(std::move(chosen_ms)).p50;
-  figures.processor_frame_ms = distribution_of(std::move(processor_ms)).p50;
+  figures.cpu_frame_ms = distribution_of(std::move(cpu_ms)).p50;
   for (auto& [name, times] : passes) {
     figures.gpu_passes_ms.emplace_back(name, distribution_of(std::move(times)).p50);
   }
@@ -169,7 +168,7 @@ void BenchCommand::measure_throughput(const Recording& input, std::vector<FrameS
   runner.reconstructions = false;
   Clock::time_point start;
   std::size_t timed = 0;
-  // The first frames make each thread's memory.
+  // The first frames allocate each thread's memory.
   const std::size_t warm_up = static_cast<std::size_t>(2 * threads);
   runner.progress = [&](std::size_t done) {
     if (done == warm_up) start = Clock::now();
@@ -189,28 +188,28 @@ void print(const Figures& figures, int threads) {
                d.average, d.least, d.most, d.p50, d.p95, d.p99, row.paper_ms);
   }
   const Distribution& total = figures.times_ms[stage_count];
-  fmt::print("{} frames, {} times in all; {} left out without a colour image\n", figures.frames,
+  fmt::print("{} frames, measured {} times; {} skipped without a colour image\n", figures.frames,
              figures.measured, figures.left_out);
   fmt::print("One at a time: p50 {:.2f}, p95 {:.2f}, p99 {:.2f} ms; {:.1f} frames/s\n", total.p50,
              total.p95, total.p99, 1000 / total.average);
   fmt::print("Pipelined, {} threads: {:.1f} frames/s\n", threads, figures.throughput_fps);
   if (figures.frame_ms > 0) {
-    fmt::print("Frame on {}: p50 {:.2f} ms; by the processor's backend {:.2f} ms, ratio {:.2f}\n",
-               figures.device.empty() ? "the processor" : figures.device, figures.frame_ms,
-               figures.processor_frame_ms, figures.processor_frame_ms / figures.frame_ms);
+    fmt::print("Frame on {}: p50 {:.2f} ms; with the CPU backend {:.2f} ms, ratio {:.2f}\n",
+               figures.device.empty() ? "the CPU" : figures.device, figures.frame_ms,
+               figures.cpu_frame_ms, figures.cpu_frame_ms / figures.frame_ms);
   }
   double gpu_ms = 0;
   for (const auto& [name, ms] : figures.gpu_passes_ms) {
     fmt::print("  GPU time, {:<10}{:>9.3f} ms\n", name, ms);
     gpu_ms += ms;
   }
-  if (gpu_ms > 0) fmt::print("  GPU time, {:<10}{:>9.3f} ms\n", "in all", gpu_ms);
+  if (gpu_ms > 0) fmt::print("  GPU time, {:<10}{:>9.3f} ms\n", "total", gpu_ms);
   fmt::print("Peak memory: {:.0f} MB\n", static_cast<double>(figures.peak_memory_bytes) / 1e6);
   if (allocations_are_counted()) {
-    fmt::print("Allocated in a frame: {:.0f} bytes (at most {:.0f}) in {:.0f} pieces\n",
+    fmt::print("Allocated per frame: {:.0f} bytes (at most {:.0f}) in {:.0f} allocations\n",
                figures.allocated_bytes.p50, figures.allocated_bytes.most, figures.allocations.p50);
   } else {
-    fmt::print("Allocated in a frame: not measured in this build\n");
+    fmt::print("Allocated per frame: not measured in this build\n");
   }
 }
 
@@ -219,7 +218,7 @@ nlohmann::ordered_json to_json(const Distribution& d) {
           {"p50", d.p50},     {"p95", d.p95},   {"p99", d.p99}};
 }
 
-std::string processor() {
+std::string cpu_name() {
   std::ifstream info("/proc/cpuinfo");
   const std::string key = "model name";
   for (std::string line; std::getline(info, line);) {
@@ -235,7 +234,7 @@ void write_json(const BenchCommand& command, const Figures& figures) {
   json["recording"] = command.recording.string();
   json["frames"] = figures.frames;
   json["threads"] = command.threads;
-  json["machine"] = {{"processor", processor()}, {"cores", std::thread::hardware_concurrency()}};
+  json["machine"] = {{"cpu", cpu_name()}, {"cores", std::thread::hardware_concurrency()}};
   json["latency_ms"] = to_json(total);
   json["latency_fps"] = 1000 / total.average;
   json["throughput_fps"] = figures.throughput_fps;
@@ -245,7 +244,7 @@ void write_json(const BenchCommand& command, const Figures& figures) {
   if (figures.frame_ms > 0) {
     json["backend"] = {{"device", figures.device},
                        {"frame_p50_ms", figures.frame_ms},
-                       {"cpu_frame_p50_ms", figures.processor_frame_ms}};
+                       {"cpu_frame_p50_ms", figures.cpu_frame_ms}};
     for (const auto& [name, ms] : figures.gpu_passes_ms) json["backend"]["gpu_ms"][name] = ms;
   }
   json["peak_memory_bytes"] = figures.peak_memory_bytes;
@@ -276,21 +275,22 @@ int BenchCommand::execute() const {
 void add_bench(CLI::App& program, int& exit_code) {
   auto command = std::make_shared<BenchCommand>();
   CLI::App* sub = program.add_subcommand(
-      "bench", "Measures the pipeline on a recording's frames, decoded beforehand");
+      "bench", "Measures the pipeline's speed on a recording, with all frames decoded first");
   sub->add_option("recording", command->recording, "The recording's folder (rig.yaml, scene.yaml)")
       ->required();
-  sub->add_option("--threads", command->threads, "Frames in work at a time for the throughput")
+  sub->add_option("--threads", command->threads,
+                  "Frames to process at a time when measuring throughput")
       ->capture_default_str()
       ->check(CLI::Range(1, 1024))
       ->type_name("N");
-  sub->add_option("--frames", command->frames, "How many of the recording's frames; default: all")
+  sub->add_option("--frames", command->frames, "Use only the first N frames; default: all")
       ->check(CLI::Range(1, 1000000))
       ->type_name("N");
-  sub->add_option("--seconds", command->seconds, "How long each of the two measurements takes")
+  sub->add_option("--seconds", command->seconds, "Duration of each of the two measurements")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 3600.0))
       ->type_name("S");
-  sub->add_option("--json", command->json, "Write the figures to this file, too")
+  sub->add_option("--json", command->json, "Also write the figures to this file")
       ->type_name("FILE");
   add_option_flags(*sub, command->options);
   sub->callback([command, &exit_code] { exit_code = command->execute(); });

@@ -46,11 +46,12 @@ int CalibrateFactoryCommand::execute() const {
 void add_calibrate_factory(CLI::App& calibrate, int& exit_code) {
   auto command = std::make_shared<CalibrateFactoryCommand>();
   CLI::App* sub = calibrate.add_subcommand(
-      "factory", "Intrinsics that a camera's driver knows; calibrated ones are better");
+      "factory", "Writes the intrinsics that a camera's driver knows; calibrated ones are better");
   sub->add_option("uri", command->uri, "The camera, such as openni2: (docs/live.md)")->required();
-  sub->add_option("--camera", command->camera, "Its name in the rig")->capture_default_str();
+  sub->add_option("--camera", command->camera, "The camera's name in the rig")
+      ->capture_default_str();
   sub->add_option("--out", command->out,
-                  "The rig.yaml whose blocks of this camera are written; the rest of it stays")
+                  "The rig.yaml to write this camera's blocks into; the rest stays as it is")
       ->required();
   sub->callback([command, &exit_code] { exit_code = command->execute(); });
 }

@@ -43,7 +43,7 @@ std::unique_ptr<BoardImages> CalibrateIntrinsicsCommand::open() const {
       (images.empty() ? 0 : 1) + (recording.empty() ? 0 : 1) + (live.empty() ? 0 : 1);
   if (sources != 1) {
     throw Error(
-        "expected images of the board, or --recording with a recording of it, or --live "
+        "expected images of the board, --recording with a recording of it, or --live "
         "with a camera");
   }
   if (!live.empty()) return std::make_unique<LiveBoardImages>(live, seconds);
@@ -61,7 +61,7 @@ std::string use(BoardImages& images, const BoardDetector& detector, Image<Bgr>& 
   }
   if (!collection) collection.emplace(image.width(), image.height());
   if (image.width() != collection->width() || image.height() != collection->height()) {
-    return fmt::format("not used: expected {}x{} pixels as the first image has, got {}x{}",
+    return fmt::format("not used: expected {}x{} pixels like the first image, got {}x{}",
                        collection->width(), collection->height(), image.width(), image.height());
   }
   auto view = detector.detect(image, images.name());
@@ -88,11 +88,11 @@ ViewCollection CalibrateIntrinsicsCommand::collect(BoardImages& source,
     std::fflush(stdout);
     last_use = its_use;
     if (!live.empty() && collection && collection->is_ample()) {
-      fmt::print("These are enough\n");
+      fmt::print("That is enough\n");
       break;
     }
   }
-  if (first.empty()) throw Error(live + ": no image came");
+  if (first.empty()) throw Error(live + ": no image arrived");
   if (!collection) throw Error(first + ": none of the images can be read");
   return std::move(*collection);
 }
@@ -105,7 +105,7 @@ void print_result(const IntrinsicsCalibration& result) {
                view.used ? "" : "  left out: does not agree with the others");
     used += view.used ? 1 : 0;
   }
-  fmt::print("{:<40} {:>10.3f}\n\n", fmt::format("all {} that were used", used), result.error_px);
+  fmt::print("{:<40} {:>10.3f}\n\n", fmt::format("all {} used", used), result.error_px);
   const Intrinsics& camera = result.intrinsics;
   const std::array<double, 9> values = {camera.fx,
                                         camera.fy,
@@ -146,32 +146,35 @@ int CalibrateIntrinsicsCommand::execute() const {
 void add_calibrate_intrinsics(CLI::App& calibrate, int& exit_code) {
   auto command = std::make_shared<CalibrateIntrinsicsCommand>();
   CLI::App* sub = calibrate.add_subcommand(
-      "intrinsics", "Focal lengths, principal point and lens of a camera, from images of a board");
+      "intrinsics",
+      "Calibrates a camera's focal lengths, principal point and lens from images of a board");
   sub->add_option("images", command->images, "Images of the board, or folders of them");
   sub->add_option("--board", command->board,
-                  "What was printed: charuco:COLUMNSxROWS:SQUARE_MM:MARKER_MM[:DICTIONARY] or "
+                  "The printed board: charuco:COLUMNSxROWS:SQUARE_MM:MARKER_MM[:DICTIONARY] or "
                   "checkerboard:COLUMNSxROWS:SQUARE_MM")
       ->required();
   sub->add_option("--recording", command->recording,
                   "Instead of images: a recording of the board, calibrated or not");
-  sub->add_option("--live", command->live,
-                  "Instead of images: a live camera (docs/live.md); ends when there are enough")
+  sub->add_option(
+         "--live", command->live,
+         "Instead of images: a live camera (docs/live.md); ends when there are enough views")
       ->type_name("URI");
-  sub->add_option("--seconds", command->seconds, "The live camera is watched at most so long")
+  sub->add_option("--seconds", command->seconds, "How long to watch the live camera at most")
       ->capture_default_str()
       ->check(CLI::Range(1.0, 86400.0));
   sub->add_option("--camera", command->camera,
                   "Which camera: color, or an RGB-D camera's sensor: rgbd0_color, rgbd0_depth "
                   "(infrared images)")
       ->capture_default_str();
-  sub->add_option("--frames", command->frames, "At most so many images of a recording")
+  sub->add_option("--frames", command->frames, "Most images to use from a recording")
       ->capture_default_str()
       ->check(CLI::Range(1, 100000))
       ->type_name("N");
   sub->add_option("--out", command->out,
-                  "The rig.yaml whose block of this camera is written; the rest of it stays")
+                  "The rig.yaml to write this camera's block into; the rest stays as it is")
       ->required();
-  sub->add_option("--plot", command->plot, "A picture of the corners, their errors and coverage")
+  sub->add_option("--plot", command->plot,
+                  "Write a picture of the corners, their errors and the coverage")
       ->type_name("PNG");
   sub->callback([command, &exit_code] { exit_code = command->execute(); });
 }

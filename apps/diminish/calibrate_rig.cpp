@@ -45,9 +45,9 @@ RigCalibration collect(const Recording& recording, const std::optional<Board>& b
 }
 
 void print(const std::string& name, const DepthToColor& result) {
-  fmt::print("{}: depth sensor in its own colour sensor's frame, from {} sightings\n", name,
+  fmt::print("{}: pose of the depth sensor in its colour sensor's frame, from {} sightings\n", name,
              result.sightings);
-  fmt::print("  depth is off the markers' planes by {:.1f} mm, was {:.1f} mm (rms)\n",
+  fmt::print("  distance of the depth from the markers' planes {:.1f} mm, before {:.1f} mm (rms)\n",
              1000 * result.error_m, 1000 * result.error_before_m);
   const Eigen::Vector3d t = 1000 * result.color_from_depth.translation;
   fmt::print(
@@ -56,9 +56,9 @@ void print(const std::string& name, const DepthToColor& result) {
 }
 
 void print(const std::string& name, const ColorFromRgbd& result) {
-  fmt::print("{}: in the colour camera's frame, from {} of {} sightings\n", name, result.agreeing,
-             result.sightings);
-  fmt::print("  reprojection error {:.2f} pixels (a transform for each sighting: {:.2f})\n",
+  fmt::print("{}: pose in the colour camera's frame, from {} of {} sightings\n", name,
+             result.agreeing, result.sightings);
+  fmt::print("  reprojection error {:.2f} pixels (with a pose for each sighting: {:.2f})\n",
              result.error_px, result.least_error_px);
   const Eigen::Vector3d t = 1000 * result.color_from_depth.translation;
   fmt::print("  at {:.1f}, {:.1f}, {:.1f} mm +- {:.1f} mm, +- {:.3f} degrees\n", t.x(), t.y(),
@@ -88,7 +88,7 @@ int CalibrateRigCommand::execute() const {
         own = result.color_from_depth;
         rig.set_color_from_depth(camera.name, own);
       } else {
-        fmt::print("  color_from_depth stays as it was\n");
+        fmt::print("  color_from_depth is unchanged\n");
       }
     }
     if (fixed || !depth) {
@@ -110,22 +110,22 @@ int CalibrateRigCommand::execute() const {
 void add_calibrate_rig(CLI::App& calibrate, int& exit_code) {
   auto command = std::make_shared<CalibrateRigCommand>();
   CLI::App* sub = calibrate.add_subcommand(
-      "rig", "Where cameras that do not move are, from markers or a board that they see");
+      "rig", "Calibrates the poses of fixed cameras from markers or a board that they see");
   sub->add_option("recording", command->recording,
                   "A recording of the scene's markers, or of a board, in many places")
       ->required();
   sub->add_option("--out", command->out,
-                  "The rig.yaml to write; if it is not there, it begins as the recording's")
+                  "The rig.yaml to write; if missing, it starts as a copy of the recording's")
       ->required();
   sub->add_option("--board", command->board,
                   "Look for this board instead of the markers: charuco:... or checkerboard:...");
   sub->add_flag("--fixed", command->fixed,
-                "Where the RGB-D cameras are, seen from the colour camera: pose: {source: fixed} "
-                "(without --depth it is on)");
+                "Poses of the RGB-D cameras in the colour camera's frame: pose: {source: fixed} "
+                "(the default without --depth)");
   sub->add_flag("--depth", command->depth,
-                "Where each RGB-D camera's depth sensor is, seen from its own colour sensor: "
+                "Pose of each RGB-D camera's depth sensor in its own colour sensor's frame: "
                 "color_from_depth");
-  sub->add_option("--frames", command->frames, "At most so many frames of the recording")
+  sub->add_option("--frames", command->frames, "Most frames to use from the recording")
       ->capture_default_str()
       ->check(CLI::Range(1, 100000))
       ->type_name("N");

@@ -45,20 +45,20 @@ struct CheckCommand {
 void add_check(CLI::App& program, int& exit_code) {
   auto command = std::make_shared<CheckCommand>();
   CLI::App* sub =
-      program.add_subcommand("check", "Looks at a set-up and says in plain words what is wrong");
+      program.add_subcommand("check", "Checks a set-up and says in plain words what is wrong");
   sub->add_option("recording", command->setup.folder,
-                  "A recording, or with --color and --rgbd a folder with rig.yaml and scene.yaml")
+                  "A recording; or, with --color and --rgbd, a folder with rig.yaml and scene.yaml")
       ->required();
   command->setup.add_camera_flags(*sub);
-  sub->add_option("--seconds", command->seconds, "How long to look at live cameras")
+  sub->add_option("--seconds", command->seconds, "How long to watch live cameras")
       ->capture_default_str()
       ->check(CLI::Range(1.0, 3600.0))
       ->type_name("S");
-  sub->add_option("--frames", command->frames, "At most so many frames, from the first on")
+  sub->add_option("--frames", command->frames, "Use at most the first N frames")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000000))
       ->type_name("N");
-  sub->add_option("--json", command->json, "Write findings and figures to this file, too")
+  sub->add_option("--json", command->json, "Also write findings and figures to this file")
       ->type_name("FILE");
   sub->callback([command, &exit_code] { exit_code = command->execute(); });
 }

@@ -13,7 +13,7 @@ int list_devices() {
   for (const std::string& scheme : Sources::names()) {
     fmt::print("  {}\n", Sources::get(scheme).help);
   }
-  fmt::print("\nDevices that are there now\n");
+  fmt::print("\nConnected devices\n");
   std::size_t count = 0;
   for (const std::string& scheme : Sources::names()) {
     const auto& list = Sources::get(scheme).list;
@@ -34,7 +34,8 @@ int list_devices() {
 }  // namespace
 
 void add_devices(CLI::App& program, int& exit_code) {
-  CLI::App* sub = program.add_subcommand("devices", "Lists cameras that live operation can use");
+  CLI::App* sub =
+      program.add_subcommand("devices", "Lists the kinds of cameras and the connected devices");
   sub->callback([&exit_code] { exit_code = list_devices(); });
 }
 

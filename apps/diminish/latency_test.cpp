@@ -61,7 +61,7 @@ int LatencyTestCommand::execute() {
   setup.draw_clock = true;
   const LiveRun run = setup.start();
   if (!run.session->wait_for_frame(0, std::chrono::seconds(30))) {
-    throw Error("latency-test: no picture came within 30 s");
+    throw Error("latency-test: no picture within 30 s");
   }
   const WebServer web(*run.session, {.port = 0});
   const Measured measured = look(web.port(), seconds);
@@ -83,9 +83,9 @@ void add_latency_test(CLI::App& program, int& exit_code) {
   auto command = std::make_shared<LatencyTestCommand>();
   CLI::App* sub = program.add_subcommand(
       "latency-test",
-      "Measures the time from sensor to viewer, by a clock drawn into the camera's pictures");
+      "Measures the time from sensor to viewer with a clock drawn into the camera's pictures");
   command->setup.add_flags(*sub);
-  sub->add_option("--seconds", command->seconds, "How long")
+  sub->add_option("--seconds", command->seconds, "Duration")
       ->capture_default_str()
       ->check(CLI::Range(0.1, 1e6))
       ->type_name("S");

@@ -19,7 +19,7 @@ struct LiveCommand {
 };
 
 void print_line(const LiveStatus& status) {
-  fmt::print("{:>7} frames  {:>5.1f} frames/s  {:>6.1f} ms a frame  latency {:.0f} ms",
+  fmt::print("{:>7} frames  {:>5.1f} frames/s  {:>6.1f} ms per frame  latency {:.0f} ms",
              status.frames, status.frames_per_second, status.frame_ms, status.latency_ms.p50);
   for (const std::string& problem : status.problems) fmt::print("  [{}]", problem);
   fmt::print("\n");
@@ -27,7 +27,7 @@ void print_line(const LiveStatus& status) {
 }
 
 void print_summary(const LiveStatus& status, const LiveRun& run) {
-  fmt::print("\n{} frames, {} colour images left out for newer ones, {} frames failed\n",
+  fmt::print("\n{} frames, {} colour images skipped for newer ones, {} frames failed\n",
              status.frames, status.skipped, status.failed);
   fmt::print("Latency: p50 {:.1f}, p95 {:.1f}, p99 {:.1f} ms\n", status.latency_ms.p50,
              status.latency_ms.p95, status.latency_ms.p99);
@@ -77,10 +77,10 @@ void add_live(CLI::App& program, int& exit_code) {
   auto command = std::make_shared<LiveCommand>();
   CLI::App* sub = program.add_subcommand(
       "live",
-      "Runs live without a picture: into a virtual camera, a recording, or just for figures");
+      "Runs live without showing a picture: for a virtual camera, a recording, or just figures");
   command->setup.add_flags(*sub);
   command->setup.add_output_flags(*sub);
-  sub->add_option("--seconds", command->seconds, "How long; default: until interrupted")
+  sub->add_option("--seconds", command->seconds, "Duration; default: until interrupted")
       ->check(CLI::Range(0.0, 1e9))
       ->type_name("S");
   sub->callback([command, &exit_code] { exit_code = command->execute(); });

@@ -25,23 +25,26 @@ bool stop_requested() {
 void LiveSetup::add_flags(CLI::App& command) {
   command
       .add_option("setup", folder,
-                  "Folder with rig.yaml and scene.yaml; if it is a recording and no cameras are "
-                  "given, it is replayed again and again")
+                  "Folder with rig.yaml and scene.yaml; a recording is replayed in a loop if no "
+                  "cameras are given")
       ->required();
   add_camera_flags(command);
   command
       .add_option("--budget", live_options.budget_ms,
-                  "What a frame may take; quality steps down when it takes more")
+                  "Time budget of a frame; quality steps down when frames take longer")
       ->check(CLI::Range(0.0, 10000.0))
       ->type_name("MILLISECONDS");
   command
-      .add_option("--threads", live_options.threads, "Threads that work on a frame; 0: all cores")
+      .add_option("--threads", live_options.threads,
+                  "Threads to use inside a frame; 0: one per core")
       ->capture_default_str()
       ->check(CLI::Range(0, 1024))
       ->type_name("N");
   command
-      .add_option("--sync-wait", live_options.sync_wait_s,
-                  "How long a picture waits for its RGB-D images; 0: as long as the last ones did")
+      .add_option(
+          "--sync-wait", live_options.sync_wait_s,
+          "How long a colour image waits for its RGB-D images; 0: about as long as the last "
+          "ones needed")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 10.0))
       ->type_name("SECONDS");
@@ -57,7 +60,7 @@ std::vector<LiveCamera> LiveSetup::cameras(const Rig& rig) const {
     return result;
   }
   result.push_back({"color", color});
-  if (color.empty()) throw Error("--color: expected a camera beside --rgbd");
+  if (color.empty()) throw Error("--color: expected a camera as well as --rgbd");
   std::size_t next = 0;
   for (const std::string& text : rgbd) {
     const std::size_t equals = text.find('=');
@@ -80,19 +83,20 @@ void LiveSetup::add_camera_flags(CLI::App& command) {
   command
       .add_option("--rgbd", rgbd,
                   "An RGB-D camera, in the rig's order or as NAME=CAMERA; twice with the same name "
-                  "for separate colour and depth devices. `diminish devices` lists what there is")
+                  "for separate colour and depth devices. See `diminish devices`")
       ->type_name("[NAME=]CAMERA");
 }
 
 void LiveSetup::add_output_flags(CLI::App& command) {
   command
-      .add_option("--record", record,
-                  "Write what the cameras see as a recording into this folder; frames for which "
-                  "there is no time are dropped and counted")
+      .add_option(
+          "--record", record,
+          "Write what the cameras see to this folder as a recording; frames for which there "
+          "is no time are dropped and counted")
       ->type_name("FOLDER");
   command
       .add_option("--virtual-camera", virtual_camera,
-                  "Hand the result to this v4l2loopback device, for programs that take a camera")
+                  "Send the result to this v4l2loopback device, for programs that read a camera")
       ->type_name("DEVICE");
 }
 

@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
   // Threads are given by --threads: a frame each.
   cv::setNumThreads(1);
   CLI::App program(
-      "diminish makes real objects vanish from a camera's picture and shows what is behind them.\n"
+      "diminish removes real objects from a camera's picture and shows what is behind them.\n"
       "A colour camera is the user's eye; RGB-D cameras elsewhere see what the object hides.");
   program.name("diminish");
   program.set_version_flag("--version", DIMINISH_VERSION);

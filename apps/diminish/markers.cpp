@@ -66,16 +66,16 @@ void add_markers(CLI::App& program, int& exit_code) {
   auto* size = sub->add_option("--size-mm", command->size_mm, "Side of a marker's black square")
                    ->capture_default_str()
                    ->check(CLI::Range(5.0, 2000.0));
-  auto* dictionary =
-      sub->add_option("--dictionary", command->dictionary, "The markers' dictionary, OpenCV's name")
-          ->capture_default_str();
+  auto* dictionary = sub->add_option("--dictionary", command->dictionary,
+                                     "The markers' dictionary, by OpenCV's name")
+                         ->capture_default_str();
   auto* quiet = sub->add_option("--quiet-modules", command->quiet_modules,
-                                "White around a marker, in its own cells")
+                                "White border around a marker, in marker cells")
                     ->capture_default_str()
                     ->check(CLI::Range(0.5, 10.0));
   sub->add_option("--page", command->page, "Paper: A4, A3 or letter")->capture_default_str();
   sub->add_option("--board", command->board,
-                  "A board to calibrate with, instead of markers: "
+                  "A calibration board instead of markers: "
                   "charuco:COLUMNSxROWS:SQUARE_MM:MARKER_MM[:DICTIONARY] (squares) or "
                   "checkerboard:COLUMNSxROWS:SQUARE_MM (inner corners)")
       ->excludes(ids)

@@ -15,7 +15,7 @@ void add_report(CLI::App& program, int& exit_code) {
   };
   auto command = std::make_shared<Command>();
   CLI::App* sub = program.add_subcommand(
-      "report", "Makes one HTML page from a run: pictures, plots, times, figures");
+      "report", "Makes one HTML page about a run: pictures, plots, times, figures");
   sub->add_option("recording", command->recording, "The recording's folder (with truth/)")
       ->required();
   sub->add_option("run", command->run, "The folder that `diminish run --out` wrote")->required();

@@ -80,13 +80,12 @@ void add_run(CLI::App& program, int& exit_code) {
       "run", "Removes the objects of a recording and writes what the colour camera would see");
   sub->add_option("recording", command->recording, "The recording's folder (rig.yaml, scene.yaml)")
       ->required();
-  sub->add_option("--out", command->out, "Folder for the results; made if it is not there")
-      ->required();
-  sub->add_flag("--force", command->force, "Replace the results that --out already holds");
+  sub->add_option("--out", command->out, "Folder for the results; created if missing")->required();
+  sub->add_flag("--force", command->force, "Replace existing results in --out");
   sub->add_flag("--preview", command->preview,
-                "Write only pictures with input and result side by side");
+                "Write only pictures that show input and result side by side");
   sub->add_option("--threads", command->threads,
-                  "Frames in work at a time; the results are the same")
+                  "Frames to process at a time; does not change the results")
       ->capture_default_str()
       ->check(CLI::Range(1, 1024))
       ->type_name("N");

@@ -30,7 +30,7 @@ struct ScoreCommand {
 void add_score(CLI::App& program, int& exit_code) {
   auto command = std::make_shared<ScoreCommand>();
   CLI::App* sub =
-      program.add_subcommand("score", "Compares the results of a run with the recording's truth");
+      program.add_subcommand("score", "Compares a run's results with the recording's truth");
   sub->add_option("recording", command->recording, "The recording's folder (with truth/)")
       ->required();
   sub->add_option("run", command->run, "The folder that `diminish run --out` wrote")->required();

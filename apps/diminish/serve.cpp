@@ -26,7 +26,7 @@ int ServeCommand::execute() {
   stop_on_signals();
   const LiveRun run = setup.start();
   const WebServer web(*run.session, server);
-  fmt::print("Look at {}\n", web.url());
+  fmt::print("Open {}\n", web.url());
   std::fflush(stdout);
   while (!stop_requested()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
   return 0;
@@ -36,25 +36,25 @@ int ServeCommand::execute() {
 
 void add_serve(CLI::App& program, int& exit_code) {
   auto command = std::make_shared<ServeCommand>();
-  CLI::App* sub =
-      program.add_subcommand("serve", "Runs live and shows the result on a web page of its own");
+  CLI::App* sub = program.add_subcommand("serve", "Runs live and shows the result on a web page");
   command->setup.add_flags(*sub);
   command->setup.add_output_flags(*sub);
-  sub->add_option("--port", command->server.port, "0: any that is free")
+  sub->add_option("--port", command->server.port, "Port to listen on; 0: any free one")
       ->capture_default_str()
       ->check(CLI::Range(0, 65535))
       ->type_name("PORT");
   sub->add_option("--listen", command->server.address,
-                  "The address to listen on; any but loopback makes a token necessary")
+                  "Address to listen on; any address but loopback needs a token")
       ->capture_default_str()
       ->type_name("ADDRESS");
-  sub->add_option("--token", command->server.token,
-                  "What requests must carry; made and printed where it is necessary")
+  sub->add_option(
+         "--token", command->server.token,
+         "Token that requests must carry; if one is needed and not given, it is made and printed")
       ->type_name("TEXT");
   sub->add_option("--recordings", command->server.recordings,
-                  "Where the page's record button puts recordings; without it there is none")
+                  "Folder for the page's record button; without it the page cannot record")
       ->type_name("FOLDER");
-  sub->add_option("--viewers", command->server.most_viewers, "At most so many at a time")
+  sub->add_option("--viewers", command->server.most_viewers, "Most viewers at a time")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000))
       ->type_name("N");

@@ -81,16 +81,16 @@ int SyncCheckCommand::execute() const {
     if (&camera == &color || !camera.problem.empty() || camera.motion.empty()) continue;
     const auto offset = estimate_sync_offset(color.motion, camera.motion);
     if (!offset) {
-      fmt::print("{:<10} not known: too little moved that both cameras saw; wave something\n",
+      fmt::print("{:<10} unknown: both cameras saw too little motion; wave something\n",
                  camera.name);
       exit_code = some_not_known;
       continue;
     }
     const bool is_large = std::abs(offset->offset_s) > half_frame_s;
-    fmt::print("{:<10} {:+.1f} ms against color (correlation {:.2f}){}\n", camera.name,
+    fmt::print("{:<10} {:+.1f} ms relative to color (correlation {:.2f}){}\n", camera.name,
                1000 * offset->offset_s, offset->correlation,
                is_large
-                   ? fmt::format(": more than half a frame ({:.1f} ms); it shows another moment",
+                   ? fmt::format(": more than half a frame ({:.1f} ms), so it shows another moment",
                                  1000 * half_frame_s)
                    : "");
     if (is_large) exit_code = some_not_known;
@@ -104,9 +104,9 @@ void add_sync_check(CLI::App& program, int& exit_code) {
   auto command = std::make_shared<SyncCheckCommand>();
   CLI::App* sub = program.add_subcommand(
       "sync-check",
-      "Measures how far the cameras' clocks are apart, by what moves in their pictures");
+      "Measures how far apart the cameras' clocks are, from what moves in their pictures");
   command->setup.add_flags(*sub);
-  sub->add_option("--seconds", command->seconds, "How long to watch")
+  sub->add_option("--seconds", command->seconds, "Duration")
       ->capture_default_str()
       ->check(CLI::Range(4.0, 3600.0))
       ->type_name("S");

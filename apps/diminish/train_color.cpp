@@ -48,7 +48,7 @@ void train_all(const std::filesystem::path& folder) {
 
 void add_train_color(CLI::App& program, int& exit_code) {
   CLI::App* command = program.add_subcommand(
-      "train-color", "Learn the colours of a recording's color_blob objects from training images");
+      "train-color", "Learns the colours of a recording's color_blob objects from training images");
   auto folder = std::make_shared<std::string>();
   command->add_option("recording", *folder, "The recording's folder")->required();
   command->callback([folder, &exit_code] {

@@ -80,7 +80,7 @@ bool has_display() {
 
 int ViewCommand::execute() const {
   if (!has_display()) {
-    throw Error("view: there is no display to open a window on; `diminish serve` needs none");
+    throw Error("view: there is no display to open a window on; try `diminish serve`");
   }
   stop_on_signals();
   const LiveRun run = setup.start();

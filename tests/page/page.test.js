@@ -23,7 +23,7 @@ async function serve(...parameters) {
     let text = "";
     process.stdout.on("data", (data) => {
       text += data;
-      const found = /Look at (\S+)/.exec(text);
+      const found = /Open (\S+)/.exec(text);
       if (found) resolve(found[1]);
     });
     ended.then((code) => reject(new Error(`diminish ended with ${code}: ${errors}`)));
