@@ -16,7 +16,7 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Stands for the depth of nothing.
+/// The depth of pixels where there is nothing.
 constexpr float beyond_m = 1e9F;
 
 /// One camera's surface in a vector of pixels.
@@ -40,7 +40,7 @@ struct Surface {
 template <class D>
 struct Front {
   hn::Vec<D> z, noise;
-  hn::Mask<D> several;  ///< there are further ones
+  hn::Mask<D> several;  ///< more than one
 
   HWY_INLINE Front(D d, const std::vector<BlendedRow>& rows, int i)
       : z(hn::Set(d, beyond_m)), noise(hn::Zero(d)), several(hn::Lt(z, z)) {

@@ -7,17 +7,17 @@
 
 namespace diminish {
 
-/// A row of one RGB-D camera's surface, and what blending knows of the camera there.
+/// A row of one RGB-D camera's surface, and what blending needs to know about the camera.
 struct BlendedRow : SurfaceRow {
-  /// z in the depth sensor's frame is z_m * (depth_slope + depth_step * i) - depth_offset_m in
-  /// pixel i of the row.
+  /// In pixel i of the row, z in the depth sensor's frame is z_m * (depth_slope + depth_step * i) -
+  /// depth_offset_m.
   float depth_slope = 1, depth_step = 0, depth_offset_m = 0;
   const float* confidence = nullptr;  ///< of each pixel
 
   using SurfaceRow::SurfaceRow;
 };
 
-/// What choose_two writes, for each pixel of a row.
+/// What choose_two writes for each pixel of a row.
 struct TwoSources {
   std::uint8_t* source;
   float* depth_m;
@@ -26,12 +26,12 @@ struct TwoSources {
   std::uint8_t* share;
 };
 
-/// Which cameras see the nearest surface: bit k of `seen` is the k-th row's. lone: 255 where one
-/// camera alone does while another looks past it, else 0. (Rule 1 of layers.h.)
+/// Which cameras see the nearest surface: bit k of `seen` stands for the k-th row. lone: 255 where
+/// only one camera sees it while another looks past it, else 0. (Rule 1 of layers.h.)
 void find_seen(const std::vector<BlendedRow>& rows, float agreement_m, int width,
                std::uint8_t* seen, std::uint8_t* lone);
 
-/// The two cameras that are most trusted of those that see the nearest surface. (Rule 3.)
+/// The two most trusted cameras of those that see the nearest surface. (Rule 3.)
 void choose_two(const std::vector<BlendedRow>& rows, int width, const std::uint8_t* seen,
                 const TwoSources& out);
 

@@ -52,7 +52,7 @@ void CameraBlender::begin(std::vector<Surface>& surfaces, const Rect& region,
                             [&](std::size_t k) { grid_.finish(k, surfaces[k].place); });
 }
 
-/// y: relative to the region's corner, as everywhere below.
+/// y: relative to the region's corner, here and below.
 void CameraBlender::gather(int y, std::vector<BlendedRow>& rows) const {
   rows.clear();
   const Eigen::Vector3f ray =
@@ -111,7 +111,7 @@ bool CameraBlender::is_sliver(const Surface& surface, int x, int y, float tolera
   return true;
 }
 
-/// What is behind it is now seen.
+/// Now the surface behind it is seen.
 void CameraBlender::remove(const Sliver& sliver) {
   SurfaceBuffer& buffer = *(*surfaces_)[sliver.camera].rows[static_cast<std::size_t>(sliver.y)];
   buffer.inverse_z[static_cast<std::size_t>(buffer.row(region_.y + sliver.y) + sliver.x)] = 0;

@@ -11,8 +11,8 @@
 
 namespace diminish {
 
-/// Blends what several RGB-D cameras show by the rules of layers.h: what blend_layers does, in
-/// vectors of pixels, the rows in two threads.
+/// Blends the views of several RGB-D cameras by the rules of layers.h. Does what blend_layers does,
+/// on vectors of pixels and with the rows in two threads.
 class CameraBlender {
  public:
   /// One camera's surface in the region.
@@ -22,18 +22,18 @@ class CameraBlender {
     std::vector<SurfaceBuffer*> rows;  ///< which buffer holds each row of the region
   };
 
-  /// Takes slivers out of the surfaces and finds out how far each camera is trusted. `surfaces`,
-  /// blending::most_cameras at most, must stay until the region's rows are done.
+  /// Removes slivers from the surfaces and finds out how far each camera is trusted. `surfaces`, at
+  /// most blending::most_cameras, must stay valid until the region's rows are done.
   void begin(std::vector<Surface>& surfaces, const Rect& region, const Intrinsics& color,
              float agreement_m);
 
-  /// Memory for a row at a time; one for each thread.
+  /// Scratch memory for one row; one for each thread.
   struct Scratch {
     std::vector<BlendedRow> rows;
     std::vector<float> nodes, confidences;
     std::vector<std::uint8_t> bytes;
   };
-  /// Which cameras the pixels of row y are taken from. Returns the cameras' rows.
+  /// Chooses the cameras for the pixels of row y. Returns the cameras' rows.
   const std::vector<BlendedRow>& choose(int y, const TwoSources& out, Scratch& scratch) const;
 
  private:
@@ -52,9 +52,9 @@ class CameraBlender {
   Rect region_;
   Intrinsics color_;
   float agreement_m_ = 0;
-  Image<std::uint8_t> seen_;  ///< which cameras see the nearest surface: a bit each
+  Image<std::uint8_t> seen_;  ///< which cameras see the nearest surface, one bit each
   ConfidenceGrid grid_;
-  Scratch scratch_[2];  ///< of each thread
+  Scratch scratch_[2];  ///< one per thread
   std::vector<Sliver> slivers_[2];
 };
 

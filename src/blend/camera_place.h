@@ -23,15 +23,15 @@ struct CameraPlace {
   float depth_m(const Eigen::Vector3f& point_m) const { return forward.dot(point_m - eye_m); }
 };
 
-/// The ray of a colour pixel with z = 1. Its lens' distortion is left out: what this is for,
-/// weights and tolerances, does not ask for it.
+/// The ray of a colour pixel with z = 1. Ignores lens distortion: weights and tolerances do not
+/// need it.
 inline Eigen::Vector3f pinhole_ray(const Intrinsics& color, float x, float y) {
   return {(x - static_cast<float>(color.cx)) / static_cast<float>(color.fx),
           (y - static_cast<float>(color.cy)) / static_cast<float>(color.fy), 1.F};
 }
 
-/// Two cameras' surfaces closer than this are one: `agreement_m`, or where that is more the noise
-/// of both. noise_m: each camera's, at the surface's depth in its own frame.
+/// Two cameras' surfaces closer than this are one surface: `agreement_m`, or the noise of both
+/// where that is more. noise_m: each camera's noise, at the surface's depth in its own frame.
 inline float agreement_tolerance_m(float agreement_m, float noise_a_m, float noise_b_m) {
   return std::max(agreement_m, noise_a_m + noise_b_m);
 }

@@ -6,8 +6,8 @@
 namespace diminish {
 namespace {
 
-/// Sums of 2 * reach + 1 neighbours along rows, then along columns, each neighbour with its weight.
-/// Beyond the border the last value goes on.
+/// Weighted sums of 2 * reach + 1 neighbours along rows, then along columns. Beyond the border the
+/// last value is repeated.
 template <std::size_t reach>
 void filter(const float (&weights)[2 * reach + 1], Image<float>& image, Image<float>& scratch) {
   constexpr int r = reach;
@@ -98,7 +98,7 @@ void ConfidenceGrid::trust(Camera& camera, const CameraPlace& place) const {
       const float lengths = std::sqrt((x * x + y * y + z[column] * z[column]) *
                                       (away_x * away_x + away_y * away_y + away_z * away_z));
       const float cosine = (x * away_x + y * away_y + z[column] * away_z) / (lengths + 1e-9F);
-      // The chord: nearly the angle, and cheaper.
+      // The chord is nearly the angle, and cheaper.
       const float angle = std::sqrt(std::max(0.F, 2 - 2 * cosine));
       const float resolution = std::clamp(confidence[column], 0.F, 1.F);
       confidence[column] = resolution / (angle + least_angle);
@@ -120,7 +120,7 @@ void ConfidenceGrid::row(std::size_t which, int y, std::vector<float>& nodes,
   for (int i = 0; i < columns_; ++i) {
     nodes[static_cast<std::size_t>(i)] = above[i] + part * (below[i] - above[i]);
   }
-  // Nodes are the cells' centres, each between two pixels.
+  // Nodes are the cells' centres, which lie between two pixels.
   int x = std::min(cell_px / 2, region_.width);
   std::fill_n(confidence, x, nodes.front());
   for (std::size_t i = 1; i < nodes.size(); ++i, x += cell_px) {

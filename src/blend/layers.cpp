@@ -9,7 +9,7 @@
 namespace diminish {
 namespace {
 
-/// What one camera shows of a pixel.
+/// One camera's view of a pixel.
 struct Surface {
   float z_m, noise_m;
 };
@@ -31,7 +31,7 @@ class PixelSurfaces {
     }
   }
   bool any() const { return nearest_ != nullptr; }
-  /// What neighbouring pixels of the same surface may differ by.
+  /// How much neighbouring pixels of the same surface may differ.
   float own_tolerance_m(std::size_t k) const {
     return agreement_tolerance_m(agreement_m_, surfaces_[k].noise_m, surfaces_[k].noise_m);
   }
@@ -40,7 +40,7 @@ class PixelSurfaces {
     return own.z_m > 0 && own.z_m - nearest_->z_m <=
                               agreement_tolerance_m(agreement_m_, own.noise_m, nearest_->noise_m);
   }
-  /// The camera that alone sees the nearest surface, while another looks past it; else none.
+  /// The camera if only one sees the nearest surface and another looks past it; else none.
   std::optional<std::size_t> lone() const {
     std::optional<std::size_t> one;
     std::size_t there = 0;
@@ -100,7 +100,7 @@ void remove_slivers(const std::vector<BlendedLayer>& layers, const Rect& region,
   for (const Sliver& sliver : slivers) sliver.layer->depth_m(sliver.x, sliver.y) = 0;
 }
 
-/// Pixels of the RGB-D camera's colour image for one of the picture, over a part of the picture.
+/// Pixels of the RGB-D camera's colour image per pixel of the picture, over a part of the picture.
 float resolution(const Layer& layer, const Rect& part) {
   const int right = part.right() - 1;
   const int bottom = part.bottom() - 1;

@@ -30,7 +30,7 @@ struct Config::Node {
     throw Error(place + message);
   }
 
-  /// What is there, for messages.
+  /// What was found, for messages.
   std::string got() const {
     switch (yaml ? yaml->kind : YamlNode::Kind::null) {
       case YamlNode::Kind::scalar:

@@ -14,7 +14,7 @@ struct EvenColor {
 
 inline constexpr int even_color_reach_px = 2;
 
-/// Of nine pixels up to `even_color_reach_px` away, which must all be in the image.
+/// From nine pixels up to `even_color_reach_px` away, which must all be in the image.
 inline EvenColor even_color(const Image<Bgr>& image, int x, int y) {
   constexpr int largest_range = 24;
   int sum[3] = {};

@@ -6,7 +6,7 @@ namespace diminish {
 namespace {
 
 bool any_set(const std::uint8_t* row, int count) {
-  // Without a branch, so that the compiler takes many pixels at a time.
+  // Without a branch, so that the compiler vectorises it.
   std::uint64_t any = 0;
   int x = 0;
   for (; x + 8 <= count; x += 8) {
@@ -60,7 +60,7 @@ Rect bounding_box(const Mask& mask, const Rect& part) {
 }
 
 std::size_t count_nonzero(const Mask& mask, const Rect& part) {
-  // As many as a byte can count at a time, so that the compiler takes many pixels at a time.
+  // As many as a byte can count, so that the compiler vectorises it.
   constexpr int most = 255;
   std::size_t count = 0;
   for (int y = part.y; y < part.bottom(); ++y) {

@@ -34,7 +34,7 @@ template <class Pixel>
 cv::Mat as_mat(Image<Pixel>& image) {
   return {image.height(), image.width(), MatType<Pixel>::value, image.data()};
 }
-/// The same for reading. OpenCV has no read-only header; the caller must not write to it.
+/// The same, read-only. OpenCV has no read-only header; the caller must not write to it.
 template <class Pixel>
 cv::Mat as_mat(const Image<Pixel>& image) {
   return as_mat(const_cast<Image<Pixel>&>(image));

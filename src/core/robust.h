@@ -6,7 +6,7 @@
 
 namespace diminish {
 
-/// The upper one of two medians; reorders `values`, which must not be empty.
+/// The median (the upper one of two). Reorders `values`, which must not be empty.
 template <class Value>
 Value median(std::vector<Value>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

@@ -6,7 +6,7 @@
 
 namespace diminish {
 
-/// Adds the time from its making to its end to a stage's milliseconds.
+/// Adds the time between its construction and destruction to a stage's milliseconds.
 class ScopedTimer {
  public:
   ScopedTimer(StageTimes& milliseconds, Stage stage)

@@ -58,7 +58,7 @@ std::string read_text_file(const std::filesystem::path& file, std::size_t max_by
   if (!stream) {
     throw Error(file.string() + ": cannot be opened: " + std::generic_category().message(errno));
   }
-  // In pieces, so that endless files (devices, pipes) end here too.
+  // In blocks, so that endless files (devices, pipes) end here too.
   std::string text;
   std::array<char, 1 << 16> piece;
   while (stream.read(piece.data(), piece.size()), stream.gcount() > 0) {

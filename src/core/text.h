@@ -9,20 +9,19 @@
 
 namespace diminish {
 
-/// A decimal number that fills all of `text`; nothing for everything else, NaN and infinity.
+/// Parses a decimal number that fills all of `text`. Nothing for anything else, NaN and infinity.
 std::optional<double> parse_number(std::string_view text);
 
-/// `text` as it can stand in a one-line message: control characters replaced, cut to a readable
-/// length.
+/// `text` fit for a one-line message: control characters replaced, cut to a readable length.
 std::string printable(std::string_view text);
 
-/// The words of a line; space, tab and carriage return separate them.
+/// The words of a line, separated by space, tab or carriage return.
 std::vector<std::string_view> split_words(std::string_view line);
 
 /// "a, b, c"
 std::string join(const std::vector<std::string>& words);
 
-/// All of a text file. Throws Error that names the file if it cannot be read, or is larger than
+/// Reads a whole text file. Throws Error that names the file if it cannot be read or is larger than
 /// `max_bytes`.
 std::string read_text_file(const std::filesystem::path& file, std::size_t max_bytes);
 

@@ -23,8 +23,8 @@ constexpr int max_height = 32;
   throw Error(fmt::format("{}:{}: {}", file.string(), line, message));
 }
 
-/// Builds the tree from the parser's events. Aliases share their anchor's node; as nothing walks
-/// the tree but the readers, who know what they look for, sharing cannot blow it up.
+/// Builds the tree from the parser's events. Aliases share their anchor's node. The readers look
+/// only for what they know, so a tree of shared nodes cannot blow up.
 class TreeBuilder final : public YAML::EventHandler {
  public:
   explicit TreeBuilder(const std::filesystem::path& file) : file_(file) {}
@@ -62,11 +62,11 @@ class TreeBuilder final : public YAML::EventHandler {
   void OnMapEnd() override { close(); }
 
  private:
-  /// A list or map that has begun.
+  /// A list or map that is not finished yet.
   struct Open {
     std::shared_ptr<YamlNode> node;
     YAML::anchor_t anchor;
-    std::optional<YamlEntry> pending;  ///< a key that waits for its value
+    std::optional<YamlEntry> pending;  ///< a key without its value yet
     std::unordered_set<std::string> keys;
   };
 
@@ -99,7 +99,7 @@ class TreeBuilder final : public YAML::EventHandler {
       begin_entry(parent, *node);
       return;
     }
-    // Through aliases a tree can be higher than the nesting that is written down.
+    // Aliases can make a tree deeper than its text.
     parent.node->height = std::max(parent.node->height, node->height + 1);
     if (parent.node->height > max_height) {
       fail(file_, node->line, "lists and maps nested too deeply");
@@ -124,7 +124,7 @@ class TreeBuilder final : public YAML::EventHandler {
   std::map<YAML::anchor_t, std::shared_ptr<const YamlNode>> anchors_;
 };
 
-/// The parser takes some control characters for the file's end, and would ignore what follows.
+/// The parser takes some control characters for the end of the file and would ignore the rest.
 void expect_text(const std::string& yaml, const std::filesystem::path& file) {
   int line = 1;
   for (const char character : yaml) {

@@ -27,8 +27,8 @@ struct YamlNode {
   std::vector<YamlEntry> entries;  ///< of lists and maps, in the file's order
 };
 
-/// Reads a file of one YAML document. Throws Error with file and line on malformed YAML, a key that
-/// is there twice, and nesting so deep that it cannot be meant.
+/// Reads a file with one YAML document. Throws Error with file and line on malformed YAML, repeated
+/// keys and absurdly deep nesting.
 std::shared_ptr<const YamlNode> parse_yaml(const std::string& yaml,
                                            const std::filesystem::path& file);
 

@@ -11,11 +11,11 @@ namespace {
 
 using depth_rows::reach;
 
-/// How far, in depth pixels, from what hides it a pixel must be in the colour image: both are
+/// How far, in depth pixels, a pixel must be from what hides it in the colour image: both are
 /// blurred.
 constexpr float margin_px = 1;
 
-/// What is `reach` away from the image's borders.
+/// The part at least `reach` away from the image's borders.
 Rect inside(const Image<std::uint16_t>& depth) {
   return {reach, reach, depth.width() - 2 * reach, depth.height() - 2 * reach};
 }

@@ -12,19 +12,19 @@
 
 namespace diminish {
 
-/// Takes out of an RGB-D camera's depth images what would show wrong things:
+/// Cleans an RGB-D camera's depth images. Removes what would look wrong:
 /// - flying pixels: measurements on depth edges that lie between the surfaces;
-/// - pixels that the camera's own colour sensor, some centimetres beside the depth sensor, does not
-///   see because something nearer is in front of them: they would get its colour. (Only where it
-///   is beside, not above: sensors are built that way.)
-/// averages what is left over neighbouring pixels of the same surface (seen from the side, noise in
-/// depth is noise in place), and moves its edges onto the colour image's (EdgeSnapping).
+/// - pixels that the camera's own colour sensor, some centimetres beside the depth sensor, cannot
+///   see because something nearer hides them: they would get its colour. (Only for sensors side by
+///   side, not one above the other: cameras are built that way.)
+/// Then averages depth over neighbouring pixels of the same surface (seen from the side, noise in
+/// depth becomes noise in place) and moves depth edges onto the colour image's (EdgeSnapping).
 class DepthCleaner {
  public:
   explicit DepthCleaner(const RgbdCamera& camera);
 
-  /// images: what is masked in them is not used to move edges. Only in `part`; the rest is copied.
-  /// Cost: 1 ns a pixel, besides EdgeSnapping's.
+  /// images: masked parts are not used to move edges. Changes only `part` and copies the rest.
+  /// Cost: 1 ns per pixel, plus EdgeSnapping's.
   void clean(const Image<std::uint16_t>& depth, const EdgeSnapping::Images& images,
              const DepthPart& part, const Options& options, Image<std::uint16_t>& cleaned);
 
@@ -42,7 +42,7 @@ class DepthCleaner {
   RgbdCamera camera_;
   /// A pixel's ray (x, y, 1), turned into the colour sensor's frame: its x and z.
   Image<float> ray_side_, ray_ahead_;
-  Scratch scratch_[2];  ///< of each thread
+  Scratch scratch_[2];  ///< one per thread
   Image<std::uint16_t> half_smooth_;
   EdgeSnapping edge_snapping_;
 };

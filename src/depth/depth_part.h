@@ -9,7 +9,7 @@
 
 namespace diminish {
 
-/// A part of a depth image: in each row, some columns beside each other.
+/// A part of a depth image: in each row, a range of columns.
 class DepthPart {
  public:
   /// Columns [first, last).
@@ -24,20 +24,20 @@ class DepthPart {
   DepthPart(const Rect& all)
       : bounds_(all), band_(std::max(1, all.bottom())), columns_{{all.x, all.right()}} {}
 
-  /// Begins with nothing. The image's rows are taken in bands of this height.
+  /// Starts empty. The image's rows are added in bands of this height.
   void begin(int band_height) {
     bounds_ = {};
     band_ = band_height;
     columns_.clear();
   }
-  /// The columns of the next band, which ends before row `end`; none, if it is empty.
+  /// Adds the columns of the next band, which ends before row `end`; none if the range is empty.
   void add_band(const Columns& columns, int end) {
     const int first = static_cast<int>(columns_.size()) * band_;
     columns_.push_back(columns);
     bounds_ = join(bounds_, {columns.first, first, columns.count(), end - first});
   }
 
-  /// All is inside.
+  /// All columns lie inside this rectangle.
   const Rect& bounds() const { return bounds_; }
   /// Of a row of `bounds`.
   const Columns& columns(int y) const { return columns_[static_cast<std::size_t>(y / band_)]; }
@@ -48,7 +48,7 @@ class DepthPart {
   std::vector<Columns> columns_;  ///< by band
 };
 
-/// Calls visit(y, columns) for each row of what part and rectangle have in common, in two threads
+/// Calls visit(y, columns) for each row in the intersection of part and rectangle, in two threads
 /// if there are many.
 template <class Visit>
 void for_each_row(const DepthPart& part, const Rect& rectangle, const Visit& visit) {

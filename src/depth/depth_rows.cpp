@@ -32,7 +32,7 @@ HWY_INLINE void Store(D, hn::Vec<D> values, std::uint16_t* depth) {
   hn::StoreU(hn::DemoteTo(words, hn::ConvertTo(ints, values)), words, depth);
 }
 
-/// Whether a surface goes on to depth z. first, second: its pixels beside that, and one further.
+/// Whether a surface continues to depth z. first, second: its nearest pixel and the next one.
 template <class D>
 HWY_INLINE hn::Mask<D> Continues(D d, hn::Vec<D> first, hn::Vec<D> second, hn::Vec<D> z,
                                  hn::Vec<D> noise) {
@@ -98,7 +98,7 @@ void Smooth(const Row& row, std::ptrdiff_t step, std::uint16_t* result) {
   });
 }
 
-/// The frontmost of what was passed so far: its place in the colour image, and its depth.
+/// The frontmost pixel so far: its place in the colour image and its depth.
 struct Front {
   float place, depth_m;
 };
@@ -116,7 +116,7 @@ void RemoveHidden(const Places& places, float unit_m, float margin, float thresh
   const hn::CappedTag<float, most_lanes> d;
   const auto lanes = static_cast<int>(hn::Lanes(d));
   const auto threshold = hn::Set(d, threshold_m);
-  // From pixel x on, a vector's pixels are measured, in order, and none is far behind the next:
+  // From pixel x on, a vector's pixels are measured, in order, and none is far behind the next. So
   // they hide nothing of each other.
   const auto in_order = [&](int x) HWY_ATTR {
     const auto pairs = hn::FirstN(d, static_cast<std::size_t>(lanes - 1));
@@ -128,7 +128,7 @@ void RemoveHidden(const Places& places, float unit_m, float margin, float thresh
     const auto all = hn::And(step, fits);
     return hn::AllTrue(d, hn::Or(all, hn::Not(pairs))) && hn::AllTrue(d, hn::Gt(z, hn::Zero(d)));
   };
-  // The end of the last whole vector; what is beyond is looked at a pixel at a time.
+  // The end of the last whole vector. The rest is done pixel by pixel.
   const int whole = count / lanes * lanes;
   constexpr float infinity = std::numeric_limits<float>::infinity();
   const auto pass = [&](int x, float direction, Front& front) {
@@ -178,7 +178,7 @@ void FindJumps(const std::uint16_t* depth, int count, std::ptrdiff_t step, int s
       for (int k = 1; k <= steps; ++k) {
         const auto other = hn::LoadU(d, depth + x + k * step);
         const auto apart = hn::Or(hn::SaturatedSub(own, other), hn::SaturatedSub(other, own));
-        // What is 0 is the lesser of both.
+        // A 0 is the smaller of both.
         widest = hn::Max(widest, hn::IfThenZeroElse(hn::Eq(hn::Min(own, other), zero), apart));
       }
     }

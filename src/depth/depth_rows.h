@@ -21,50 +21,50 @@ struct Row {
   DepthNoise noise;
 };
 
-/// Sets the pixels of `result` to 0 that lie beside a depth edge and do not continue the surface on
-/// their other side. row.depth: `reach` rows, `pitch` pixels apart, and `reach` columns more on
+/// Sets those pixels of `result` to 0 that lie beside a depth edge and do not continue the surface
+/// on their other side. row.depth: `reach` rows, `pitch` pixels apart, and `reach` more columns on
 /// each side.
 void remove_flying(const Row& row, std::ptrdiff_t pitch, std::uint16_t* result);
 
 /// Writes the mean of each pixel and the pairs on both sides, `step` apart, that lie on the same
-/// surface: on a slanted one, too, theirs is the depth in the middle. 0 stays 0.
-/// row.depth: `reach` steps more on both sides. result: another image.
+/// surface. (On a slanted surface too, their mean is the depth in the middle.) 0 stays 0.
+/// row.depth: `reach` more steps on both sides. result: another image.
 void smooth(const Row& row, std::ptrdiff_t step, std::uint16_t* result);
 
-/// Where a row of depth pixels comes to lie in the colour sensor's image: that of a pixel with
-/// depth z is (side z + side_m) / (ahead z + ahead_m).
+/// Where a row of depth pixels lies in the colour sensor's image: a pixel with depth z is at (side
+/// z + side_m) / (ahead z + ahead_m).
 struct Places {
   const float* side;   ///< of each pixel's ray
   const float* ahead;  ///< likewise
   float side_m, ahead_m;
 };
-/// Along a row places increase, but where something near reaches over what is behind it: sets
-/// pixels to 0 that are less than `margin` from something more than `threshold_m` nearer.
-/// depth_m, place: scratch of `count` + 16.
+/// Places increase along a row, except where something near reaches over what is behind it. Sets
+/// pixels to 0 that are less than `margin` from something more than `threshold_m` nearer. depth_m,
+/// place: scratch memory of `count` + 16.
 void remove_hidden(const Places& places, float unit_m, float margin, float threshold_m, int count,
                    std::uint16_t* depth, float* depth_m, float* place);
 
-/// Rows are searched for gaps in pieces of so many pixels.
+/// Rows are searched for gaps in blocks of this many pixels.
 inline constexpr int piece = 16;
 
-/// Of each whole piece of a row, whether two depths more than `limit` apart are at one of its
-/// pixels and one of the `steps` next ones, `step` apart.
+/// For each whole block of a row, whether two depths more than `limit` apart lie at one of its
+/// pixels and one of the next `steps` ones, `step` apart.
 void find_jumps(const std::uint16_t* depth, int count, std::ptrdiff_t step, int steps,
                 std::uint16_t limit, std::uint8_t* has_jump);
 
-/// When two depths, in an image's units, are of two surfaces: so far apart, and by so much for
-/// their noise.
+/// When two depths, in an image's units, belong to two surfaces: how far apart they must be,
+/// including their noise.
 struct Gap {
   float least, constant, by_square;
 
-  int is_between(int a, int b) const {  // 1 or 0: plain enough for vectors
+  int is_between(int a, int b) const {  // 1 or 0, so that it can be vectorised
     const auto nearer = static_cast<float>(std::min(a, b));
     const float wide = std::max(least, constant + by_square * nearer * nearer);
     return static_cast<float>(std::abs(a - b)) > wide ? 1 : 0;
   }
 };
-/// Clears the flags, 0 or 1, of pixels which have no two depths with a gap between them within
-/// `reach`. depth: `reach` rows, `pitch` pixels apart, and `reach` columns more on each side.
+/// Clears the flags (0 or 1) of pixels that do not have two depths with a gap between them within
+/// `reach`. depth: `reach` rows, `pitch` pixels apart, and `reach` more columns on each side.
 void keep_gaps(const std::uint16_t* depth, std::ptrdiff_t pitch, int count, const Gap& gap,
                std::uint8_t* flags);
 

@@ -1,4 +1,4 @@
-// Included once for each instruction set: what kernels on rows of depths have in common.
+// Included once for each instruction set: helpers for kernels on rows of depths.
 #if defined(DIMINISH_ROW_VECTORS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef DIMINISH_ROW_VECTORS_INL_H
 #undef DIMINISH_ROW_VECTORS_INL_H
@@ -16,7 +16,7 @@ namespace {
 
 constexpr int most_lanes = 16;
 
-/// Visits a row a vector at a time, what is left over a pixel at a time.
+/// Visits a row one vector at a time, and the rest pixel by pixel.
 template <class Visit>
 HWY_INLINE void ForEachVector(int count, const Visit& visit) {
   const hwy::HWY_NAMESPACE::CappedTag<float, most_lanes> d;
@@ -26,9 +26,8 @@ HWY_INLINE void ForEachVector(int count, const Visit& visit) {
   for (; x < count; ++x) visit(hwy::HWY_NAMESPACE::CappedTag<float, 1>(), x);
 }
 
-/// Visits vectors of pixels that cover a row; the last may overlap the one before it, so that only
-/// what does not depend on earlier visits may be done. Rows shorter than a vector are walked pixel
-/// by pixel.
+/// Visits vectors of pixels that cover a row. The last may overlap the one before it, so a visit
+/// must not depend on earlier ones. Rows shorter than a vector are visited pixel by pixel.
 template <class Visit>
 HWY_INLINE void ForEachOverlappingVector(int count, const Visit& visit) {
   const hwy::HWY_NAMESPACE::CappedTag<float, most_lanes> d;

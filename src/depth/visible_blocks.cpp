@@ -17,8 +17,7 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Of each column of some rows, the nearest and the farthest depth; 65535 and 0 where there is
-/// none.
+/// The nearest and the farthest depth of each column of some rows; 65535 and 0 where there is none.
 void FindDepths(const std::uint16_t* first, std::ptrdiff_t pitch, int rows, int columns,
                 std::uint16_t* nearest, std::uint16_t* farthest) {
   const auto find = [&](auto d, int x) HWY_ATTR {
@@ -51,11 +50,11 @@ namespace {
 
 HWY_EXPORT(FindDepths);
 
-/// For what rounding vertices may move, and between the points that are undistorted.
+/// Covers the rounding of vertices, and the lens between the points that are undistorted.
 constexpr int margin_px = 4;
 constexpr int points_of_side = 16;
 
-/// The pixels of a block and those beside it.
+/// The pixels of a block and those next to it.
 Rect with_neighbours(int column, int row, const Rect& image) {
   return intersect(grow({column * VisibleBlocks::width, row * VisibleBlocks::height,
                          VisibleBlocks::width, VisibleBlocks::height},
@@ -75,7 +74,7 @@ VisibleBlocks::VisibleBlocks(const RgbdCamera& camera, const Intrinsics& color)
   const Lens lens(camera.depth);
   for (int row = 0; row < rows_; ++row) {
     for (int column = 0; column < columns_; ++column) {
-      // A block is small: its other rays hardly lie beyond these, by less than the margin.
+      // A block is small: its other rays lie beyond these by less than the margin.
       const Rect pixels = with_neighbours(column, row, camera.depth.bounds());
       Eigen::Array2d least = lens.undistort({pixels.x, pixels.y});
       Eigen::Array2d greatest = least;
@@ -142,7 +141,7 @@ void VisibleBlocks::find_sides(const RigidTransform& color_from_depth, const Rec
   sides_.clear();
   for (const int axis : {0, 1}) {
     for (const int sign : {-1, 1}) {
-      // The ray's coordinate that is furthest out along this side.
+      // The coordinate of the ray that is furthest out along this side.
       double furthest = -std::numeric_limits<double>::infinity();
       for (int i = 0; i <= points_of_side; ++i) {
         Eigen::Array2d along;
@@ -169,7 +168,7 @@ void VisibleBlocks::find_sides(const RigidTransform& color_from_depth, const Rec
 
 bool VisibleBlocks::is_visible(const Rays& rays, const Range& depth_m) const {
   return std::none_of(sides_.begin(), sides_.end(), [&](const Plane& side) {
-    // The point of the body that is least far beyond the plane.
+    // The point of the body that lies least far beyond the plane.
     const float slope = side.x * (side.x > 0 ? rays.x.least : rays.x.greatest) +
                         side.y * (side.y > 0 ? rays.y.least : rays.y.greatest) + side.z;
     return slope * (slope > 0 ? depth_m.least : depth_m.greatest) + side.offset > 0;

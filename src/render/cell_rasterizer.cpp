@@ -24,10 +24,10 @@ using Vector = hn::Vec<Floats>;
 using IntVector = hn::Vec<Ints>;
 using LaneMask = hn::Mask<Floats>;
 
-/// Larger cells are drawn in 64 bits.
+/// Larger cells are drawn with 64-bit numbers.
 constexpr int max_cell_px = 64;
 
-/// Vertices of neighbouring cells that have the same place in their cells.
+/// Vertices at the same corner of neighbouring cells.
 struct Corner {
   IntVector x, y;
   Vector depth, inverse_z, u_over_z, v_over_z;
@@ -57,7 +57,7 @@ HWY_INLINE LaneMask Joined(const Corner& a, const Corner& b, const Corner& c,
   return hn::And(hn::And(a.valid, b.valid), hn::And(c.valid, hn::Lt(hn::Sub(most, least), limit)));
 }
 
-/// Edge functions from a to b, an edge of each cell. Coordinates: relative to the cell's first
+/// Edge functions from a to b, one edge per cell. Coordinates are relative to the cell's first
 /// pixel.
 struct Edge {
   IntVector step_x, step_y, value;
@@ -67,8 +67,8 @@ struct Edge {
         step_y(hn::Sub(bx, ax)),
         value(hn::Neg(hn::Add(hn::Mul(step_x, ax), hn::Mul(step_y, ay)))) {}
 
-  /// The value that is negative where a pixel is outside: edges that are neither top nor left do
-  /// not own the pixels on them.
+  /// A value that is negative where a pixel is outside: edges that are neither top nor left do not
+  /// own the pixels on them.
   HWY_INLINE IntVector Biased() const {
     const Ints d;
     const auto zero = hn::Zero(d);
@@ -78,14 +78,14 @@ struct Edge {
   }
 };
 
-/// Functions that are linear in the picture, one of each cell in each lane: at the cell's first
-/// pixel, and from a pixel to the next.
+/// Functions that are linear in the picture, one cell per lane: the value at the cell's first
+/// pixel, and the steps from pixel to pixel.
 template <class T>
 struct alignas(64) LinearFunctions {
   T value[VertexRow::block], step_x[VertexRow::block], step_y[VertexRow::block];
 };
 
-/// What a block's cells are drawn with. The triangles of a cell
+/// What is needed to draw a block's cells. The triangles of a cell
 ///   a b
 ///   c e
 /// are a b c and b e c; `diagonal` is negative on the second's side.
@@ -104,7 +104,7 @@ HWY_INLINE void StoreEdge(const Edge& edge, IntVector value, hn::Mask<Ints> exis
   hn::Store(hn::IfThenElseZero(exists, hn::ShiftLeft<bits>(edge.step_y)), d, out.step_y);
 }
 
-/// The plane through the values a, b and c, whose opposite edges are ea, eb and ec.
+/// The plane through the values a, b and c. ea, eb and ec are the opposite edges.
 HWY_INLINE void StorePlane(const Edge& ea, const Edge& eb, const Edge& ec, Vector a, Vector b,
                            Vector c, Vector scale, LinearFunctions<float>& out) {
   const Floats d;
@@ -118,7 +118,7 @@ HWY_INLINE void StorePlane(const Edge& ea, const Edge& eb, const Edge& ec, Vecto
   hn::Store(hn::Mul(sum(ea.step_y, eb.step_y, ec.step_y), pixel_scale), d, out.step_y);
 }
 
-/// The three planes of a triangle a b c of each cell.
+/// The three planes of triangle a b c in each cell.
 HWY_INLINE void StorePlanes(const Edge& bc, const Edge& ca, const Edge& ab, const Corner& a,
                             const Corner& b, const Corner& c, IntVector area,
                             LinearFunctions<float> (&out)[3]) {
@@ -209,7 +209,7 @@ HWY_INLINE void Touch(int first_row, int last_row, SurfaceBuffer& surface) {
   surface.last_row = std::max(surface.last_row, last_row);
 }
 
-/// A triangle of any size, pixel by pixel in 64 bits, as draw_triangle does.
+/// Draws a triangle of any size, pixel by pixel with 64-bit numbers, like draw_triangle.
 void DrawLarge(const VertexAt (&p)[3], SurfaceBuffer& surface) {
   const std::int64_t area =
       sdct::doubled_area(p[0].x(), p[0].y(), p[1].x(), p[1].y(), p[2].x(), p[2].y());
@@ -276,7 +276,7 @@ void DrawCells(const VertexRow& upper, const VertexRow& lower, int block,
     LaneMask second = Joined(b, e, c, threshold);
     const LaneMask any = hn::Or(first, second);
     if (hn::AllFalse(d, any)) continue;
-    // The corner that a lone triangle has not is moved onto one that it has.
+    // The corner that a single triangle lacks is moved onto one that it has.
     const auto has_first = hn::RebindMask(di, first);
     const auto has_second = hn::RebindMask(di, second);
     a.x = hn::IfThenElse(has_first, a.x, b.x);
@@ -337,7 +337,7 @@ void DrawCells(const VertexRow& upper, const VertexRow& lower, int block,
     const Edge ec(ex, ey, cx, cy), cb(cx, cy, bx, by), be(bx, by, ex, ey);
     const auto in_first = hn::RebindMask(di, first);
     const auto in_second = hn::RebindMask(di, second);
-    // Both triangles' values on the diagonal are each other's complement.
+    // On the diagonal, the two triangles' values are complements of each other.
     StoreEdge(bc, bc.Biased(), hn::RebindMask(di, hn::Or(first, second)), cells.diagonal);
     StoreEdge(ca, ca.Biased(), in_first, cells.first_edges[0]);
     StoreEdge(ab, ab.Biased(), in_first, cells.first_edges[1]);
@@ -392,7 +392,7 @@ void keep_nearest(const SurfaceBuffer& from, int y, SurfaceBuffer& into) {
   float* const u = into.u_over_z.data() + row;
   float* const v = into.v_over_z.data() + row;
   const int width = into.region.width;
-  // Without branches, so that the compiler takes many pixels at a time.
+  // Without branches, so that the compiler vectorises it.
   for (int i = 0; i < width; ++i) {
     const bool is_nearer = new_z[i] > z[i];
     z[i] = is_nearer ? new_z[i] : z[i];

@@ -8,11 +8,11 @@
 
 namespace diminish {
 
-/// The nearest surface in each pixel of a region, before its colour is looked up. Linear in the
-/// picture are 1 / z, u / z and v / z.
+/// The nearest surface in each pixel of a region, before its colour is looked up. 1 / z, u / z and
+/// v / z are linear in the picture.
 struct SurfaceBuffer {
   Rect region;
-  std::ptrdiff_t pitch = 0;      ///< from a row to the next; vectors may reach over a row's end
+  std::ptrdiff_t pitch = 0;      ///< from one row to the next; vectors may reach past a row's end
   std::vector<float> inverse_z;  ///< 0 where there is nothing
   std::vector<float> u_over_z, v_over_z;
 
@@ -23,14 +23,14 @@ struct SurfaceBuffer {
   std::ptrdiff_t row(int y) const { return (y - region.y) * pitch; }
 };
 
-/// Puts what is nearer in `from` into the row of `into`.
+/// Copies the pixels of `from` that are nearer into the row of `into`.
 void keep_nearest(const SurfaceBuffer& from, int y, SurfaceBuffer& into);
 
-/// The pixels of a row that something is drawn in.
+/// The number of pixels of a row that are drawn.
 int count_drawn(const SurfaceBuffer& surface, int y);
 
-/// Draws the cells between 16 vertices of two neighbouring rows and the vertices beside and below
-/// them (rules 2 to 5 of sdct.h). Edges and planes of neighbouring cells are set up together; then
+/// Draws the cells between 16 vertices of two neighbouring rows and the vertices to their right and
+/// below (rules 2 to 5 of sdct.h). Edges and planes of neighbouring cells are set up together. Then
 /// each cell is drawn as one quadrilateral, a vector of pixels at a time.
 void draw_cells(const VertexRow& upper, const VertexRow& lower, int block,
                 const sdct::Threshold& threshold, SurfaceBuffer& surface);

@@ -7,7 +7,7 @@
 namespace diminish {
 namespace {
 
-/// To 1/256 pixel; ties to even, as the processor's conversion instructions do.
+/// To 1/256 pixel; ties to even, like the CPU's conversion instructions.
 std::int32_t to_subpixels(float pixels) {
   return static_cast<std::int32_t>(std::lrint(pixels * sdct::subpixels));
 }

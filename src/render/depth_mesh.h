@@ -22,13 +22,13 @@ struct MeshVertex {
   bool valid() const { return inverse_z > 0; }
 };
 
-/// Turns one RGB-D camera's depth images into vertices. What depends on the camera alone is kept.
+/// Turns one RGB-D camera's depth images into vertices. Keeps what depends on the camera alone.
 class DepthMesh {
  public:
   /// color: the user's colour camera, into which the vertices are projected.
   DepthMesh(const RgbdCamera& camera, const Intrinsics& color);
 
-  /// The masks are the camera's own.
+  /// masks: this camera's.
   struct Frame {
     const Image<std::uint16_t>& depth;
     const Mask& depth_mask;
@@ -37,10 +37,10 @@ class DepthMesh {
   };
   /// The vertex of a depth pixel, by rule 1 of sdct.h.
   MeshVertex vertex(const Frame& frame, int column, int row) const;
-  /// Of every depth pixel.
+  /// The vertices of all depth pixels.
   void compute(const Frame& frame, Image<MeshVertex>& vertices) const;
 
-  /// What a depth pixel measures, in the colour camera's frame, masked or not.
+  /// The point that a depth pixel measures, in the colour camera's frame, masked or not.
   Eigen::Vector3f point_m(const Frame& frame, int column, int row) const;
 
  private:

@@ -38,9 +38,9 @@ void ChooseSource(const std::vector<SurfaceRow>& rows, float agreement_m, int wi
   });
 }
 
-/// What is known of some neighbouring pixels of a row. Each step of the lookup goes over all of
-/// them before the next begins, so that no vector is read back while its parts are being written.
-/// (On many processors gather instructions are slower.)
+/// Some neighbouring pixels of a row. Each step of the lookup runs over all of them before the next
+/// step begins, so that no vector is read back while its parts are being written. (On many CPUs
+/// gather instructions are slower.)
 struct alignas(64) Places {
   static constexpr int most = 128;
   float fx[most], fy[most];      ///< the place between four pixels of the texture
@@ -54,11 +54,11 @@ HWY_INLINE void FindPlaces(const SurfaceRow& row, const Image<Bgr>& texture, int
     const hn::RebindToSigned<decltype(d)> di;
     const auto zero = hn::Zero(d);
     const auto z = hn::LoadU(d, depth_m + first + i);
-    // What lies outside is another camera's pixel.
+    // Pixels outside belong to another camera.
     const auto place = [&](const float* over_z, int side, float* fraction) HWY_ATTR {
       const auto last = hn::Set(d, static_cast<float>(side - 1));
       const auto value = hn::Min(hn::Max(hn::Mul(hn::LoadU(d, over_z + first + i), z), zero), last);
-      // The last pixel is the second of a pair.
+      // The last pixel is the second one of a pair.
       const auto whole = hn::Min(hn::ConvertTo(di, value), hn::Set(di, side - 2));
       hn::StoreU(hn::Sub(value, hn::ConvertTo(d, whole)), d, fraction + i);
       return whole;
@@ -70,7 +70,7 @@ HWY_INLINE void FindPlaces(const SurfaceRow& row, const Image<Bgr>& texture, int
   });
 }
 
-/// Two neighbouring pixels of three bytes each.
+/// Two neighbouring pixels with three bytes each.
 HWY_INLINE std::uint64_t PixelPair(const std::uint8_t* texture, std::int32_t place) {
   std::uint64_t pair;
   std::memcpy(&pair, texture + place, sizeof(pair));
@@ -80,7 +80,7 @@ HWY_INLINE std::uint64_t PixelPair(const std::uint8_t* texture, std::int32_t pla
 HWY_INLINE void ReadPixels(const Image<Bgr>& texture, int count, Places& places) {
   const auto* bytes = reinterpret_cast<const std::uint8_t*>(texture.data());
   const auto row_bytes = static_cast<std::int32_t>(3 * texture.width());
-  // The last place that eight bytes can be read from.
+  // The last place from which eight bytes can be read.
   const auto last = static_cast<std::int32_t>(3 * texture.size()) - 8;
   for (int i = 0; i < count; ++i) {
     const std::int32_t upper = places.place[i];

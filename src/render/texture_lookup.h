@@ -20,13 +20,13 @@ struct SurfaceRow {
         source(source_) {}
 };
 
-/// Which camera each of `width` pixels is taken from, and z there: the rule of merge_layers.
-/// 0 where there is no surface.
+/// Which camera each of `width` pixels is taken from, and z there, by the rule of merge_layers. 0
+/// where there is no surface.
 void choose_source(const std::vector<SurfaceRow>& rows, float agreement_m, int width,
                    std::uint8_t* source, float* depth_m);
 
-/// The colours of the pixels that are taken from `row`, looked up in `texture` as sample_bilinear
-/// does, with alpha 255. The other pixels stay as they are.
+/// Looks up the colours of the pixels that are taken from `row` in `texture`, as sample_bilinear
+/// does, with alpha 255. Leaves the other pixels alone.
 void look_up_colors(const SurfaceRow& row, const Image<Bgr>& texture, int width,
                     const std::uint8_t* source, const float* depth_m, Bgra* colors);
 

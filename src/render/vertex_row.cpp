@@ -20,8 +20,8 @@ using Ints = hn::RebindToSigned<Floats>;
 using Vector = hn::Vec<Floats>;
 using LaneMask = hn::Mask<Floats>;
 
-// Products and sums are kept apart (no fused multiply-add) and in the order of Projection and
-// FloatTransform, so that every processor computes the plain version's bits.
+// Products and sums stay separate (no fused multiply-add) and in the order of Projection and
+// FloatTransform, so that every CPU computes the same bits as the plain version.
 
 HWY_INLINE Vector Set(float value) {
   return hn::Set(Floats(), value);
@@ -61,7 +61,7 @@ void ProjectRow(const VertexRows::Constants& constants, const FloatTransform& to
   const hn::Rebind<std::uint16_t, Floats> d16;
   const hn::Rebind<std::uint8_t, Floats> d8;
   const auto lanes = static_cast<int>(hn::Lanes(d));
-  // A pixel more than the region has, for what rounding to 1/256 may move.
+  // One pixel more than the region, because vertices are rounded to 1/256.
   const Vector left = Set(static_cast<float>(region.x - 1));
   const Vector right = Set(static_cast<float>(region.right() + 1));
   const Vector top = Set(static_cast<float>(region.y - 1));
@@ -113,7 +113,7 @@ void ProjectRow(const VertexRows::Constants& constants, const FloatTransform& to
                                      hn::Div(Apply(to_color, 1, x, y, z), color_z), px, py));
       const Vector limit = Set(sdct::max_coordinate_px);
       valid = hn::And(valid, hn::And(hn::Lt(hn::Abs(px), limit), hn::Lt(hn::Abs(py), limit)));
-      // What is not valid is 0: comparable, and no trap for the conversion.
+      // Invalid values become 0, which can be compared and converted safely.
       px = hn::IfThenElseZero(valid, px);
       py = hn::IfThenElseZero(valid, py);
       const Vector subpixels = Set(static_cast<float>(sdct::subpixels));

@@ -11,8 +11,9 @@
 
 namespace diminish {
 
-/// The vertices of one row of a depth image (see MeshVertex), an array for each value. Vertices are
-/// worked on in blocks; there is one block more than the row has, of invalid vertices.
+/// The vertices of one row of a depth image (see MeshVertex), with one array for each value.
+/// Vertices are processed in blocks. There is one more block than the row needs, of invalid
+/// vertices.
 struct VertexRow {
   static constexpr int block = VisibleBlocks::width;
 
@@ -20,17 +21,18 @@ struct VertexRow {
   std::vector<float> depth_m;             ///< z in the depth sensor's frame
   std::vector<float> inverse_z;           ///< 1 / z in the colour camera's frame; 0: not a vertex
   std::vector<float> u_over_z, v_over_z;  ///< place in the RGB-D camera's colour image, over z
-  /// A block's valid vertices lie all: 1 left of the region to draw, 2 right of it, 4 above, 8
-  /// below.
+  /// Where all valid vertices of a block lie: 1 left of the region to draw, 2 right of it, 4 above,
+  /// 8 below.
   std::vector<std::uint8_t> beyond;
-  std::vector<Rect> bounds;              ///< of a block's valid vertices, in pixels
-  std::vector<std::uint8_t> has_colors;  ///< u and v are known, and the vertices that have none out
+  std::vector<Rect> bounds;  ///< of a block's valid vertices, in pixels
+  std::vector<std::uint8_t>
+      has_colors;  ///< by block: u and v are known, and vertices without a colour are removed
 
   void resize(int width);
 };
 
-/// Turns rows of one RGB-D camera's depth images into vertices: rule 1 of sdct.h, to the bit what
-/// DepthMesh computes.
+/// Turns rows of one RGB-D camera's depth images into vertices by rule 1 of sdct.h. The result
+/// equals DepthMesh's bit for bit.
 class VertexRows {
  public:
   VertexRows(const RgbdCamera& camera, const Intrinsics& color);
@@ -41,17 +43,17 @@ class VertexRows {
     const Mask& color_mask;
     FloatTransform to_color;
     Rect region;
-    const VisibleBlocks& visible;  ///< what is not is left out
+    const VisibleBlocks& visible;  ///< invisible blocks are skipped
   };
-  /// Everything but the colours' places.
+  /// Computes everything except the places of the colours.
   void project(const Frame& frame, int row, VertexRow& vertices) const;
-  /// The colours' places of one block.
+  /// Computes the places of the colours of one block.
   void find_colors(const Frame& frame, int row, int block, VertexRow& vertices) const;
 
   int width() const { return width_; }
   int height() const { return height_; }
 
-  /// What the kernels read.
+  /// Input of the kernels.
   struct Constants {
     Projection color, rgbd_color;
     FloatTransform to_rgbd_color;
