@@ -7,8 +7,8 @@
 
 namespace diminish {
 
-/// Wakes who waits for something to happen anywhere. Nothing that happens between two looks at
-/// `count` is missed.
+/// Wakes threads that wait for something to happen anywhere. A waiter that passes the `count` it
+/// saw last misses nothing.
 class ArrivalSignal {
  public:
   void notify() {
@@ -22,7 +22,7 @@ class ArrivalSignal {
     const std::lock_guard lock(mutex_);
     return count_;
   }
-  /// Waits until the count is not `seen` any more, or the time is over.
+  /// Waits until the count is no longer `seen`, or the time is up.
   void wait(std::size_t seen, std::chrono::duration<double> timeout) const {
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, timeout, [&] { return count_ != seen; });

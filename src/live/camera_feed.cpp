@@ -8,9 +8,9 @@
 namespace diminish {
 namespace {
 
-/// A camera that delivers nothing for so long is silent.
+/// A camera that delivers nothing for this long is silent.
 constexpr double silent_after_s = 1;
-/// A camera that is gone is tried again after this time, then after twice of it, up to the latter.
+/// A lost camera is opened again after the first time, then after twice that, up to the second.
 constexpr double first_retry_s = 0.2;
 constexpr double last_retry_s = 5;
 
@@ -37,7 +37,7 @@ CameraStatus CameraFeed::status() const {
   const std::lock_guard lock(mutex_);
   CameraStatus status = status_;
   status.images_per_second = arrivals_s_.rate();
-  // A driver may block for long.
+  // A driver may block for a long time.
   if (status.state == CameraState::running && monotonic_now_s() - last_image_s_ > silent_after_s) {
     status.state = CameraState::silent;
     status.problem = no_image();
@@ -119,7 +119,7 @@ void CameraFeed::take(CameraImage& image) {
     switch (verdict) {
       case CameraInbox::Verdict::accepted:
         ++status_.images;
-        // A stall that a blocking driver hid.
+        // A stall that went unnoticed because the driver blocked.
         if (status_.state == CameraState::running && now_s - last_image_s_ > silent_after_s) {
           ++status_.stalls;
         }

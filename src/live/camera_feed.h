@@ -13,19 +13,18 @@
 
 namespace diminish {
 
-/// Reads a camera in a thread of its own, opens it again when it is gone, and counts what goes
-/// wrong.
+/// Reads a camera in its own thread, reopens it when it is lost, and counts what goes wrong.
 class CameraFeed {
  public:
-  /// inbox and arrived: must outlive this.
+  /// inbox and arrived must outlive this.
   CameraFeed(LiveCamera camera, const CameraRequest& request, CameraInbox& inbox,
              ArrivalSignal& arrived);
-  /// Waits for the camera's thread.
+  /// Waits for the camera's thread to end.
   ~CameraFeed();
   CameraFeed(const CameraFeed&) = delete;
   CameraFeed& operator=(const CameraFeed&) = delete;
 
-  /// Asks the thread to end.
+  /// Asks the thread to end. Does not wait.
   void stop() { stopped_ = true; }
   CameraStatus status() const;
 
@@ -44,7 +43,7 @@ class CameraFeed {
   mutable std::mutex mutex_;
   CameraStatus status_;
   SlidingWindow arrivals_s_{60};
-  std::size_t dropped_before_ = 0;  ///< by sources that were closed since
+  std::size_t dropped_before_ = 0;  ///< by sources closed since then
   double last_image_s_ = 0;
   bool has_color_ = false;
   std::thread thread_;

@@ -7,9 +7,10 @@
 namespace diminish {
 namespace {
 
-/// A timestamp further ahead of the clock than this is no time.
+/// A timestamp further ahead of the clock than this is invalid.
 constexpr double most_ahead_s = 1;
-/// After so many images in a row that are older than the newest one, the camera's clock was reset.
+/// After this many images in a row that are older than the newest one, the camera's clock must have
+/// been reset.
 constexpr int early_before_reset = 10;
 
 }  // namespace

@@ -10,8 +10,8 @@
 
 namespace diminish {
 
-/// The last few images of one sensor, in the order of their timestamps. Memory goes round: what
-/// comes in is exchanged for what is given up.
+/// The last few images of one sensor, in the order of their timestamps. Reuses memory: a new image
+/// is swapped with the one it replaces.
 template <class Pixel>
 class ImageHistory {
  public:
@@ -40,7 +40,7 @@ class ImageHistory {
   }
   void clear() { size_ = 0; }
 
-  /// The entry nearest in time, the earlier of two equally near; null if none is within the
+  /// The entry nearest in time (the earlier of two equally near); null if none is within the
   /// tolerance.
   const Entry* nearest(double stamp_s, double tolerance_s) const {
     const Entry* best = nullptr;
@@ -59,29 +59,30 @@ class ImageHistory {
   std::size_t size_ = 0;
 };
 
-/// Where a camera's threads put its images and the pipeline's thread finds them. What cannot be
-/// used is refused.
+/// Where a camera's threads put their images and the pipeline's thread finds them. Refuses unusable
+/// images.
 class CameraInbox {
  public:
   enum class Verdict { accepted, duplicate, out_of_order, wrong_size, damaged };
 
-  /// color, depth: the sensors, of which the user's camera has only the former.
+  /// color, depth: the sensors. The user's camera has no depth.
   CameraInbox(std::string name, const Intrinsics& color, const std::optional<Intrinsics>& depth);
 
   const std::string& name() const { return name_; }
   bool has_depth() const { return depth_sensor_.has_value(); }
 
-  /// Takes the image out of `image` if it can be used. problem: else why not, in plain words.
+  /// Takes the image out of `image` if it can be used. Otherwise `problem` says why not, in plain
+  /// words.
   Verdict put(CameraImage& image, double now_s, std::string& problem);
 
-  /// Gives the histories to `look(color, depth)` while nothing else touches them.
+  /// Calls `look(color, depth)` with the histories while nothing else touches them.
   template <class Look>
   auto with_images(Look&& look) {
     const std::lock_guard lock(mutex_);
     return look(color_, depth_);
   }
 
-  /// When the last image came, whichever sensor's; nothing before the first.
+  /// When the last image of either sensor came; nothing before the first.
   std::optional<double> last_arrival_s() const;
 
  private:
@@ -95,7 +96,8 @@ class CameraInbox {
   mutable std::mutex mutex_;
   ImageHistory<Bgr> color_;
   ImageHistory<std::uint16_t> depth_;
-  int early_color_ = 0, early_depth_ = 0;  ///< refused in a row for coming too early
+  int early_color_ = 0,
+      early_depth_ = 0;  ///< refused in a row because their timestamp was too early
   std::optional<double> last_arrival_s_;
 };
 

@@ -10,8 +10,8 @@ namespace {
 
 constexpr double always_s = -std::numeric_limits<double>::infinity();
 constexpr double usual_period_s = 1.0 / 30;
-/// What a colour image waits at least, and beyond what its forerunners did, as long as nothing else
-/// is asked for.
+/// The least time that a colour image waits, and the time that it waits beyond what earlier ones
+/// needed, if no other time is set.
 constexpr double least_wait_s = 0.06;
 constexpr double more_wait_s = 0.02;
 
@@ -92,7 +92,7 @@ std::optional<std::size_t> FrameAssembler::assemble(
     FrameSet& frame) {
   const double tolerance_s = sync_tolerance_s(settings);
   const double wait_s = sync_wait_s(settings);
-  // After a reset of the camera's clock all images are new.
+  // After a reset of the camera's clock all images count as new.
   const bool was_reset = color_.with_images([&](const auto& color, const auto&) {
     return color.size() > 0 && color.newest().stamp_s < last_stamp_s_;
   });

@@ -10,30 +10,31 @@
 
 namespace diminish {
 
-/// Makes frames of what the cameras' inboxes hold: for the newest colour image that has them, the
-/// RGB-D images nearest in time.
+/// Assembles frames from the cameras' inboxes: a colour image and the RGB-D images nearest in time.
 ///
-/// A colour image waits a little for its RGB-D images, which often come later. Meanwhile the next
-/// ones may come: the newest complete one is taken. One that waited in vain is taken without.
+/// A colour image waits a little for its RGB-D images, which often come later. Meanwhile newer
+/// colour images may arrive; the newest complete one is taken. One that waited too long is used
+/// without them.
 class FrameAssembler {
  public:
   struct Settings {
     double sync_tolerance_s = 0;  ///< 0: half the colour camera's frame period
-    double sync_wait_s = 0;       ///< 0: as long as the RGB-D cameras' last images made it wait
+    double sync_wait_s = 0;       ///< 0: a little longer than the last RGB-D images took
   };
 
-  /// color: the user's camera's inbox; rgbd: one for each RGB-D camera. They must outlive this.
+  /// color: the inbox of the user's camera; rgbd: one for each RGB-D camera. They must outlive
+  /// this.
   FrameAssembler(CameraInbox& color, std::vector<CameraInbox*> rgbd);
 
-  /// Makes `frame` the next frame if there is one at this time. Exchanges its colour image, copies
-  /// the others. Returns the number of colour images that were passed over for it; nothing if there
-  /// is no new frame yet.
+  /// Fills `frame` with the next frame, if there is one at this time. Swaps its colour image and
+  /// copies the others. Returns the number of colour images that were skipped for it; nothing if
+  /// there is no new frame yet.
   /// is_expected: whether an RGB-D camera's images are worth waiting for.
   std::optional<std::size_t> assemble(const Settings& settings, double now_s,
                                       const std::function<bool(std::size_t)>& is_expected,
                                       FrameSet& frame);
 
-  /// When a colour image that waits will have waited long enough; nothing if none does.
+  /// When a waiting colour image will have waited long enough; nothing if none waits.
   std::optional<double> next_deadline_s(const Settings& settings);
 
   double sync_tolerance_s(const Settings& settings);
@@ -45,7 +46,7 @@ class FrameAssembler {
   };
   using Arrivals = std::array<Arrival, ImageHistory<Bgr>::capacity>;
 
-  /// The colour images later than `after_s`, the newest first; returns their number.
+  /// Finds the colour images later than `after_s`, the newest first. Returns their number.
   std::size_t find_arrivals(double after_s, Arrivals& arrivals);
   bool is_complete(double stamp_s, double tolerance_s,
                    const std::function<bool(std::size_t)>& is_expected);

@@ -8,10 +8,10 @@
 
 namespace diminish {
 
-/// Frames whose memory is used again when nobody looks at them any more.
+/// Frames whose memory is reused when nobody holds them any more.
 class FramePool {
  public:
-  /// A frame with some earlier frame's memory, or a new one.
+  /// A frame that reuses the memory of an earlier one, or a new one.
   std::shared_ptr<LiveFrame> take() {
     std::unique_ptr<LiveFrame> frame;
     {

@@ -8,8 +8,8 @@
 
 namespace diminish {
 
-/// What a live session works on, for those who read frames one after the other. Ends after
-/// `seconds`, or when no frame comes for as long.
+/// A live session's input as a FrameSource. Ends after `seconds`, or when no frame comes for that
+/// long.
 class LiveFrameSource : public FrameSource {
  public:
   LiveFrameSource(const LiveSession& session, double seconds)
@@ -29,7 +29,7 @@ class LiveFrameSource : public FrameSource {
   }
 
  private:
-  /// The first frames go without cameras that take longer to open.
+  /// The first frames lack cameras that take longer to open.
   void wait_for_cameras() {
     const auto is_opening = [](const CameraStatus& camera) {
       return camera.state == CameraState::opening;
@@ -40,7 +40,7 @@ class LiveFrameSource : public FrameSource {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
       status = session_.status();
     }
-    number_ = status.frames + 1;  // one may be in work
+    number_ = status.frames + 1;  // one may be in progress
   }
 
   const LiveSession& session_;

@@ -21,7 +21,7 @@ namespace diminish {
 namespace {
 
 constexpr std::size_t window_frames = 150;
-/// Without a picture for so long, that is said.
+/// Without a picture for this long, the status says so.
 constexpr double no_picture_after_s = 1;
 
 void check_cameras(const Rig& rig, const std::vector<LiveCamera>& cameras) {
@@ -58,7 +58,7 @@ struct LiveSession::Implementation {
         options(options_),
         live_options(live_options_),
         pipeline(rig, scene, options),
-        assembler{make_inboxes(), rgbd_inboxes()} {  // braces: from left to right
+        assembler{make_inboxes(), rgbd_inboxes()} {  // braces: evaluated from left to right
     check_cameras(rig, cameras);
     pipeline.want_reconstruction(false);
     last_good_options = options;
@@ -196,7 +196,7 @@ struct LiveSession::Implementation {
 
   const Rig rig;
   const Scene scene;
-  mutable std::mutex mutex;  ///< of what follows, up to the next blank line
+  mutable std::mutex mutex;  ///< guards the members up to the next blank line
   Options options;
   LiveOptions live_options;
   QualityLadder ladder;
@@ -216,7 +216,8 @@ struct LiveSession::Implementation {
   std::mutex listeners_mutex;
   std::vector<std::weak_ptr<Listener>> listeners;
   std::atomic<bool> stopped = false;
-  std::atomic<std::size_t> nothing_new_at = 0;  ///< the count of `arrived` up to which all is shown
+  std::atomic<std::size_t> nothing_new_at =
+      0;  ///< the count of `arrived` up to which everything is shown
   std::vector<std::unique_ptr<CameraFeed>> feeds;
   std::thread worker;
 };

@@ -10,10 +10,10 @@ namespace {
 
 constexpr int thinned_width = 160;
 constexpr double step_s = 0.005;
-/// The signals must share so much time at every shift.
+/// How long the signals must overlap at every shift.
 constexpr double least_overlap_s = 2;
 constexpr double least_correlation = 0.6;
-/// Levels: less is noise.
+/// Grey levels; anything below is noise.
 constexpr double least_motion = 0.05;
 
 void thin(const Image<Bgr>& image, Image<std::uint8_t>& thinned) {
@@ -21,7 +21,7 @@ void thin(const Image<Bgr>& image, Image<std::uint8_t>& thinned) {
   thinned.resize(image.width() / step, image.height() / step);
   for (int y = 0; y < thinned.height(); ++y) {
     for (int x = 0; x < thinned.width(); ++x) {
-      // A block's mean, not one pixel: noise must not look like motion.
+      // A block's mean instead of one pixel, so that noise does not look like motion.
       int sum = 0;
       for (int dy = 0; dy < step; ++dy) {
         const Bgr* row = image.row(y * step + dy) + x * step;
@@ -32,7 +32,7 @@ void thin(const Image<Bgr>& image, Image<std::uint8_t>& thinned) {
   }
 }
 
-/// A signal at even steps, by linear interpolation.
+/// Resamples a signal at even steps by linear interpolation.
 std::vector<double> resample(const std::vector<Motion>& signal, double begin_s, std::size_t count) {
   std::vector<double> even(count);
   std::size_t next = 1;
@@ -74,7 +74,7 @@ std::optional<Motion> MotionMeter::add(const Image<Bgr>& image, double stamp_s) 
     for (std::size_t i = 0; i < last_.size(); ++i) {
       sum += std::abs(last_.data()[i] - thinned_.data()[i]);
     }
-    // Per second: a pair of images that is further apart has moved more.
+    // Per second, because images that are further apart differ more.
     const double period_s = std::max(stamp_s - last_stamp_s_, 1e-3);
     constexpr double usual_period_s = 1.0 / 30;
     motion = {.stamp_s = (stamp_s + last_stamp_s_) / 2,

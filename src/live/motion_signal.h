@@ -7,13 +7,13 @@
 
 namespace diminish {
 
-/// How much moved in a camera's picture, and when.
+/// How much moved in a camera's picture at a time.
 struct Motion {
   double stamp_s = 0;  ///< halfway between two images
   double amount = 0;   ///< mean absolute difference of brightness, levels
 };
 
-/// Compares each image with the one before, thinned to some hundred pixels a side.
+/// Compares each image with the one before, reduced to some hundred pixels a side.
 class MotionMeter {
  public:
   /// Nothing for the first image.
@@ -25,13 +25,13 @@ class MotionMeter {
 };
 
 struct SyncOffset {
-  double offset_s = 0;  ///< the second clock shows so much more than the first at the same moment
+  double offset_s = 0;     ///< second clock minus first clock at the same moment
   double correlation = 0;  ///< of the two signals at that offset, up to 1
 };
 
-/// The shift in time at which two cameras' motion agrees best: the peak of the normalised
-/// cross-correlation, to a fraction of a frame. In the order of time. Nothing if too little moves,
-/// or not alike. Cost: 0.1 ms a second of signal and 0.1 s of `largest_s`.
+/// The time shift at which two cameras' motion agrees best: the peak of the normalised
+/// cross-correlation, to a fraction of a frame. Both in the order of time. Nothing if too little
+/// moves or the motions differ. Cost: 0.1 ms per second of signal and 0.1 s of `largest_s`.
 std::optional<SyncOffset> estimate_sync_offset(const std::vector<Motion>& first,
                                                const std::vector<Motion>& second,
                                                double largest_s = 0.5);

@@ -9,7 +9,7 @@ namespace {
 constexpr int frames_before_down = 3;
 constexpr int least_patience = 30;
 constexpr int most_patience = 960;
-/// Share of the budget below which there is time for more.
+/// Below this share of the budget there is time to spare.
 constexpr double well_below = 0.75;
 
 struct Step {
@@ -17,7 +17,7 @@ struct Step {
   void (*simplify)(Options&);
 };
 
-/// Each includes those before it.
+/// Each level includes those before it.
 constexpr std::array<Step, 7> steps = {{
     {"whole view not reconstructed, shadows outside the mask stay",
      [](Options& o) {
@@ -78,7 +78,7 @@ int QualityLadder::next_level(double frame_ms, double budget_ms) {
   frames_over_ = frame_ms > budget_ms ? frames_over_ + 1 : 0;
   frames_under_ = frame_ms < well_below * budget_ms ? frames_under_ + 1 : 0;
   if (frames_over_ >= frames_before_down && level_ < last_level()) {
-    // A step up that did not hold is tried less and less often.
+    // A step up that did not hold is retried less and less often.
     patience_ = frames_since_up_ < 2 * least_patience ? std::min(2 * patience_, most_patience)
                                                       : least_patience;
     change_level(1);

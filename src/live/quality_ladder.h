@@ -6,19 +6,19 @@
 
 namespace diminish {
 
-/// Keeps frames within a budget: steps quality down when they take more, and up again when there is
-/// time for it. Each step gives up what is seen least for the time that it takes.
+/// Keeps frames within a time budget: lowers the quality when they take longer and raises it when
+/// there is time. Each step drops what is least visible for the time that it takes.
 class QualityLadder {
  public:
-  /// The steps, the first to go first. 0: as chosen.
+  /// The number of steps. Level 0: as chosen.
   static int last_level();
-  /// What a level simplifies, in plain words; empty for 0.
+  /// What a level drops, in plain words; empty for 0.
   static std::string description(int level);
-  /// The options with a level's simplifications. A choice that is already simpler stays.
+  /// The options with a level's simplifications. Does not override a simpler choice.
   static Options simplified(const Options& options, int level);
 
-  /// Says how long a frame took; returns the level for the next one.
-  /// budget_ms: 0: none, the level becomes 0.
+  /// Takes the time of the last frame and returns the level for the next one. budget_ms: 0 means no
+  /// budget and level 0.
   int next_level(double frame_ms, double budget_ms);
 
   int level() const { return level_; }
@@ -27,9 +27,9 @@ class QualityLadder {
   void change_level(int by);
 
   int level_ = 0;
-  int frames_over_ = 0;            ///< in a row, of the budget
-  int frames_under_ = 0;           ///< in a row, well below it
-  int patience_ = 0;               ///< frames to be well below it before the next step up
+  int frames_over_ = 0;            ///< in a row, over the budget
+  int frames_under_ = 0;           ///< in a row, well below the budget
+  int patience_ = 0;               ///< frames well below the budget that a step up needs
   int frames_since_up_ = 1000000;  ///< since the last step up
 };
 

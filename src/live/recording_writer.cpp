@@ -14,7 +14,7 @@ namespace diminish {
 namespace {
 
 constexpr int jpeg_quality = 95;
-/// Half the size of the image at a third of the time of level 6.
+/// Half the size of the raw image, in a third of the time of level 6.
 constexpr int png_compression = 1;
 
 void make_folder(const std::filesystem::path& folder) {
@@ -159,7 +159,7 @@ void RecordingWriter::write(const LiveFrame& frame) {
 
 template <class Pixel>
 void RecordingWriter::write_image(Stream& stream, const Image<Pixel>& image, double stamp_s) {
-  // Two frames may share an RGB-D image; and lists only go forward.
+  // Two frames may share an RGB-D image, and the timestamps in a list must increase.
   if (stamp_s <= stream.last_stamp_s) return;
   constexpr bool is_color = std::is_same_v<Pixel, Bgr>;
   const std::string name =

@@ -18,27 +18,27 @@ struct RecordingStatus {
   bool active = false;
   std::string folder;
   std::size_t frames = 0;   ///< written
-  std::size_t dropped = 0;  ///< the disk or the encoder was too slow for them
-  std::string problem;      ///< why it ended; empty if it did not, or as asked
+  std::size_t dropped = 0;  ///< because the disk or the encoder was too slow
+  std::string problem;      ///< why it stopped early; empty if it did not
 };
 
-/// Writes what a live session works on as a recording (docs/recording-format.md): depth without
-/// loss, colour as JPEG. A thread of its own does the work; a frame for which it has no time is
-/// dropped and counted. What is in the folder is a whole recording at any moment.
+/// Writes a live session's input as a recording (docs/recording-format.md): lossless depth, colour
+/// as JPEG. Works in its own thread. Frames for which it has no time are dropped and counted. The
+/// folder holds a complete recording at any moment.
 class RecordingWriter {
  public:
-  /// Makes the folder and copies the set-up into it: rig.yaml, scene.yaml, and what the latter
-  /// names. Throws Error if the folder holds something, or the set-up cannot be copied.
+  /// Makes the folder and copies rig.yaml, scene.yaml and the files that scene.yaml names into it.
+  /// Throws Error if the folder is not empty or a file cannot be copied.
   RecordingWriter(std::filesystem::path folder, const std::filesystem::path& rig_file,
                   const Rig& rig, const std::filesystem::path& scene_file, const Scene& scene);
-  /// Writes what is waiting.
+  /// Writes the waiting frames.
   ~RecordingWriter();
 
-  /// Takes a frame if there is room for it; returns at once.
+  /// Queues a frame if there is room; returns at once.
   void offer(std::shared_ptr<const LiveFrame> frame);
 
   RecordingStatus status() const;
-  /// Writes what is waiting, and ends.
+  /// Writes the waiting frames and ends.
   void finish();
 
  private:

@@ -23,9 +23,9 @@ class SlidingWindow {
     next_ = 0;
   }
   bool full() const { return values_.size() == capacity_; }
-  /// In no order.
+  /// In any order.
   const std::vector<double>& values() const { return values_; }
-  /// Of values that only grow, such as times: how many there are a unit; 0 for fewer than two.
+  /// For values that only grow, such as times: how many there are per unit; 0 for fewer than two.
   double rate() const {
     if (values_.size() < 2) return 0;
     const std::size_t last = (next_ + capacity_ - 1) % capacity_;

@@ -9,8 +9,8 @@
 
 namespace diminish {
 
-/// Hands a session's results to a video device, so that any program that takes a camera can use
-/// them; through GStreamer. A thread of its own writes the newest frame.
+/// Sends a session's results to a video device through GStreamer, so that any program that reads a
+/// camera can use them. Its own thread writes the newest frame.
 class VirtualCamera {
  public:
   /// target: "/dev/videoN" of v4l2loopback, or "gst:" and the end of a pipeline.

@@ -11,24 +11,24 @@
 
 namespace diminish {
 
-/// What of a frame is shown: the result, the camera's picture, or both, the latter on top.
+/// Which picture of a frame: the result, the camera's, or both with the camera's on top.
 enum class View { after, before, pair };
 inline constexpr std::array<const char*, 3> view_names = {"after", "before", "pair"};
 
-/// Throws Error if there is no such view.
+/// Throws Error for an unknown view.
 View parse_view(const std::string& name);
 
-/// Compresses pictures, each once for everybody.
+/// Compresses each picture once for all viewers.
 class PictureEncoder {
  public:
   explicit PictureEncoder(int jpeg_quality) : jpeg_quality_(jpeg_quality) {}
 
   using Bytes = std::shared_ptr<const std::vector<std::uint8_t>>;
 
-  /// Frames must not come in an older order from one caller to the next than they were made, or
-  /// they are compressed again.
+  /// Callers must pass frames in the order in which they were made; older ones are compressed
+  /// again.
   Bytes jpeg(const LiveFrame& frame, View view);
-  /// Without loss; not kept.
+  /// Lossless; not kept.
   std::vector<std::uint8_t> png(const LiveFrame& frame, View view) const;
 
  private:

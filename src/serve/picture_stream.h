@@ -8,7 +8,7 @@
 
 namespace diminish {
 
-/// Takes /api/stream.mjpg (multipart/x-mixed-replace) apart again, as its bytes come.
+/// Splits /api/stream.mjpg (multipart/x-mixed-replace) into pictures as its bytes arrive.
 class PictureStream {
  public:
   struct Picture {
@@ -17,7 +17,7 @@ class PictureStream {
   };
 
   void feed(const char* data, std::size_t size) { waiting_.append(data, size); }
-  /// The next picture, once it is there as a whole. Throws Error on what is no such stream.
+  /// The next picture, once it is complete. Throws Error if this is not such a stream.
   std::optional<Picture> next();
 
  private:

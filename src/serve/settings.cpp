@@ -101,7 +101,7 @@ Settings changed_settings(const Settings& current, const std::string& json) {
                                 changed.budget_ms));
       }
     } else if (known.count(name) == 0) {
-      throw Error(fmt::format("settings: there is none called '{}'", printable(name)));
+      throw Error(fmt::format("settings: unknown setting '{}'", printable(name)));
     }
   }
   return changed;

@@ -7,18 +7,18 @@
 
 namespace diminish {
 
-/// What can be set while a session runs: a list of {name, kind, unit, help, value, min, max,
-/// choices}, and the scene's objects.
+/// The settings of a running session: a list of {name, kind, unit, help, value, min, max, choices},
+/// and the scene's objects.
 nlohmann::ordered_json describe_settings(const LiveSession& session);
 
-/// What a request asks for: `options` and `budget_ms` with changes.
+/// A request's `options` and `budget_ms`, with its changes.
 struct Settings {
   Options options;
   double budget_ms = 0;
 };
 
-/// `current` with the changes of a JSON object, {"name": value, ...}. Throws Error that names what
-/// is unknown or of the wrong type; ranges are checked where the settings are used.
+/// Applies a JSON object {"name": value, ...} to `current`. Throws Error that names an unknown
+/// setting or a wrong type. Ranges are checked where the settings are used.
 Settings changed_settings(const Settings& current, const std::string& json);
 
 }  // namespace diminish

@@ -36,7 +36,7 @@ TEST(ChangedSettings, ComplaintsNameTheSettingAndWhatWasGiven) {
   EXPECT_THAT(complaint("[1, 2]"), HasSubstr("expected a JSON object"));
   EXPECT_THAT(complaint("{"), HasSubstr("expected a JSON object"));
   EXPECT_THAT(complaint(""), HasSubstr("expected a JSON object"));
-  EXPECT_THAT(complaint(R"({"colour": 1})"), HasSubstr("there is none called 'colour'"));
+  EXPECT_THAT(complaint(R"({"colour": 1})"), HasSubstr("unknown setting 'colour'"));
   EXPECT_THAT(complaint(R"({"mask_margin_px": 1.5})"),
               AllOf(HasSubstr("mask_margin_px: expected a whole number"), HasSubstr("1.5")));
   EXPECT_THAT(complaint(R"({"mask_margin_px": 99999999999999})"), HasSubstr("a whole number"));

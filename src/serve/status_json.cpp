@@ -7,7 +7,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Enough digits to read; status goes over the network several times a second.
+/// Enough digits to read: the status goes over the network several times a second.
 double rounded(double value) {
   return std::round(value * 100) / 100;
 }

@@ -52,14 +52,14 @@ View requested_view(const httplib::Request& request) {
   return parse_view(request.has_param("view") ? request.get_param_value("view") : "after");
 }
 
-/// Compressing pictures must not take the time of making them.
+/// Compressing pictures must not slow down making them.
 void lower_priority_of_this_thread() {
   constexpr int nice = 5;
   thread_local const int done = setpriority(PRIO_PROCESS, 0, nice);
   (void)done;
 }
 
-/// Counts one who looks at a stream, as long as it lives.
+/// Counts a viewer of a stream for as long as it lives.
 class Viewer {
  public:
   Viewer(std::atomic<std::size_t>& count, std::size_t most) : count_(count) {
@@ -83,10 +83,10 @@ struct WebServer::Implementation {
     if (!is_loopback(options.address) && options.token.empty()) {
       throw Error(options.address + ": an address that others can reach needs a token");
     }
-    // A thread for each who looks at pictures and one for his events, and some for short requests.
+    // One thread for each viewer's pictures, one for its events, and some for short requests.
     const std::size_t threads = 2 * options.most_viewers + 8;
     server.new_task_queue = [threads] { return new httplib::ThreadPool(threads); };
-    // Not SO_REUSEPORT, with which two programs would share a port unknowingly.
+    // Not SO_REUSEPORT, which would let two programs share a port without noticing.
     server.set_socket_options([](socket_t socket) {
       const int yes = 1;
       setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
@@ -103,7 +103,7 @@ struct WebServer::Implementation {
       port = options.port;
     }
     if (port <= 0) {
-      throw Error(fmt::format("{}:{}: cannot listen there; is another program using the port?",
+      throw Error(fmt::format("{}:{}: cannot listen; is another program using the port?",
                               options.address, options.port));
     }
     listener = std::thread([this] { server.listen_after_bind(); });
@@ -120,7 +120,7 @@ struct WebServer::Implementation {
   void add_routes();
   httplib::Server::HandlerResponse check_access(const httplib::Request& request,
                                                 httplib::Response& response) const;
-  /// One more of these viewers; nullptr, and a refusal, if there are too many.
+  /// Adds a viewer; answers with a refusal and returns nullptr if there are too many.
   std::shared_ptr<Viewer> admit(std::atomic<std::size_t>& viewers,
                                 httplib::Response& response) const;
   void stream(const httplib::Request& request, httplib::Response& response);
@@ -139,7 +139,7 @@ struct WebServer::Implementation {
   int port = 0;
   std::atomic<bool> stopped = false;
   std::atomic<std::size_t> picture_viewers = 0, event_viewers = 0;
-  std::mutex settings_mutex;  ///< one change after the other
+  std::mutex settings_mutex;  ///< serialises changes
   std::mutex recording_mutex;
   std::shared_ptr<RecordingWriter> recording;
   std::shared_ptr<void> recording_listener;
@@ -199,14 +199,14 @@ httplib::Server::HandlerResponse WebServer::Implementation::check_access(
     const std::string header = request.get_header_value("Authorization");
     const std::string given = header.starts_with(bearer) ? header.substr(bearer.size())
                                                          : request.get_param_value("token");
-    // The page's own files hold no secrets, and ask for the token.
+    // The page's own files hold no secrets, and the page asks for the token.
     const bool is_page = !request.path.starts_with("/api/");
     if (!is_page && !equals_secretly(given, options.token)) {
       refuse(response, 401, "expected the token that diminish printed when it started");
       return handled;
     }
   }
-  // What a form of another site can send without being asked is no JSON.
+  // A form on another site can send a request without asking, but not as JSON.
   if (request.method == "POST" &&
       !request.get_header_value("Content-Type").starts_with("application/json")) {
     refuse(response, 415, "Content-Type: expected application/json");
@@ -306,7 +306,7 @@ void WebServer::Implementation::start_recording() {
     throw Error("recording: start diminish with --recordings FOLDER to allow it");
   }
   const std::lock_guard lock(recording_mutex);
-  if (recording && recording->status().active) throw Error("recording: one is being made already");
+  if (recording && recording->status().active) throw Error("recording: already recording");
   const auto now = std::chrono::system_clock::now();
   const std::string time = fmt::format("{:%Y-%m-%dT%H-%M-%S}",
                                        fmt::localtime(std::chrono::system_clock::to_time_t(now)));

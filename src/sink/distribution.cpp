@@ -11,7 +11,7 @@ Distribution distribution_of(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const auto count = static_cast<double>(values.size());
   const auto percentile = [&](int percent) {
-    // Integers, so that a rank that is exact is not rounded up.
+    // Integers, so that an exact rank is not rounded up.
     const std::size_t rank = (values.size() * static_cast<std::size_t>(percent) + 99) / 100;
     return values[rank - 1];
   };

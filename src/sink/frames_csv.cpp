@@ -100,7 +100,7 @@ void FramesCsv::append(const DiminishedFrame& frame) {
                      report.mask_pixels, report.valid_pixels, report.missing_pixels);
   for (const double ms : report.milliseconds) row += fmt::format(",{:.3f}", ms);
   row += fmt::format(",{},{}\n", joined(report.messages), joined(report.faults));
-  // One write a row, so that an interrupted run leaves whole rows.
+  // One write per row, so that an interrupted run leaves whole rows.
   stream_ << row << std::flush;
   if (!stream_) throw Error(file_.string() + ": cannot be written");
 }

@@ -10,7 +10,8 @@
 
 namespace diminish {
 
-/// frames.csv: a row a frame, complete when written. Columns: docs/command-line.md.
+/// Writes frames.csv, one row per frame; every written row is complete. Columns:
+/// docs/command-line.md.
 class FramesCsv {
  public:
   FramesCsv(const std::filesystem::path& file, const Rig& rig);

@@ -6,8 +6,8 @@
 
 namespace diminish {
 
-/// The colours of provenance pictures, by provenance value: grey for the camera's own pixels, a
-/// colour of its own for each RGB-D camera, magenta for inpainted, black for unknown.
+/// The colours of provenance pictures, by value: grey for the camera's own pixels, one colour for
+/// each RGB-D camera, magenta for inpainted, black for unknown.
 const std::vector<Bgr>& provenance_palette();
 
 }  // namespace diminish

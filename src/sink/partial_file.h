@@ -6,8 +6,8 @@
 
 namespace diminish {
 
-/// A file that comes into being whole or not at all: written under a hidden name beside `target`
-/// (with its extension), renamed by `commit`, deleted if that never comes.
+/// A file that appears complete or not at all: written under a hidden name beside `target` (with
+/// its extension), renamed by `commit`, deleted otherwise.
 class PartialFile {
  public:
   explicit PartialFile(std::filesystem::path target);
@@ -15,9 +15,9 @@ class PartialFile {
   PartialFile(const PartialFile&) = delete;
   PartialFile& operator=(const PartialFile&) = delete;
 
-  /// Where to write.
+  /// The file to write to.
   const std::filesystem::path& path() const { return partial_; }
-  /// Throws Error that names the target if it cannot be made.
+  /// Throws Error that names the target if it cannot be created.
   void commit();
 
  private:
@@ -26,10 +26,10 @@ class PartialFile {
   bool committed_ = false;
 };
 
-/// Replaces `target` by these bytes, whole or not at all. Throws Error that names it.
+/// Replaces `target` by these bytes, completely or not at all. Throws Error that names it.
 void write_file(const std::filesystem::path& target, std::string_view bytes);
 
-/// The same with an 8-bit picture as PNG, compressed for speed.
+/// The same for an 8-bit picture as PNG, compressed for speed.
 void write_png(const std::filesystem::path& target, const cv::Mat& picture);
 
 }  // namespace diminish

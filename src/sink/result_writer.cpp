@@ -115,7 +115,7 @@ void ResultWriter::write_summary(bool interrupted, const std::string& video_prob
   for_each_option(options_, [&](const OptionInfo& info, const auto& value) {
     summary["options"][info.name] = value;
   });
-  // File names in messages need not be UTF-8.
+  // File names in messages may not be UTF-8.
   constexpr auto replace = nlohmann::ordered_json::error_handler_t::replace;
   write_file(folder_ / "summary.json", summary.dump(2, ' ', false, replace) + "\n");
 }

@@ -14,24 +14,24 @@
 namespace diminish {
 
 struct ResultWriterOptions {
-  /// Only pictures with input and result side by side (and the tables).
+  /// Write only pictures with input and result side by side (and the tables).
   bool preview_only = false;
-  /// Replace the results that the folder holds.
+  /// Replace existing results in the folder.
   bool force = false;
 };
 
 /// Writes a run's results into a folder: result/, mask/, reconstruction/, provenance/ (or
-/// preview/), frames.csv, summary.json, result.mp4. What is there is complete at any moment.
+/// preview/), frames.csv, summary.json, result.mp4. Every file is complete at any moment.
 class ResultWriter : public FrameSink {
  public:
-  /// Throws Error if the folder cannot be made, or holds something and `force` is not given. With
-  /// `force` only what this class writes is removed.
+  /// Throws Error if the folder cannot be created, or is not empty and `force` is not set. `force`
+  /// removes only what this class writes.
   ResultWriter(std::filesystem::path folder, const Rig& rig, const Options& options,
                double frames_per_second, const ResultWriterOptions& writer_options);
 
   void write_images(const FrameSet& frame, const DiminishedFrame& result) override;
   void append(const FrameSet& frame, const DiminishedFrame& result) override;
-  /// Ends the video and writes the summary. Why there is no video, if there is none.
+  /// Ends the video and writes the summary. Returns why there is no video, if there is none.
   std::string finish(bool interrupted);
 
   const RunStatistics& statistics() const { return statistics_; }

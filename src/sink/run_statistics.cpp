@@ -8,7 +8,7 @@
 namespace diminish {
 namespace {
 
-// The paper measures poses and detection as one.
+// The paper measures poses and detection together.
 constexpr PaperRow rows[] = {
     {"Camera poses", 0, "8.2"},        {"Object detection", 1, "(with poses)"},
     {"Reconstruction", 2, "12.8"},     {"Compositing", 3, "1.1"},

@@ -18,7 +18,7 @@ struct PaperRow {
 };
 std::span<const PaperRow> paper_table();
 
-/// What a run's frames add up to.
+/// Sums over a run's frames.
 class RunStatistics {
  public:
   void add(const FrameReport& report);
@@ -29,19 +29,19 @@ class RunStatistics {
 
   std::size_t frames() const { return frames_; }    ///< with a picture
   std::size_t skipped() const { return skipped_; }  ///< without
-  /// Frames of which an image could not be used; skipped ones too.
+  /// Frames with an unusable image, including skipped ones.
   std::size_t faulty() const { return faulty_; }
   std::size_t mask_pixels() const { return mask_pixels_; }
   std::size_t valid_pixels() const { return valid_pixels_; }
   std::size_t missing_pixels() const { return missing_pixels_; }
   double average_ms(std::size_t stage) const;
-  /// Per stage, and last the whole frame.
+  /// Per stage; the last one is the whole frame.
   const std::array<Times, stage_count + 1>& times() const { return times_; }
-  /// What was not found or could not be done, with the number of frames.
+  /// Messages about what was not found or could not be done, with the number of frames.
   const std::map<std::string, std::size_t>& messages() const { return messages_; }
 
-  /// The paper's Table 2 for this run, beside the paper's own figures, then what was not found in
-  /// how many frames.
+  /// The paper's Table 2 for this run beside the paper's own figures, then the messages with the
+  /// number of frames.
   std::string table() const;
 
  private:

@@ -20,7 +20,7 @@ VideoFile::~VideoFile() = default;
 
 void VideoFile::append(const Image<Bgr>& picture) {
   if (!problem_.empty()) return;
-  // Encoders want even sizes: the last column or row of an odd one is left out.
+  // Encoders need even sizes, so the last column or row of an odd one is dropped.
   const cv::Rect even(0, 0, picture.width() & ~1, picture.height() & ~1);
   if (!writer_) {
     writer_ = std::make_unique<Writer>(file_);

@@ -8,14 +8,14 @@
 
 namespace diminish {
 
-/// An MP4 of pictures of one size. It has its name only once it is whole.
+/// An MP4 of pictures of one size. It gets its name only when it is complete.
 class VideoFile {
  public:
   VideoFile(std::filesystem::path file, double frames_per_second);
   ~VideoFile();
 
   void append(const Image<Bgr>& picture);
-  /// Ends the video. Why there is none, if there is none: empty when all is well.
+  /// Ends the video. Returns why there is none, or an empty text if all is well.
   std::string finish();
 
  private:
