@@ -12,7 +12,7 @@
 namespace diminish {
 namespace {
 
-/// Depth is kept in videos as 16-bit PNGs, so that its frames are decoded as such files are.
+/// Videos hold depth as 16-bit PNGs; frames are decoded like such files.
 template <class Pixel>
 constexpr VideoReader::Content video_content = VideoReader::Content::pictures;
 template <>
@@ -42,7 +42,7 @@ void ImageStream<Pixel>::check_first(const std::filesystem::path& list) {
   try {
     image = decode_entry(*first);
   } catch (const Error& error) {
-    // One bad file is its frame's fault; a video that does not begin will not go on either.
+    // One bad file is its frame's fault. A video that fails at its start fails for all frames.
     if (!first->frame) return;
     const bool depth = video_content<Pixel> == VideoReader::Content::packets;
     throw Error(name + ": " + error.what() + (depth ? ", expected a video of 16-bit PNGs" : ""));

@@ -17,16 +17,16 @@ namespace diminish {
 template <class Pixel>
 class ImageStream {
  public:
-  /// list: the "timestamp filename" file; names in it are relative to its folder.
-  /// Throws Error if the list cannot be used, none of its files exist, or the first that does is
-  /// an image of another camera: that would be wrong in every frame.
+  /// list: the "timestamp filename" file; names in it are relative to its folder. Throws Error if
+  /// the list is unusable, none of its files exist, or the first that exists has another size or
+  /// type: then every frame would be wrong.
   ImageStream(const std::filesystem::path& list, const Intrinsics& camera,
               EmptyList empty = EmptyList::is_error);
 
   const std::vector<StreamEntry>& entries() const { return entries_; }
 
-  /// Fast if `index` does not go down from call to call. Throws Error that names the file as the
-  /// list does, and what was expected; `image` is empty then.
+  /// Fast if `index` never goes down between calls. Throws Error with the file's name as in the
+  /// list and what was expected. `image` is empty then.
   void read(std::size_t index, Image<Pixel>& image);
 
  private:

@@ -7,7 +7,7 @@ namespace diminish {
 namespace {
 
 constexpr double rotation_tolerance = 1e-3;
-/// Beyond this, in metres, the numbers are not a camera rig's: most likely millimetres.
+/// Metres; larger numbers are most likely millimetres.
 constexpr double largest_translation_m = 1000;
 
 Eigen::Matrix3d read_rotation(const Config& config) {

@@ -18,7 +18,7 @@ struct RgbdStreams {
   ImageStream<std::uint16_t> depth;
 };
 
-/// Frames are known by their names, in masks, results and truth.
+/// Masks, results and truth know frames by name, so names must be unique.
 void expect_unique_names(const std::vector<StreamEntry>& entries,
                          const std::filesystem::path& list) {
   std::unordered_map<std::string, int> lines;
@@ -88,7 +88,7 @@ class RecordingSource final : public FrameSource {
     }
   }
 
-  /// Returns the name of the camera's colour image; empty if there is none.
+  /// Returns the name of the camera's colour image; empty if it has none.
   std::string read_rgbd(std::size_t camera, FrameSet& frame) {
     RgbdFrame& rgbd = frame.rgbd[camera];
     RgbdStreams& streams = rgbd_[camera];

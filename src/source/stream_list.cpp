@@ -36,7 +36,7 @@ StreamEntry read_entry(std::string_view text, int line, const std::filesystem::p
   if (!stamp) {
     fail(list, line, "expected a timestamp, got '" + printable(text.substr(0, end)) + "'");
   }
-  // The rest of the line, as there may be spaces in it.
+  // The rest of the line, because names may contain spaces.
   const std::string_view name = trim(text.substr(end));
   if (name.empty()) fail(list, line, "expected a file's name after the timestamp");
   const auto is_control = [](char c) { return std::iscntrl(static_cast<unsigned char>(c)) != 0; };
@@ -55,7 +55,7 @@ void expect_increasing(const std::vector<StreamEntry>& entries, const std::files
   }
 }
 
-/// Numbers the frames of the videos that are named more than once.
+/// Numbers the frames of videos that are named more than once.
 void number_frames(std::vector<StreamEntry>& entries) {
   std::map<std::filesystem::path, int> lines;
   for (const StreamEntry& entry : entries) {
@@ -139,7 +139,7 @@ std::optional<std::size_t> nearest_entry(const std::vector<StreamEntry>& entries
     if (nearest == 0) return std::nullopt;
     --nearest;
   }
-  // Timestamps count microseconds; as binary fractions they are not exact.
+  // Timestamps have microseconds and are not exact as binary fractions.
   constexpr double rounding_s = 1e-6;
   if (!(distance(nearest) <= tolerance_s + rounding_s)) return std::nullopt;
   return nearest;

@@ -12,7 +12,7 @@
 
 namespace diminish {
 
-/// A recording of three small frames at 10 Hz, to be spoilt by tests. Colour images: 40x30, the
+/// A recording of three small frames at 10 Hz for tests to damage. Colour images: 40x30, with the
 /// frame's number in blue. RGB-D camera rgbd0: 32x24, 1 ms later.
 class TinyRecording {
  public:
@@ -48,7 +48,7 @@ class TinyRecording {
     std::filesystem::create_directories(path(name).parent_path());
     if (!cv::imwrite(path(name).string(), image)) throw std::runtime_error("cannot write " + name);
   }
-  /// NAME.txt with these images of the folder NAME.
+  /// Writes NAME.txt with these images of the folder NAME.
   void write_list(const std::string& name, const std::vector<int>& images) const {
     std::string text = "# timestamp filename\n";
     for (const int i : images) {

@@ -12,7 +12,7 @@ namespace {
 cv::VideoCapture open(const std::filesystem::path& file, VideoReader::Content content) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored)) throw Error("there is no such file");
-  // OpenCV before 4.7 has no other way to 16-bit pixels than to leave the decoding to us.
+  // With OpenCV before 4.7, 16-bit pixels are only possible if we decode them.
   std::vector<int> parameters;
   if (content == VideoReader::Content::packets) parameters = {cv::CAP_PROP_FORMAT, -1};
   cv::VideoCapture capture;
@@ -21,7 +21,7 @@ cv::VideoCapture open(const std::filesystem::path& file, VideoReader::Content co
   } catch (const cv::Exception&) {
   }
   if (!capture.isOpened()) throw Error("cannot be opened as a video");
-  // As the sensor made them.
+  // As the sensor made it, without orientation.
   capture.set(cv::CAP_PROP_ORIENTATION_AUTO, 0);
   return capture;
 }

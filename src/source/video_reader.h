@@ -11,16 +11,15 @@ struct VideoLength {
   double frames_per_second = 0;
 };
 
-/// What a video says of itself. Throws Error that names the file if it cannot be opened or does not
-/// say.
+/// A video's properties. Throws Error that names the file if it cannot be opened or lacks them.
 VideoLength measure_video(const std::filesystem::path& file);
 
-/// Reads a video from its beginning to its end.
+/// Reads a video from beginning to end.
 class VideoReader {
  public:
   enum class Content {
     pictures,  ///< decoded, BGR
-    packets    ///< the encoded frames, a row of bytes each
+    packets    ///< the encoded frames, one row of bytes each
   };
 
   /// Throws Error (without the file's name) if the file cannot be opened.
@@ -28,7 +27,7 @@ class VideoReader {
 
   const std::filesystem::path& file() const { return file_; }
 
-  /// A frame; those before it are skipped. Asking for an earlier one begins anew, which is slow.
+  /// Returns a frame, skipping those before it. An earlier frame restarts the video, which is slow.
   /// The matrix is valid until the next call. Throws Error if there is no such frame.
   const cv::Mat& read(int frame);
 

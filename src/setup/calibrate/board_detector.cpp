@@ -9,7 +9,7 @@
 namespace diminish {
 namespace {
 
-/// A line of corners has no homography.
+/// Corners on a line determine no homography.
 bool spans_a_plane(const std::vector<Eigen::Vector3d>& points) {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   for (const auto& point : points) mean += point / static_cast<double>(points.size());
@@ -22,7 +22,7 @@ bool spans_a_plane(const std::vector<Eigen::Vector3d>& points) {
     xy += d.x() * d.y();
     yy += d.y() * d.y();
   }
-  // The determinant relative to the squared trace: 1/4 for a disc, 0 for a line.
+  // The determinant divided by the squared trace: 1/4 for a disc, 0 for a line.
   return xx * yy - xy * xy > 0.005 * (xx + yy) * (xx + yy);
 }
 

@@ -12,12 +12,12 @@
 
 namespace diminish {
 
-/// Images in which a board is looked for, all of one camera, which need not be calibrated yet.
+/// Images to search for a board, all from one camera, which need not be calibrated yet.
 class BoardImages {
  public:
   virtual ~BoardImages() = default;
 
-  /// Goes to the next image; false: there is none any more.
+  /// Moves to the next image; false if there is none.
   virtual bool next() = 0;
   virtual std::string name() const = 0;
   /// Throws Error that says what is wrong with the image, without its name.
@@ -27,9 +27,10 @@ class BoardImages {
 /// Images from files, folders, or a stream of a recording.
 class StoredBoardImages : public BoardImages {
  public:
-  /// Folders stand for the images in them, by name. Throws Error if there are none.
+  /// A folder stands for the images in it, sorted by name. Throws Error if there are none.
   explicit StoredBoardImages(const std::vector<std::filesystem::path>& files_and_folders);
-  /// camera: the stream's name: "color", "rgbd0_color". At most `most` images, evenly spread.
+  /// camera: the stream's name, such as "color" or "rgbd0_color". At most `most` images, evenly
+  /// spread.
   StoredBoardImages(const std::filesystem::path& recording, const std::string& camera,
                     std::size_t most);
 

@@ -22,7 +22,7 @@ Image<Bgr> coverage_picture(const ViewCollection& views, const IntrinsicsCalibra
     for (int x = 0; x < cells.width(); ++x) {
       const cv::Point from(x * width / cells.width(), y * height / cells.height());
       const cv::Point to((x + 1) * width / cells.width(), (y + 1) * height / cells.height());
-      // Paler green with more views, up to eight.
+      // Paler green for more views, up to eight.
       const int n = std::min(cells(x, y), 8);
       const cv::Scalar color =
           n == 0 ? cv::Scalar(150, 150, 160) : cv::Scalar(250 - 12 * n, 250 - 2 * n, 250 - 14 * n);

@@ -5,8 +5,8 @@
 
 namespace diminish {
 
-/// A picture of the camera's image: cells that no corner fell into are dark; every corner with its
-/// residual, `magnification` times as long. Corners of views that were left out are grey.
+/// Draws the camera's image: cells without a corner dark, and every corner with its residual,
+/// `magnification` times as long. Corners of views that were left out are grey.
 Image<Bgr> coverage_picture(const ViewCollection& views, const IntrinsicsCalibration& result,
                             double magnification = 100);
 

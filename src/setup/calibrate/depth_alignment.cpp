@@ -13,9 +13,9 @@ namespace {
 constexpr std::size_t most_planes = 400;
 constexpr double most_points_a_side = 20;
 constexpr std::size_t least_points = 12;
-/// The share of a target that is looked at: at its rim depth mixes with what is behind.
+/// The share of a target that is used: at its rim, depth mixes with what is behind.
 constexpr double inner_share = 0.85;
-/// Depth further from a plane than this share of the target's distance is of something else.
+/// Depth further from a plane than this share of the target's distance belongs to something else.
 constexpr double largest_distance = 0.1;
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
@@ -23,12 +23,12 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 }  // namespace
 
-/// One target: its points' distances to its plane, linearised.
+/// One target: the distances of its points to its plane, linearised.
 struct DepthAlignment::Row {
   Eigen::Vector3d centre_m;  ///< of the points, in the colour frame
   double distance_m = 0;     ///< mean
   double spread_m = 0;       ///< mean absolute
-  /// Sums over the points, divided by their number; rotation about the colour frame's origin.
+  /// Means over the points; rotation about the colour frame's origin.
   Matrix6d normal = Matrix6d::Zero();
   Vector6d gradient = Vector6d::Zero();
 };
@@ -45,7 +45,7 @@ void DepthAlignment::add(const TargetView& in_color, const Image<std::uint16_t>&
               in_color.low,
               in_color.high,
               {}};
-  // Half as large again, as the sensors may be elsewhere than was thought.
+  // Half as large again, because the sensors may not be where the rig says.
   const RigidTransform depth_from_target = color_from_depth_.inverse() * plane.color_from_target;
   const Eigen::Vector2d middle = (plane.low + plane.high) / 2;
   Rect part;
@@ -155,7 +155,7 @@ DepthAlignment::Result DepthAlignment::solve() const {
   result.error_before_m = root_mean_square(distances(current));
   constexpr int steps = 30;
   for (int step = 0; step < steps && !current.empty(); ++step) {
-    // Targets have about the same say: a pose's error is common to all of a target's points.
+    // Each target has about the same weight: a pose's error is common to all of its points.
     std::vector<double> magnitudes;
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();
     for (const Row& row : current) {
@@ -168,8 +168,8 @@ DepthAlignment::Result DepthAlignment::solve() const {
       arm += (row.centre_m - centre).squaredNorm() / static_cast<double>(current.size());
     }
     arm = std::max(std::sqrt(arm), 0.1);
-    // Turning about the targets' centre, in metres at their distance from it: all six unknowns have
-    // the same unit then.
+    // Rotation about the targets' centre, in metres at their distance from it, so that all six
+    // unknowns have the same unit.
     Matrix6d to_origin = Matrix6d::Identity();
     Eigen::Matrix3d cross;
     cross << 0, -centre.z(), centre.y(), centre.z(), 0, -centre.x(), -centre.y(), centre.x(), 0;
@@ -188,7 +188,7 @@ DepthAlignment::Result DepthAlignment::solve() const {
       weights += weight;
     }
     const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(normal);
-    // Planes whose normals differ by less than some degrees are the same plane but for noise.
+    // Planes whose normals differ by less than a few degrees are the same plane plus noise.
     const double least = 0.004 * eigen.eigenvalues()[5];
     const double deviation = std::sqrt(squares / std::max(weights - 6, 1.0));
     Vector6d change = Vector6d::Zero();

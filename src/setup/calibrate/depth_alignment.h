@@ -11,16 +11,16 @@
 
 namespace diminish {
 
-/// Finds color_from_depth of an RGB-D camera: flat targets are planes in the colour sensor's frame,
-/// on which the depth measured at them must lie. A plane says three of the six unknowns; planes
-/// that lean in different directions say all.
+/// Finds color_from_depth of an RGB-D camera. Flat targets are planes in the colour sensor's frame,
+/// and the depth measured on them must lie on these planes. One plane determines three of the six
+/// unknowns; planes tilted in different directions determine all.
 class DepthAlignment {
  public:
   DepthAlignment(const Lens& depth_lens, double depth_unit_m,
                  const RigidTransform& color_from_depth);
 
-  /// Keeps up to 400 depth points around the target, and up to 400 targets. Targets without enough
-  /// depth are left out.
+  /// Keeps up to 400 depth points around the target, and up to 400 targets. Ignores targets without
+  /// enough depth.
   void add(const TargetView& in_color, const Image<std::uint16_t>& depth);
 
   std::size_t size() const { return planes_.size(); }
@@ -30,9 +30,9 @@ class DepthAlignment {
     double error_before_m = 0;  ///< root mean square of the planes' mean distances
     double error_m = 0;         ///< the same with the result
     int determined = 0;         ///< of six degrees of freedom
-    /// Those that the targets do not determine, in plain words; they are as they were given.
+    /// Those that the targets do not determine, in plain words. They keep their given values.
     std::vector<std::string> undetermined;
-    /// Standard deviation of the worst determined one at the targets' place.
+    /// Standard deviation of the worst determined one, at the targets' place.
     double deviation_m = 0;
   };
   /// Gauss-Newton on point-to-plane distances, robust over targets (Tukey's weights).

@@ -13,14 +13,14 @@ namespace diminish {
 namespace {
 
 constexpr std::size_t most_sightings = 400;
-/// Beyond this a corner is wrong by an unknown amount, in pixels.
+/// Pixels; beyond this a corner is simply wrong.
 constexpr double worst_error_px = 20;
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 using Matrix26 = Eigen::Matrix<double, 2, 6>;
 
-/// The corner without the lens, as an ideal camera of the same focal length has it.
+/// The undistorted corner, as an ideal camera of the same focal length sees it.
 Eigen::Vector2d ideal_pixel(const Lens& lens, const Eigen::Vector2d& pixel) {
   const Eigen::Vector2d ray = lens.undistort(pixel);
   return {lens.intrinsics().fx * ray.x(), lens.intrinsics().fy * ray.y()};
@@ -39,7 +39,8 @@ Eigen::Matrix<double, 2, 3> projection_derivative(const Lens& lens, const Eigen:
   return by_point;
 }
 
-/// Of p by a turn about the frame's origin and a shift, both after what made p.
+/// Derivatives of p by a rotation about the frame's origin and a shift, both applied after the
+/// transform that made p.
 Eigen::Matrix<double, 3, 6> motion_derivative(const Eigen::Vector3d& p) {
   Eigen::Matrix<double, 3, 6> by_motion;
   by_motion << 0, p.z(), -p.y(), 1, 0, 0,  //
@@ -61,7 +62,7 @@ void FixedPoseFit::add(const TargetView& in_first, const TargetView& in_second) 
   if (sightings_.size() == most_sightings) return;
   Sighting sighting{in_first, in_second, {}, {}};
   if (in_first.points_m != in_second.points_m) {
-    // Of a board each may have seen other corners.
+    // Each camera may have seen different corners of a board.
     sighting.first.points_m.clear();
     sighting.first.pixels.clear();
     sighting.second.points_m.clear();
@@ -85,7 +86,7 @@ void FixedPoseFit::add(const TargetView& in_first, const TargetView& in_second) 
   sightings_.push_back(std::move(sighting));
 }
 
-/// How far the target, where the second camera has it, is from where the first one does.
+/// The distance between the target as the second camera sees it and as the first one does.
 double FixedPoseFit::transfer_error_px(const Sighting& sighting,
                                        const RigidTransform& first_from_second,
                                        RigidTransform* second_from_target) const {
@@ -109,7 +110,7 @@ double FixedPoseFit::transfer_error_px(const Sighting& sighting,
   return best;
 }
 
-/// Of the transforms that single sightings suggest, the one that most others agree with.
+/// Of the transforms from single sightings, the one that most others agree with.
 RigidTransform FixedPoseFit::start() const {
   constexpr std::size_t most_candidates = 60;
   RigidTransform best;
@@ -176,7 +177,8 @@ std::optional<FixedPoseFit::Result> FixedPoseFit::solve() const {
           tukey_weight(static_cast<float>(errors[s]), static_cast<float>(4.7 * scale)));
     }
     const double cost = evaluate(first_from_second, second_from_target);
-    // Each target's pose has its own block of the normal equations; it is eliminated (Schur).
+    // Each target's pose has its own block in the normal equations, which is eliminated (Schur
+    // complement).
     information.setZero();
     Vector6d gradient = Vector6d::Zero();
     std::vector<Matrix6d> blocks(count);
@@ -254,7 +256,7 @@ std::optional<FixedPoseFit::Result> FixedPoseFit::solve() const {
   if (corners == 0) return std::nullopt;
   result.error_px = std::sqrt(squares / corners);
   result.least_error_px = std::sqrt(least_squares / corners);
-  // Two coordinates a corner; six unknowns for each target and the transform.
+  // Two coordinates per corner; six unknowns for each target and for the transform.
   const double freedom = std::max(2 * corners - 6 * static_cast<double>(result.agreeing) - 6, 1.0);
   const Matrix6d covariance = information.ldlt().solve(Matrix6d::Identity()) * (squares / freedom);
   result.deviation_deg =

@@ -10,9 +10,9 @@
 
 namespace diminish {
 
-/// Finds the transform between two cameras that do not move against each other from targets that
-/// both saw at the same time: least squares of all corners' reprojection errors in both images,
-/// robust (Tukey's weights), each target's pose being unknown, too.
+/// Finds the transform between two cameras that do not move against each other, from targets that
+/// both saw at the same time. Robust least squares (Tukey's weights) on the reprojection errors of
+/// all corners in both images, with each target's pose as a further unknown.
 class FixedPoseFit {
  public:
   FixedPoseFit(const Lens& first, const Lens& second);
@@ -24,9 +24,10 @@ class FixedPoseFit {
 
   struct Result {
     RigidTransform first_from_second;
-    /// Root mean square of the corners' errors in both images, pixels, of the sightings that agree.
+    /// Root mean square of the corners' errors in both images, pixels, over the sightings that
+    /// agree.
     double error_px = 0;
-    /// The same if every sighting had a transform of its own: what the corners themselves leave.
+    /// The same if every sighting had its own transform: what the corners' noise alone causes.
     double least_error_px = 0;
     std::size_t agreeing = 0;  ///< sightings
     /// Standard deviations.
@@ -39,7 +40,7 @@ class FixedPoseFit {
  private:
   struct Sighting {
     TargetView first, second;
-    std::vector<Eigen::Vector2d> first_px, second_px;  ///< without the lens
+    std::vector<Eigen::Vector2d> first_px, second_px;  ///< undistorted
   };
   double transfer_error_px(const Sighting& sighting, const RigidTransform& first_from_second,
                            RigidTransform* second_from_target) const;

@@ -70,7 +70,7 @@ class Calibrator {
     return fit;
   }
 
-  /// Every view's residuals under the fit; those that were not used get a pose of their own.
+  /// Every view's residuals. Views that were not used get their own pose.
   std::vector<std::vector<Eigen::Vector2d>> residuals(const Fit& fit) const {
     std::vector<std::vector<Eigen::Vector2d>> all;
     std::size_t next = 0;
@@ -101,13 +101,13 @@ class Calibrator {
     return std::sqrt(squares / static_cast<double>(residuals.size()));
   }
 
-  /// Decides anew which views to use; returns whether anything changed.
+  /// Decides again which views to use. Returns whether anything changed.
   bool leave_out_bad(const Fit& fit) {
     std::vector<double> errors;
     for (const auto& view : residuals(fit)) errors.push_back(root_mean_square(view));
     std::vector<double> sorted = errors;
     const double usual = median(sorted);
-    // Detection alone leaves some hundredths of a pixel.
+    // Detection alone has errors of some hundredths of a pixel.
     const double most = std::max(2.5 * usual, 0.15);
     std::vector<bool> used(errors.size());
     std::transform(errors.begin(), errors.end(), used.begin(),

@@ -10,7 +10,7 @@ namespace diminish {
 namespace {
 
 constexpr double longest_silence_s = 5;
-/// Images older than this have waited while the last one was looked at.
+/// Images older than this waited while the last one was processed.
 constexpr double newest_s = 0.1;
 
 }  // namespace

@@ -8,13 +8,13 @@
 
 namespace diminish {
 
-/// A live camera's newest colour images, as fast as they are looked at.
+/// The newest colour images of a live camera, as fast as the caller takes them.
 class LiveBoardImages : public BoardImages {
  public:
-  /// Ends after `seconds`, or with the camera. Throws Error that names the URI.
+  /// Ends after `seconds` or when the camera ends. Throws Error that names the URI.
   LiveBoardImages(const std::string& uri, double seconds);
 
-  /// Throws Error when the camera is gone or silent for five seconds.
+  /// Throws Error when the camera is lost or silent for five seconds.
   bool next() override;
   std::string name() const override;
   void read(Image<Bgr>& image) override;

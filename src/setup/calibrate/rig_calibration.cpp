@@ -21,7 +21,7 @@ struct Camera {
   FixedPoseFit fixed;
 };
 
-/// Chooses the pose that the measured depth agrees with, where both may be right.
+/// Where both poses may be right, chooses the one that the measured depth agrees with.
 void settle_by_depth(const Camera& camera, const Image<std::uint16_t>& depth, TargetView& view) {
   if (!view.doubtful || view.id == TargetView::board_id) return;
   const RigidTransform depth_from_color = camera.rgbd.color_from_depth.inverse();
@@ -33,7 +33,7 @@ void settle_by_depth(const Camera& camera, const Image<std::uint16_t>& depth, Ta
   const auto other = error(view.alternative);
   if (!best || !other) return;
   if (*other < *best) std::swap(view.camera_from_target, view.alternative);
-  // Where they are nearly equal the other cameras may know better.
+  // Where they are nearly equal, the other cameras may decide better.
   view.doubtful = std::min(*best, *other) > 0.5 * std::max(*best, *other);
 }
 

@@ -18,7 +18,7 @@ std::pair<std::string, std::string> split_name(const std::string& camera) {
   return {camera.substr(0, bar), camera.substr(bar + 1)};
 }
 
-/// As short as it says the same to nine digits.
+/// The shortest text with the same nine digits.
 std::string number(double value) {
   return fmt::format("{:.9g}", value);
 }
@@ -84,7 +84,7 @@ void RigFile::set_color_from_depth(const std::string& rgbd,
 
 void RigFile::set_fixed_poses(
     const std::vector<std::pair<std::string, RigidTransform>>& color_from_rgbd) {
-  // Other sources' settings would be errors now.
+  // Settings of other sources would be errors now.
   if (yaml_has(text_, {key("pose")}, file_)) {
     std::string all;
     for (const auto& [name, transform] : color_from_rgbd) {

@@ -13,17 +13,17 @@
 
 namespace diminish {
 
-/// A marker or a board as a camera sees it. Its own frame is in the plane z = 0.
+/// A marker or a board as a camera sees it. Its own frame has the target in the plane z = 0.
 struct TargetView {
   static constexpr int board_id = -1;
 
   int id = 0;  ///< the marker's, or `board_id`
-  /// Corners in the target's frame, and where they are in the (distorted) image.
+  /// Corners in the target's frame, and their places in the (distorted) image.
   std::vector<Eigen::Vector3d> points_m;
   std::vector<Eigen::Vector2d> pixels;
-  /// The pose that explains the corners best, and the other one that a plane seen from afar has.
+  /// The pose that explains the corners best, and the second one that a plane seen from afar has.
   RigidTransform camera_from_target, alternative;
-  bool doubtful = false;  ///< whether the alternative may be right, too
+  bool doubtful = false;  ///< whether the alternative may be right
   double error_px = 0;    ///< root mean square over the corners
   /// The surface that is known to be flat.
   Eigen::Vector2d low = Eigen::Vector2d::Zero(), high = Eigen::Vector2d::Zero();

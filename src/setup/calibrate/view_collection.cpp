@@ -12,10 +12,10 @@ namespace {
 constexpr int cell_columns = 10;
 constexpr int cell_rows = 8;
 constexpr std::size_t most_views = 120;
-/// Views are the same if their corners are closer than this share of the image's width.
+/// Views count as the same if their corners are closer than this share of the image's width.
 constexpr double same_view = 0.02;
 
-/// Mean distance of the corners that both have; infinite if these are less than half.
+/// The mean distance of the corners that both views have; infinite if these are less than half.
 double distance_px(const BoardView& a, const BoardView& b) {
   double sum = 0;
   std::size_t count = 0;
@@ -29,8 +29,8 @@ double distance_px(const BoardView& a, const BoardView& b) {
   return enough ? sum / static_cast<double>(count) : std::numeric_limits<double>::infinity();
 }
 
-/// 0: the board faces the camera; 1 to 4: it leans left, right, back, forward. By a camera of a
-/// usual focal length: its own is not known yet.
+/// 0: the board faces the camera; 1 to 4: it is tilted left, right, back, forward. Assumes a usual
+/// focal length, as the camera's is not known yet.
 std::size_t tilt_of(const BoardView& view, int width, int height) {
   std::vector<cv::Point2d> pixels;
   std::vector<cv::Point3d> points;
@@ -48,7 +48,7 @@ std::size_t tilt_of(const BoardView& view, int width, int height) {
   }
   cv::Matx33d matrix;
   cv::Rodrigues(rotation, matrix);
-  // Against the image plane: a board parallel to it tells nothing of the focal length.
+  // Relative to the image plane: a board parallel to it says nothing about the focal length.
   cv::Vec3d normal(matrix(0, 2), matrix(1, 2), matrix(2, 2));
   if (normal[2] < 0) normal = -normal;
   const double x = normal[0] / normal[2];

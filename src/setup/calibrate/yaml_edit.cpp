@@ -39,7 +39,7 @@ std::string spaces(std::size_t count) {
   return text;
 }
 
-/// What is to be made, as lines of a block that begins at this column.
+/// The text to insert, as lines of a block that begins at this column.
 void append_block(Rest step, Rest end, const std::string& value, std::size_t column,
                   std::vector<std::string>& lines) {
   if (step->kind == YamlStep::Kind::named_item) {
@@ -52,7 +52,7 @@ void append_block(Rest step, Rest end, const std::string& value, std::size_t col
   if (!last) append_block(std::next(step), end, value, column + 2, lines);
 }
 
-/// The same inside of brackets.
+/// The same, inside brackets.
 std::string inline_text(Rest step, Rest end, const std::string& value) {
   const bool last = std::next(step) == end;
   if (step->kind == YamlStep::Kind::named_item) {
@@ -110,7 +110,7 @@ class Editor {
 
   static bool is_flow(const YAML::Node& node) { return node.Style() == YAML::EmitterStyle::Flow; }
 
-  /// Adds what is missing from `step` on to a list or map.
+  /// Adds the missing steps from `step` on to a list or map.
   void insert(const YAML::Node& node, Rest step) {
     const YAML::Mark mark = node.Mark();
     if (node.IsMap() || node.IsSequence()) {
@@ -148,7 +148,7 @@ class Editor {
         erase_lines(line + 1, last_line + 1);
         return;
       }
-      // The key's line stays, with its comment.
+      // Keeps the key's line with its comment.
       const auto key_line = static_cast<std::size_t>(name.Mark().line);
       const std::size_t end = block_end(mark, node.IsSequence());
       std::string& text = lines_[key_line];
@@ -165,7 +165,7 @@ class Editor {
                  lines_.begin() + static_cast<std::ptrdiff_t>(end));
   }
 
-  /// Where the bracket that opens at `mark` closes.
+  /// Where the bracket opened at `mark` closes.
   std::pair<std::size_t, std::size_t> closing_bracket(const YAML::Mark& mark) const {
     int depth = 0;
     char quote = 0;
@@ -289,7 +289,7 @@ std::string set_yaml(const std::string& yaml, const Place& place, const std::str
                     "hand: {}",
                     file.string(), names, value));
   };
-  // The result is read again: whatever the layout, nothing else may have changed.
+  // Parses the result again: nothing else may have changed, whatever the layout.
   std::string edited;
   try {
     edited = Editor(yaml, place, value).edit(blank ? YAML::Node() : load(yaml, file));

@@ -6,7 +6,7 @@
 
 namespace diminish {
 
-/// A step into a YAML document: the value of a key, or the item of a list that has this `name`.
+/// A step into a YAML document: the value of a key, or the list item with this `name`.
 struct YamlStep {
   enum class Kind { key, named_item };
 
@@ -21,14 +21,14 @@ inline YamlStep named_item(std::string text) {
   return {YamlStep::Kind::named_item, std::move(text)};
 }
 
-/// Whether there is something at this place.
+/// Whether this place exists.
 bool yaml_has(const std::string& yaml, const std::vector<YamlStep>& place,
               const std::filesystem::path& file);
 
-/// The document with `value` (one line: a word, a number, {...} or [...]) at this place, which is
-/// made if it is not there. Everything else stays as it is, comments included. Throws Error that
-/// names the file and says what to write by hand if that is not possible: where anchors stand for
-/// other places, too. `file` is for messages.
+/// Returns the document with `value` (one line: a word, a number, {...} or [...]) at this place,
+/// which is created if missing. Everything else stays as it is, including comments. Throws Error
+/// that names the file and says what to write by hand if that is impossible, for example where an
+/// anchor also stands for other places. `file` is for messages.
 std::string set_yaml(const std::string& yaml, const std::vector<YamlStep>& place,
                      const std::string& value, const std::filesystem::path& file);
 

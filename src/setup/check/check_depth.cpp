@@ -19,12 +19,12 @@ namespace {
 
 using Severity = Finding::Severity;
 
-// What is taken for right. Sensors, prints and calibrations are never exact.
-constexpr double depth_tolerance = 0.04;  ///< of measured by computed depth
+// What counts as right: sensors, prints and calibrations are never exact.
+constexpr double depth_tolerance = 0.04;  ///< of measured / computed depth
 constexpr double largest_spread = 0.02;   ///< of depth over one marker
-constexpr double unit_factor = 1.6;       ///< beyond this it is the depth's unit, not a print
+constexpr double unit_factor = 1.6;       ///< beyond this the depth unit is wrong, not the print
 
-/// Measured by computed depth of a camera's markers, by id; depth_of gives the depth image.
+/// Measured / computed depth of a camera's markers, by id; depth_of gives the depth image.
 template <class DepthOf>
 std::map<int, DepthRatio> depth_ratios(const Diagnosis& setup, const Rig& rig, std::size_t camera,
                                        DepthOf&& depth_of) {
@@ -65,7 +65,7 @@ bool all_right(const std::map<int, DepthRatio>& ratios) {
                                         [](const auto& entry) { return is_right(entry.second); });
 }
 
-/// Depth that does not lie on the markers: another camera's, or mirrored.
+/// Finds depth that does not lie on the markers: another camera's, or mirrored.
 bool check_foreign_depth(Diagnosis& setup, std::size_t k) {
   const std::string& name = setup.rig.rgbd[k].name;
   for (std::size_t other = 0; other < setup.rig.rgbd.size(); ++other) {
@@ -120,8 +120,8 @@ void blame_unit(Diagnosis& setup, std::size_t k, double ratio) {
   setup.explained = true;
 }
 
-/// The factor of the focal length of an RGB-D camera's colour sensor with which the depth of all
-/// its markers is right, if there is one.
+/// The factor on the focal length of an RGB-D camera's colour sensor that makes the depth of all
+/// its markers right, if there is one.
 std::optional<double> explaining_focal_length(const Diagnosis& setup, std::size_t camera) {
   std::optional<double> best;
   double best_error = std::numeric_limits<double>::infinity();
@@ -139,8 +139,8 @@ std::optional<double> explaining_focal_length(const Diagnosis& setup, std::size_
   return best;
 }
 
-/// All markers in all cameras are nearer or farther than they should be: by the print, the
-/// depth's unit or the focal length.
+/// All markers in all cameras are too near or too far: the print, the depth unit or the focal
+/// length is wrong.
 void check_common_ratio(Diagnosis& setup, const std::vector<std::map<int, DepthRatio>>& ratios,
                         const std::map<int, std::vector<double>>& by_marker) {
   std::vector<double> all;
@@ -174,7 +174,7 @@ void check_common_ratio(Diagnosis& setup, const std::vector<std::map<int, DepthR
   for (const auto& [id, values] : by_marker) blame_marker(setup, id, median_of(values));
 }
 
-/// Wrong in one camera, while other cameras say that the markers are right.
+/// One camera is wrong: other cameras say that the markers are right.
 void check_one_cameras_depth(Diagnosis& setup, std::size_t k,
                              const std::map<int, DepthRatio>& ratios,
                              const std::set<int>& wrong_markers) {

@@ -11,7 +11,7 @@
 namespace diminish {
 namespace {
 
-constexpr double least_agreement = 0.4;  ///< below that the pictures do not agree at all
+constexpr double least_agreement = 0.4;  ///< below this the pictures do not agree at all
 constexpr double focal_tolerance = 0.04;
 
 }  // namespace

@@ -7,16 +7,16 @@
 
 namespace diminish {
 
-/// What the pictures' correlation gains at least, to blame a focal length.
+/// The least gain in the pictures' correlation for blaming a focal length.
 inline constexpr double least_improvement = 0.04;
 
 /// The rig with a colour sensor's focal length times a factor. sensor: as in `color_sensor`.
 Rig with_focal_length(Rig rig, std::size_t sensor, double factor);
 
-/// How well the pictures agree in the kept frames if this were the set-up; correlation.
+/// How well the pictures in the kept frames agree with this set-up (correlation).
 std::optional<double> agreement(const Diagnosis& setup, const Rig& rig, const Scene& scene);
 
-/// figure: by what that is known.
+/// figure: the evidence.
 void blame_focal_length(Diagnosis& setup, std::size_t sensor, double factor,
                         const std::string& figure);
 

@@ -48,7 +48,7 @@ bool check_mirrored(Diagnosis& setup, std::size_t sensor) {
   return true;
 }
 
-/// Looks for other dictionaries' markers where none of the configured one was found.
+/// Looks for markers of other dictionaries where none of the configured one was found.
 bool check_dictionary(Diagnosis& setup) {
   std::string best;
   std::size_t best_score = 0;
@@ -65,7 +65,7 @@ bool check_dictionary(Diagnosis& setup) {
         for (const Marker& marker : markers) ++seen[marker.id];
       }
     }
-    // What is there is seen again; the ids that are expected count double.
+    // Real markers show up repeatedly; expected ids count double.
     std::size_t score = 0;
     std::string list;
     for (const auto& [id, count] : seen) {
@@ -87,7 +87,7 @@ bool check_dictionary(Diagnosis& setup) {
   return true;
 }
 
-/// Markers that are too small for the detector, but not for OpenCV's, which takes its time.
+/// Finds markers that are too small for our detector but not for OpenCV's, which is slow.
 bool check_too_small(Diagnosis& setup, const SensorSurvey& sensor, std::size_t index, int id) {
   std::vector<double> sides;
   for (const SetupSurvey::Kept& kept : setup.survey.kept) {

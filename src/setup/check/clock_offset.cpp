@@ -13,11 +13,11 @@ constexpr std::size_t least_points = 6;
 
 struct Fit {
   double mean_square = std::numeric_limits<double>::infinity();  ///< of the distances, m^2
-  double information = 0;  ///< sum of squared speeds, less their mean
+  double information = 0;  ///< sum of squared speeds, minus their mean
   std::size_t count = 0;
 };
 
-/// Where the way is at a moment; nothing outside of it, or in a gap.
+/// The point of the path at a moment; nothing outside it or in a gap.
 std::optional<Eigen::Vector3d> interpolate(const std::vector<TimedPoint>& way, double stamp_s,
                                            double largest_gap_s, Eigen::Vector3d& velocity) {
   const auto after = std::upper_bound(way.begin(), way.end(), stamp_s,
@@ -26,7 +26,7 @@ std::optional<Eigen::Vector3d> interpolate(const std::vector<TimedPoint>& way, d
   const auto before = after - 1;
   const double gap = after->stamp_s - before->stamp_s;
   if (!(gap > 0) || gap > largest_gap_s) return std::nullopt;
-  // The speed over a longer while: from one image to the next it would mostly be noise.
+  // The speed over a longer time: from one image to the next it would be mostly noise.
   constexpr std::ptrdiff_t reach = 5;
   const auto earlier = before - std::min(reach, before - way.begin());
   const auto later = after + std::min(reach, way.end() - 1 - after);
@@ -51,7 +51,7 @@ Fit fit(const std::vector<TimedPoint>& first, const std::vector<TimedPoint>& sec
   }
   Fit result;
   result.count = differences.size();
-  // Most of the way has to be in common.
+  // The paths must overlap for most of their length.
   if (result.count < least_points || 2 * result.count < second.size()) return result;
   const auto n = static_cast<double>(result.count);
   mean /= n;
@@ -89,7 +89,7 @@ std::optional<ClockOffset> estimate_clock_offset(const std::vector<TimedPoint>& 
     }
   }
   if (!std::isfinite(best.mean_square) || !(best.information > 0)) return std::nullopt;
-  // The parabola through the best and its neighbours.
+  // The parabola through the best value and its neighbours.
   const double left = at(best_offset - step_s).mean_square;
   const double right = at(best_offset + step_s).mean_square;
   const double curvature = left + right - 2 * best.mean_square;

@@ -10,9 +10,9 @@
 
 namespace diminish {
 
-/// How the depth measured on a marker is to the depth that its size and its picture say.
+/// The ratio of the depth measured on a marker to the depth computed from its size and its picture.
 struct DepthRatio {
-  double ratio = 1;   ///< measured by computed: median over the marker
+  double ratio = 1;   ///< measured / computed: median over the marker
   double spread = 0;  ///< median absolute difference from that, relative
 };
 

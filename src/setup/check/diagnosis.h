@@ -11,16 +11,16 @@
 
 namespace diminish {
 
-/// What was seen of a set-up, and what was found wrong with it so far.
+/// What was seen of a set-up, and what has been found wrong with it.
 struct Diagnosis {
   Diagnosis(const Rig& rig, const Scene& scene, SetupSurvey survey);
 
-  Rig rig;      ///< with what was found corrected
+  Rig rig;      ///< with the findings corrected
   Scene scene;  ///< the same
   SetupSurvey survey;
-  std::map<int, double> sizes;  ///< of the scene's markers, metres, by id; corrected, too
-  std::vector<bool> usable;     ///< RGB-D cameras whose figures mean something
-  bool explained = false;       ///< a cause was found that moves cameras and markers
+  std::map<int, double> sizes;  ///< the scene's markers by id, metres; also corrected
+  std::vector<bool> usable;     ///< RGB-D cameras with meaningful figures
+  bool explained = false;       ///< a cause was found that shifts cameras and markers
   SetupReport report;
 
   void find(Finding::Severity severity, std::string code, std::string what, std::string figure,

@@ -7,7 +7,7 @@
 
 namespace diminish {
 
-/// Left to right.
+/// Mirrors left to right.
 template <class Pixel>
 Image<Pixel> flipped(const Image<Pixel>& image) {
   Image<Pixel> result(image.width(), image.height());

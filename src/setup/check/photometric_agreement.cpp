@@ -14,11 +14,11 @@ namespace {
 constexpr int wanted_width = 320;
 constexpr int block = 16;
 constexpr double least_seen = 0.6;
-/// Standard deviation, levels: below that a block is noise.
+/// Standard deviation in levels; below it a block is noise.
 constexpr double least_texture = 4;
 constexpr std::size_t least_blocks = 8;
 
-/// The camera of the picture shrunk by a whole number.
+/// The camera of the picture, shrunk by an integer factor.
 Intrinsics shrunk(const Intrinsics& camera) {
   const int by = std::max(1, camera.width / wanted_width);
   Intrinsics small = camera;
@@ -38,7 +38,7 @@ cv::Mat grey_of(const Image<Bgr>& image) {
   return grey;
 }
 
-/// The correlation of the pixels that are known (not negative) in `seen`.
+/// The correlation of the known (not negative) pixels in `seen`.
 std::optional<double> correlate(const cv::Mat& a, const cv::Mat& seen) {
   double n = 0;
   double sum_a = 0;
@@ -86,7 +86,7 @@ std::optional<double> PhotometricAgreement::of(const FrameSet& frame, const Pose
   const RgbdCamera& parameters = rig_.rgbd[index];
   const RigidTransform& user_from_depth = *poses.color_from_depth[index];
   cv::Mat own = grey_of(rgbd.color);
-  // As sharp as the small picture will be.
+  // Blurred to the sharpness of the small picture.
   cv::blur(own, own, {3, 3});
   cv::Mat drawn(small_.height, small_.width, CV_32F, cv::Scalar(-1));
   cv::Mat nearest(small_.height, small_.width, CV_32F,
@@ -102,7 +102,7 @@ std::optional<double> PhotometricAgreement::of(const FrameSet& frame, const Pose
       const int u = static_cast<int>(std::lround(to->x()));
       const int v = static_cast<int>(std::lround(to->y()));
       if (!small_.bounds().contains(u, v)) continue;
-      // What lies behind something nearer is hidden.
+      // Something nearer hides what is behind it.
       float& front = nearest.at<float>(v, u);
       if (static_cast<float>(in_user.z()) > front) continue;
       const auto from = camera.color_lens.project(parameters.color_from_depth * p);

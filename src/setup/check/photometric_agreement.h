@@ -10,15 +10,16 @@
 
 namespace diminish {
 
-/// How well the colour camera's picture and the RGB-D cameras' agree: every depth pixel is drawn
-/// into a small picture of the colour camera in the brightness that its own colour sensor saw
-/// there; blocks of both pictures are correlated, which neither exposure nor white balance changes.
+/// How well the colour camera's picture and the RGB-D cameras' agree. Every depth pixel is drawn
+/// into a small version of the colour camera's picture, with the brightness that its own colour
+/// sensor saw. Then blocks of both pictures are correlated, which neither exposure nor white
+/// balance changes.
 class PhotometricAgreement {
  public:
   explicit PhotometricAgreement(const Rig& rig);
 
-  /// The median correlation over blocks with texture, from -1 to 1; nothing if there are too few of
-  /// them. Cost: 50 ns a depth pixel.
+  /// The median correlation over blocks with texture, from -1 to 1; nothing if there are too few.
+  /// Cost: 50 ns per depth pixel.
   std::optional<double> of(const FrameSet& frame, const Poses& poses, std::size_t camera);
 
  private:

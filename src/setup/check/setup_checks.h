@@ -4,18 +4,18 @@
 
 namespace diminish {
 
-// What `check_setup` looks at. Each adds what it finds to the diagnosis, and corrects there what it
-// blames, so that what follows from it is not complained of again.
+// The checks of `check_setup`. Each adds its findings to the diagnosis and corrects what it blames
+// there, so that the consequences are not reported again.
 
 void check_streams(Diagnosis& setup);
 void check_exposure(Diagnosis& setup);
 void check_markers(Diagnosis& setup);
-/// Of markers, by which sizes, depth units and focal lengths show.
+/// Depth on markers, which shows wrong sizes, depth units and focal lengths.
 void check_depth(Diagnosis& setup);
 /// Whether the cameras agree on where markers are.
 void check_between_cameras(Diagnosis& setup);
-/// Of the colour camera: no depth of its own says how far its markers are, but the pictures agree
-/// only with the right one.
+/// The colour camera's focal length. It has no depth to say how far its markers are, but the
+/// pictures agree only with the right focal length.
 void check_focal_length(Diagnosis& setup);
 void check_clocks(Diagnosis& setup);
 

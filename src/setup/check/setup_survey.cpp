@@ -24,7 +24,7 @@ double mean_side_px(const Marker& marker) {
   return sum / 4;
 }
 
-/// Brightness and overexposure of every eighth pixel.
+/// Measures brightness and overexposure from every eighth pixel.
 void survey_exposure(const Image<Bgr>& image, SensorSurvey& sensor) {
   constexpr int step = 8;
   double sum = 0;
@@ -83,8 +83,8 @@ class Surveyor {
   }
 
  private:
-  /// Every so many frames; where these become too many, every second one of them. So they are
-  /// evenly spread however many there will be.
+  /// Keeps every n-th frame. When there are too many, drops every second one. So they stay evenly
+  /// spread, however many come.
   void keep(const FrameSet& frame, Markers&& markers) {
     if (survey_.frames % stride_ != 0) return;
     std::vector<SetupSurvey::Kept>& kept = survey_.kept;
@@ -134,12 +134,13 @@ class Surveyor {
     }
   }
 
-  /// Markers that both cameras see: their ways, and how well the cameras agree on their place.
+  /// Records the paths of markers that both cameras see, and how well the cameras agree on their
+  /// places.
   void follow(const FrameSet& frame, const Markers& markers, const Poses& poses, std::size_t k) {
     if (!poses.color_from_depth[k] || !frame.rgbd[k].available()) return;
     const RigidTransform color_from_rgbd =
         *poses.color_from_depth[k] * rig_.rgbd[k].color_from_depth.inverse();
-    // Where the poses come from the world marker, its place agrees whatever is wrong.
+    // If the poses come from the world marker, its place always agrees.
     const bool by_world = rig_.pose_source == "marker";
     const int skip = by_world ? world_id_ : -1;
     const auto errors = errors_between(markers.color, markers.rgbd[k], sizes_, color_lens_,

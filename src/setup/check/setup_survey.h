@@ -18,13 +18,13 @@ namespace diminish {
 struct SensorSurvey {
   struct MarkerStatistics {
     std::size_t count = 0;
-    std::vector<double> sides_px;   ///< mean side, a value a frame
+    std::vector<double> sides_px;   ///< mean side, one value per frame
     std::vector<double> errors_px;  ///< reprojection error of its pose
   };
 
   std::string name;  ///< "color", "rgbd0 color"
   std::size_t images = 0;
-  std::vector<double> brightness;           ///< mean, levels, a value a frame
+  std::vector<double> brightness;           ///< mean, levels, one value per frame
   std::vector<double> overexposed;          ///< share of pixels
   std::map<int, MarkerStatistics> markers;  ///< those of known size
 };
@@ -45,16 +45,17 @@ struct SetupSurvey {
   std::vector<std::string> faults;         ///< the first of them
   std::size_t fault_count = 0;
   std::vector<Kept> kept;
-  /// Ways of markers on objects, in the world or else in the colour camera's frame: as the colour
-  /// camera saw them, and each RGB-D camera, each by its own clock.
+  /// Paths of markers on objects, in the world frame or else in the colour camera's, as the colour
+  /// camera and each RGB-D camera saw them, each timed by its own clock.
   std::vector<std::map<int, std::vector<TimedPoint>>> color_ways, rgbd_ways;
-  /// Reprojection error between cameras: a marker where the RGB-D camera has it, in the colour
-  /// camera's picture, pixels. A value a marker and frame.
+  /// Reprojection error between cameras: a marker as the RGB-D camera sees it, projected into the
+  /// colour camera's picture, pixels. One value per marker and frame.
   std::vector<std::vector<double>> between_px;
 };
 
-/// The reprojection error between two cameras: each marker that both see, where the RGB-D camera's
-/// colour sensor has it, in the colour camera's picture; pixels. skip: a marker's id, or -1.
+/// The reprojection error between two cameras: each marker that both see, as the RGB-D camera's
+/// colour sensor sees it, projected into the colour camera's picture; pixels. skip: a marker's id,
+/// or -1.
 std::vector<double> errors_between(const std::vector<Marker>& in_color,
                                    const std::vector<Marker>& in_rgbd,
                                    const std::map<int, double>& sizes_m, const Lens& color_lens,

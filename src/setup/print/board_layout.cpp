@@ -30,7 +30,7 @@ void add_marker(const cv::aruco::Dictionary& dictionary, int id, double x, doubl
                 std::vector<Page::Rectangle>& black) {
   const int cells = dictionary.markerSize + 2;
   cv::Mat picture;
-  // cv::aruco draws at the size that is asked for, one pixel a cell.
+  // cv::aruco draws at any size; this is one pixel per cell.
   cv::Ptr<cv::aruco::Dictionary> copy(new cv::aruco::Dictionary(dictionary));
   cv::aruco::drawMarker(copy, id, cells, picture, 1);
   const double cell = size / cells;
@@ -52,7 +52,7 @@ std::vector<Page::Rectangle> board_drawing(const Board& board) {
   cv::Mat white(squares, CV_8U, cv::Scalar(0));
   std::vector<Page::Rectangle> black;
   if (board.kind == Board::Kind::charuco) {
-    // Which squares hold markers has changed between OpenCV's versions; this is what it looks for.
+    // OpenCV versions differ in which squares hold markers. This is what our version detects.
     const auto charuco = make_charuco_board(board);
     const double marker = 1000 * board.marker_m;
     for (std::size_t i = 0; i < charuco->ids.size(); ++i) {

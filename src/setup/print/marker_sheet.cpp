@@ -16,7 +16,7 @@ namespace diminish {
 namespace {
 
 // Millimetres.
-constexpr double page_margin = 10;  ///< printers leave it white
+constexpr double page_margin = 10;  ///< printers cannot print there
 constexpr double font_height = 3.2;
 constexpr double caption_height = 5;
 constexpr double ruler_length = 100;
@@ -66,7 +66,7 @@ void write_pages(const std::vector<Page>& pages, const std::filesystem::path& fi
   write_file(file, {reinterpret_cast<const char*>(png.data()), png.size()});
 }
 
-/// Markers in rows and columns.
+/// Lays out markers in rows and columns.
 struct Grid {
   int columns, rows;
 

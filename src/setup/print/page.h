@@ -6,7 +6,8 @@
 
 namespace diminish {
 
-/// A printed page: black rectangles and lines of text on white. Millimetres from its top left.
+/// A printed page: black rectangles and lines of text on white, in millimetres from its top left
+/// corner.
 struct Page {
   struct Rectangle {
     double x = 0, y = 0, width = 0, height = 0;
@@ -18,7 +19,7 @@ struct Page {
   };
 
   double width_mm = 0, height_mm = 0;
-  /// The side of what should be a whole number of pixels in a picture: a marker's cell.
+  /// The side of a marker's cell, which should be a whole number of pixels in a picture.
   double cell_mm = 1;
   std::vector<Rectangle> black;
   std::vector<Text> texts;
@@ -29,8 +30,8 @@ std::string page_as_svg(const Page& page);
 /// All pages in one file, text in Helvetica.
 std::string pages_as_pdf(const std::vector<Page>& pages);
 
-/// Black and white, with some 600 dots an inch, as many as give a cell a whole number of pixels;
-/// the chunk pHYs says how many.
+/// Black and white, at about 600 dots per inch, so that a cell is a whole number of pixels. The
+/// chunk pHYs gives the resolution.
 std::vector<std::uint8_t> page_as_png(const Page& page);
 
 }  // namespace diminish

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double points_per_mm = 72 / 25.4;
 
-/// A parenthesis or backslash would end the string.
+/// Escapes parentheses and backslashes, which would end the string.
 std::string escape(const std::string& text) {
   std::string escaped;
   for (const char c : text) {
@@ -19,12 +19,12 @@ std::string escape(const std::string& text) {
   return escaped;
 }
 
-/// The page's drawing, in millimetres from its top left.
+/// The page's content, in millimetres from its top left corner.
 std::string content(const Page& page) {
   std::string text = fmt::format("{:.8f} 0 0 {:.8f} 0 {:.4f} cm\n", points_per_mm, -points_per_mm,
                                  page.height_mm * points_per_mm);
   const auto out = std::back_inserter(text);
-  // One path: between paths that touch, viewers leave hairlines.
+  // One path, because viewers show hairlines between paths that touch.
   for (const Page::Rectangle& r : page.black) {
     fmt::format_to(out, "{:.4f} {:.4f} {:.4f} {:.4f} re\n", r.x, r.y, r.width, r.height);
   }

@@ -12,13 +12,13 @@ namespace {
 
 constexpr double wanted_pixels_per_mm = 600 / 25.4;
 
-/// Dots a metre that give a cell a whole number of pixels.
+/// Dots per metre that make a cell a whole number of pixels.
 std::uint32_t pixels_per_metre(double cell_mm) {
   const double cell_px = std::max(1.0, std::round(wanted_pixels_per_mm * cell_mm));
   return static_cast<std::uint32_t>(std::lround(1000 * cell_px / cell_mm));
 }
 
-/// Of PNG's chunks (ISO/IEC 15948, annex D).
+/// The checksum of PNG chunks (ISO/IEC 15948, annex D).
 std::uint32_t crc32(const std::vector<std::uint8_t>& bytes, std::size_t from) {
   std::uint32_t crc = 0xFFFFFFFFU;
   for (std::size_t i = from; i < bytes.size(); ++i) {
@@ -34,7 +34,7 @@ void append_big_endian(std::vector<std::uint8_t>& bytes, std::uint32_t value) {
   }
 }
 
-/// The chunk that says how large a pixel is, which OpenCV does not write.
+/// The chunk with the size of a pixel, which OpenCV does not write.
 std::vector<std::uint8_t> physical_size_chunk(std::uint32_t dots_per_metre) {
   std::vector<std::uint8_t> chunk;
   append_big_endian(chunk, 9);
@@ -49,7 +49,7 @@ std::vector<std::uint8_t> physical_size_chunk(std::uint32_t dots_per_metre) {
 void draw_text(cv::Mat& picture, const Page::Text& text, double pixels_per_mm) {
   const int font = cv::FONT_HERSHEY_SIMPLEX;
   const int thickness = std::max(1, static_cast<int>(std::lround(0.25 * pixels_per_mm)));
-  // A font's height is from one line to the next; its capitals are 0.7 of that.
+  // A font's height is the distance between lines; capitals are 0.7 of that.
   const int capital_px = static_cast<int>(std::lround(0.7 * text.height * pixels_per_mm));
   cv::putText(picture, text.text,
               {static_cast<int>(std::lround(text.x * pixels_per_mm)),

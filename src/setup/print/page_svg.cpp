@@ -13,7 +13,7 @@ std::string page_as_svg(const Page& page) {
       "<rect width=\"{0}\" height=\"{1}\" fill=\"white\"/>\n",
       page.width_mm, page.height_mm);
   const auto out = std::back_inserter(svg);
-  // One path: between paths that touch, viewers leave hairlines.
+  // One path, because viewers show hairlines between paths that touch.
   fmt::format_to(out, "<path shape-rendering=\"crispEdges\" d=\"\n");
   for (const Page::Rectangle& r : page.black) {
     fmt::format_to(out, "M{:.4f} {:.4f}h{:.4f}v{:.4f}h{:.4f}z\n", r.x, r.y, r.width, r.height,
