@@ -17,8 +17,8 @@
 #define DIMINISH_COMPOSITE_COLOR_SMOOTHING_ROWS
 namespace diminish {
 
-/// Rows around the one that is smoothed. Pointers are to its first pixel, and to those below and
-/// above it; there are `ColorSmoothing::reach` pixels to the left and a vector to the right.
+/// The rows around the one being smoothed. Pointers are to its first pixel and to those above and
+/// below it; there are `ColorSmoothing::reach` pixels to the left and a vector to the right.
 struct SmoothedRow {
   static constexpr int rows = 2 * ColorSmoothing::reach + 1;
   const std::int16_t* values[3][rows];
@@ -26,7 +26,7 @@ struct SmoothedRow {
   const std::uint8_t* seen[rows];
 };
 
-/// Beyond a row's last pixel.
+/// Padding beyond a row's last pixel.
 constexpr int padding = 64;
 
 }  // namespace diminish
@@ -45,7 +45,8 @@ using Words = hn::CappedTag<std::int16_t, padding / 2>;
 using Bytes = hn::Rebind<std::uint8_t, Words>;
 using Floats = hn::CappedTag<float, padding / 4>;
 
-/// Pixels whose neighbours are compared together, in bytes; their colours are summed in words.
+/// Pixels whose neighbours are compared at the same time, in bytes; their colours are summed in
+/// words.
 constexpr int block = padding / 2;
 using AllBytes = hn::CappedTag<std::uint8_t, block>;
 
@@ -59,14 +60,14 @@ struct Division {
     const hn::RebindToSigned<Floats> ints;
     const hn::Rebind<std::int16_t, Floats> some;
     const auto one = hn::Set(floats, static_cast<float>(ColorSmoothing::one));
-    // Widening and narrowing half a vector is not known to all instruction sets.
+    // Not all instruction sets can widen and narrow half a vector.
     alignas(64) std::int16_t lanes[padding / 2];
     alignas(64) std::uint16_t inverses[padding / 2];
     hn::Store(weights, Words(), lanes);
     for (std::size_t i = 0; i < hn::Lanes(Words()); i += hn::Lanes(floats)) {
       const auto weight = hn::PromoteTo(ints, hn::LoadU(some, lanes + i));
       const auto dividend = hn::Add(one, hn::ConvertTo(floats, hn::ShiftRight<1>(weight)));
-      // Exact when rounded down: there are less than 2^24 numbers.
+      // Exact when rounded down, because the numbers are below 2^24.
       const auto quotient = hn::ConvertTo(ints, hn::Div(dividend, hn::ConvertTo(floats, weight)));
       const hn::Rebind<std::uint16_t, Floats> to;
       hn::StoreU(hn::DemoteTo(to, quotient), to, inverses + i);
@@ -91,8 +92,8 @@ HWY_INLINE bool AnySeen(const SmoothedRow& row, int x) {
   return !hn::AllTrue(d, hn::Eq(any, hn::Zero(d)));
 }
 
-/// How alike the first neighbour of each pixel of the block that begins in column x is, then the
-/// second..; 0 for those that were not seen.
+/// How alike the first neighbour is for each pixel of the block that begins in column x, then the
+/// second, and so on; 0 for neighbours that were not seen.
 HWY_INLINE void Compare(const SmoothedRow& row, int x, std::uint8_t* likeness) {
   constexpr int reach = ColorSmoothing::reach;
   const AllBytes d;
@@ -147,7 +148,7 @@ void SmoothRow(const SmoothedRow& row, int width, std::uint8_t* picture) {
         }
       }
     }
-    // Pixels that were not seen may have none.
+    // Pixels that were not seen may have no neighbours.
     const Division mean(hn::Max(weights, hn::Set(words, 1)));
     hn::Vec<Bytes> result[3];
     for (int c = 0; c < 3; ++c) {
@@ -164,8 +165,8 @@ void SmoothRow(const SmoothedRow& row, int width, std::uint8_t* picture) {
   }
 }
 
-/// The mean of two neighbours and the pixel itself, rounded upwards twice. In place of a neighbour
-/// that was not seen: the pixel itself.
+/// The mean of two neighbours and the pixel itself, rounded up twice. A neighbour that was not seen
+/// is replaced by the pixel itself.
 HWY_INLINE hn::Vec<AllBytes> MeanOfThree(const std::uint8_t* first, const std::uint8_t* first_seen,
                                          const std::uint8_t* second,
                                          const std::uint8_t* second_seen, const std::uint8_t* own) {
@@ -187,7 +188,7 @@ void AverageAlongRow(const std::uint8_t* values, const std::uint8_t* seen, int w
   }
 }
 
-/// Rows: above, the one to guide and below.
+/// Rows: above, the one to guide, and below.
 void MakeGuide(const std::uint8_t* const* means, const std::uint8_t* const* seen, int width,
                std::uint8_t* guide) {
   for (int x = 0; x < width; x += static_cast<int>(hn::Lanes(AllBytes()))) {
@@ -197,7 +198,7 @@ void MakeGuide(const std::uint8_t* const* means, const std::uint8_t* const* seen
   }
 }
 
-/// Into bytes and into words.
+/// Converts to bytes and to words.
 void SplitChannels(const std::uint8_t* pixels, int width, std::uint8_t* const* bytes,
                    std::int16_t* const* words) {
   const Bytes d;
@@ -247,7 +248,7 @@ void ColorSmoothing::smooth(const Mask& origins, const Rect& box, Image<Bgr>& pi
   });
 }
 
-/// What lies around the box is not seen.
+/// Pixels around the box count as not seen.
 void ColorSmoothing::begin(const Rect& box) {
   const int width = box.width + reach + padding;
   const int height = box.height + 2 * reach;

@@ -6,33 +6,33 @@
 
 namespace diminish {
 
-/// Takes the RGB-D cameras' noise out of what they show: each pixel that was seen becomes a mean of
-/// its neighbours, by how alike they are (bilateral filter, Tomasi & Manduchi 1998). Likeness is
-/// measured on a guide, the picture blurred a little, so that noise does not decide which pixels
-/// are averaged (as by the patches of Buades et al. 2005).
+/// Removes the RGB-D cameras' noise. Each seen pixel becomes a mean of its neighbours, weighted by
+/// how alike they are (bilateral filter, Tomasi & Manduchi 1998). Likeness is measured in a guide,
+/// the slightly blurred picture, so that noise does not decide which pixels are averaged (like the
+/// patches of Buades et al. 2005).
 class ColorSmoothing {
  public:
-  /// Neighbours: all of a square of 2 reach + 1 pixels but its corners.
+  /// Neighbours: a square of 2 reach + 1 pixels without its corners.
   static constexpr int reach = 2;
   static constexpr bool is_neighbour(int dx, int dy) {
     return dx * dx + dy * dy < 2 * reach * reach;
   }
 
-  /// Sum of the three channels' differences in the guide at which a neighbour no longer counts,
-  /// levels. Its weight is a part of what is left to that.
+  /// Levels: the sum of the three channels' differences in the guide from which on a neighbour does
+  /// not count. Its weight is the difference left to that, divided by weight_part.
   static constexpr int largest_difference = 36;
   static constexpr std::uint32_t weight_part = 4;
 
-  /// The quotient of two sums of weights, the first multiplied by levels, in numbers of 16 bits; to
-  /// a tenth of a level.
+  /// The quotient of two sums of weights, the first multiplied by levels, in 16-bit numbers; exact
+  /// to a tenth of a level.
   static constexpr std::uint32_t one = 1U << 19;
   static constexpr std::uint32_t mean(std::uint32_t sum, std::uint32_t weight) {
     const std::uint32_t inverse = (one + weight / 2) / weight;
     return (sum + weight / 2) * inverse / one;
   }
 
-  /// origins: who has seen each pixel (DiminishedFrame::provenance); pixels that no RGB-D camera
-  /// has seen neither change nor count. box: where to look for those that were. Cost: 1 ns a pixel
+  /// origins: which camera saw each pixel (DiminishedFrame::provenance). Pixels that no RGB-D
+  /// camera saw neither change nor count. box: where to look for seen pixels. Cost: 1 ns per pixel
   /// of the box.
   void smooth(const Mask& origins, const Rect& box, Image<Bgr>& picture);
 
@@ -42,7 +42,7 @@ class ColorSmoothing {
   void guide_row(int y, int width);
   void smooth_row(const Rect& box, int y, Image<Bgr>& picture) const;
 
-  // Of the box, and `reach` pixels and some more around it.
+  // These cover the box, and `reach` pixels and a few more around it.
   Mask seen_;                         ///< 255 or 0
   Image<std::uint8_t> values_[3];     ///< channels
   Image<std::int16_t> words_[3];      ///< likewise

@@ -12,14 +12,14 @@
 #define DIMINISH_COMPOSITE_MAP_COLORS_ROW
 namespace diminish {
 
-/// Consecutive pixels of one row, beginning at column x.
+/// Consecutive pixels of one row, starting at column x.
 struct MappedRow {
   const Bgra* colors;
   const std::uint8_t* sources;
   const std::uint8_t* occlusion;
   const float* correction;  ///< three channels, `channel_step` apart
   std::ptrdiff_t channel_step;
-  const std::uint8_t* shares;  ///< of the colour in the picture, in 1/255; null: all of it
+  const std::uint8_t* shares;  ///< the colour's share in the picture, in 1/255; null: all of it
   Bgr* picture;
   int x, y, count;
 };
@@ -46,7 +46,7 @@ HWY_INLINE Vector ToFloats(hn::Vec<Bytes> bytes) {
   return hn::ConvertTo(Floats(), hn::PromoteTo(Ints(), bytes));
 }
 
-/// A vector of pixels from column i of the row on: those that are `chosen`.
+/// A vector of pixels from column i of the row on, of which `chosen` are written.
 HWY_INLINE void MapPixels(const ColorMap& map, const MappedRow& row, int i,
                           hn::Mask<Bytes> chosen) {
   const Bytes bytes;
@@ -93,7 +93,7 @@ void MapRow(const ColorMap* maps, const MappedRow& row) {
     const auto sources = hn::LoadU(bytes, row.sources + i);
     const auto wanted = hn::AndNot(hn::Eq(sources, hn::Zero(bytes)),
                                    hn::Ne(hn::LoadU(bytes, row.occlusion + i), hn::Zero(bytes)));
-    // Nearly always there is one camera in a vector.
+    // A vector nearly always has one camera.
     auto left = wanted;
     while (!hn::AllFalse(bytes, left)) {
       const std::uint8_t source = row.sources[i + hn::FindFirstTrue(bytes, left)];
@@ -114,14 +114,14 @@ namespace {
 
 HWY_EXPORT(MapRow);
 
-/// `row.count` may be anything.
+/// Allows any `row.count`.
 void map_row(const std::vector<ColorMap>& maps, MappedRow row) {
   constexpr int block = 16;
   const int rest = row.count % block;
   row.count -= rest;
   HWY_DYNAMIC_DISPATCH(MapRow)(maps.data(), row);
   if (rest == 0) return;
-  // The last pixels of a row, where there may be none to read beyond.
+  // The last pixels of a row, beyond which nothing may be read.
   const int whole = row.count;
   Bgra colors[block] = {};
   std::uint8_t sources[block] = {};

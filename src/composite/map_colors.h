@@ -8,10 +8,10 @@
 
 namespace diminish {
 
-/// Writes to row y of `picture`, wherever an object is to be removed and the reconstruction has a
-/// colour, that colour mapped, plus `correction`; where a second camera sees the same surface,
-/// mixed with that camera's colour, mapped by its own map.
-/// maps: by Reconstruction::source. correction: as from SoftMembrane::row.
+/// Writes row y of `picture` wherever an object is to be removed and the reconstruction has a
+/// colour: that colour, mapped, plus `correction`. Where a second camera sees the same surface,
+/// mixes in that camera's colour, mapped by its own map.
+/// maps: by Reconstruction::source. correction: from SoftMembrane::row.
 void map_colors(const std::vector<ColorMap>& maps, const Reconstruction& reconstruction,
                 const Mask& occlusion, int y, const float* correction, Image<Bgr>& picture);
 

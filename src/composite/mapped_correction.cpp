@@ -10,7 +10,7 @@
 namespace diminish {
 namespace {
 
-/// ColorMaps, and a soft membrane for what is left.
+/// ColorMaps, plus a soft membrane for what is left.
 class MappedCorrection : public ColorCorrector {
  public:
   explicit MappedCorrection(const MappedMethod& method) : method_(method) {}
@@ -38,7 +38,7 @@ class MappedCorrection : public ColorCorrector {
   }
 
  private:
-  /// What is left after mapping where the reconstruction reaches beyond the mask.
+  /// The difference after mapping, where the reconstruction reaches beyond the mask.
   void fit_membrane(const Image<Bgr>& camera, const Mask& occlusion,
                     const Reconstruction& reconstruction) {
     const Rect& region = reconstruction.region;
@@ -67,7 +67,7 @@ class MappedCorrection : public ColorCorrector {
   MappedMethod method_;
   ColorMaps maps_;
   SoftMembrane membrane_;
-  std::vector<float> corrections_[2];  ///< of the row that each thread is at
+  std::vector<float> corrections_[2];  ///< of each thread's current row
 };
 
 const bool registered = [] {

@@ -3,7 +3,7 @@
 namespace diminish {
 namespace {
 
-/// The reconstruction's colours as they are.
+/// Keeps the reconstruction's colours.
 class NoCorrection : public ColorCorrector {
  public:
   void correct(const Image<Bgr>&, const Mask& occlusion, const Reconstruction& reconstruction,

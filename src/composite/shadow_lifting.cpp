@@ -20,8 +20,8 @@ using Floats = hn::CappedTag<float, 16>;
 using Ints = hn::RebindToSigned<Floats>;
 using Bytes = hn::Rebind<std::uint8_t, Floats>;
 
-/// level * 255 / light, rounded. The quotient of two whole numbers of such a size is never so close
-/// below a whole number that a float would reach it.
+/// level * 255 / light, rounded. The quotient of two whole numbers of this size is never so close
+/// below a whole number that a float would round up to it.
 HWY_INLINE hn::Vec<Bytes> Lit(hn::Vec<Bytes> level, hn::Vec<Bytes> light) {
   const auto divisor = hn::PromoteTo(Ints(), light);
   const auto level_in_full = hn::Mul(hn::PromoteTo(Ints(), level), hn::Set(Ints(), 255));
@@ -40,7 +40,7 @@ void Lift(const std::uint8_t* light, int count, std::uint8_t* levels) {
     hn::StoreU(Lit(hn::LoadU(d, levels + i), hn::LoadU(d, light + i)), d, levels + i);
   }
   if (i == count) return;
-  // The last vector reaches beyond the row.
+  // The last vector reaches past the row's end.
   std::uint8_t last_light[16] = {};
   std::uint8_t last_levels[16] = {};
   for (int k = 0; k < lanes && i + k < count; ++k) {
@@ -64,8 +64,8 @@ namespace {
 
 constexpr int fading_px = ShadowLifting::fading_px;
 constexpr Bgr all_light{255, 255, 255};
-/// Calls visit(first, last) for some channels of a row at a time, unless they all have all light:
-/// nearly all or none of them have.
+/// Calls visit(first, last) for ranges of a row's channels, skipping ranges with full light: nearly
+/// all or none have it.
 template <class Visit>
 void for_each_shaded(const Bgr* row, int width, const Visit& visit) {
   constexpr int step = 48;
@@ -79,7 +79,7 @@ void for_each_shaded(const Bgr* row, int width, const Visit& visit) {
   }
 }
 
-/// Calls visit(x) for each of the columns [begin, end) that is nearer than `fading_px`.
+/// Calls visit(x) for each of the columns [begin, end) that is nearer to the rim than `fading_px`.
 template <class Visit>
 void for_each_within(const std::uint8_t* distances, int begin, int end, const Visit& visit) {
   constexpr int step = 16;
@@ -94,7 +94,7 @@ void for_each_within(const std::uint8_t* distances, int begin, int end, const Vi
   }
 }
 
-/// The rows of the region with less than all light.
+/// The rows of the region that have shadows.
 Rect shaded_part(const Reconstruction& reconstruction) {
   const Rect& region = reconstruction.region;
   const auto is_shaded = [&](int y) {
@@ -107,20 +107,20 @@ Rect shaded_part(const Reconstruction& reconstruction) {
   int bottom = region.bottom();
   while (top < bottom && !is_shaded(top)) ++top;
   while (bottom > top && !is_shaded(bottom - 1)) --bottom;
-  // The mask's rim beside them counts, too.
+  // The mask's rim beside them counts too.
   return intersect(grow({region.x, top, region.width, bottom - top}, fading_px), region);
 }
 
-/// How far each pixel of a row is from the next outside the mask, up to `fading_px`. Without
-/// dependences from pixel to pixel, so that the compiler takes many at a time.
+/// The distance from each pixel of a row to the next pixel outside the mask, up to `fading_px`. Has
+/// no dependences between pixels, so that the compiler vectorises it.
 void measure_in_row(const std::uint8_t* mask, int width, std::uint8_t* distances,
                     std::vector<std::uint8_t>& padded) {
-  // Beyond the row there is no outside.
+  // Nothing beyond the row is outside.
   constexpr int longest_step = 5;
   padded.assign(static_cast<std::size_t>(width) + 2 * longest_step, fading_px);
   std::uint8_t* last = padded.data() + longest_step;
   for (int x = 0; x < width; ++x) distances[x] = mask[x] != 0 ? fading_px : 0;
-  // Every distance is a sum of some of these.
+  // Every distance is a sum of some of these steps.
   for (const int step : {1, 2, 4, longest_step}) {
     std::copy_n(distances, width, last);
     for (int x = 0; x < width; ++x) {
@@ -173,7 +173,7 @@ void ShadowLifting::restore_outside(const Image<Bgr>& camera, const Mask& occlus
   });
 }
 
-/// In steps along rows and columns, first those along rows. Beyond `part` there is no rim.
+/// Counts steps along rows and columns, first along rows. There is no rim beyond `part`.
 void ShadowLifting::measure_distances(const Mask& occlusion, const Rect& part) {
   distances_.resize(part.width, part.height);
   for_rows(part.height, [&](Rows rows) {

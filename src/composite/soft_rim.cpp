@@ -7,7 +7,8 @@
 namespace diminish {
 namespace {
 
-/// Takes away what touches the outside: by an edge, or by a corner, too. The outermost pixels stay.
+/// Removes pixels that touch the outside, by an edge or also by a corner. The outermost pixels
+/// stay.
 void erode_row(const Mask& inside, int y, bool by_corners, std::uint8_t* result) {
   const int width = inside.width();
   const std::uint8_t* here = inside.row(y);
@@ -38,7 +39,7 @@ std::uint8_t mix(int from, int to, int part, int whole) {
 /// Calls visit(x) for each distance that is neither 0 nor `whole`.
 template <class Visit>
 void for_each_between(const std::uint8_t* distances, int width, int whole, const Visit& visit) {
-  // Most pixels are far from the rim: without a branch for each, compilers take many at a time.
+  // Most pixels are far from the rim. Without a branch for each, the compiler vectorises this.
   constexpr int step = 32;
   for (int first = 0; first < width; first += step) {
     const int end = std::min(first + step, width);
@@ -57,7 +58,7 @@ void for_each_between(const std::uint8_t* distances, int width, int whole, const
 
 }  // namespace
 
-/// Beyond the images' borders is no outside: there the mask is continued.
+/// Beyond the image's border the mask continues, so nothing there is outside.
 void SoftRim::find_distances(const Mask& mask, const Rect& box, int width_px) {
   const Rect around = grow(box, 1);
   inside_.resize(around.width, around.height);
@@ -65,7 +66,7 @@ void SoftRim::find_distances(const Mask& mask, const Rect& box, int width_px) {
     for (int y = rows.first; y < rows.last; ++y) {
       const std::uint8_t* from = mask.row(std::clamp(around.y + y, 0, mask.height() - 1)) + box.x;
       std::uint8_t* to = inside_.row(y) + 1;
-      // Not read through a reference: for all the compiler knows, bytes that are stored change it.
+      // A local copy: a stored byte could alias a reference.
       const int width = box.width;
       for (int x = 0; x < width; ++x) to[x] = from[x] != 0 ? 1 : 0;
       to[-1] = box.x > 0 ? 0 : to[0];

@@ -5,12 +5,12 @@
 
 namespace diminish {
 
-/// Where frames' pictures go when an application wants them as textures.
+/// The textures that an application gets frames' pictures in.
 class TextureOutput {
  public:
   virtual ~TextureOutput() = default;
 
-  /// For a picture that the processor has made. Throws Error where the GPU fails.
+  /// Uploads a picture that the CPU made. Throws Error if the GPU fails.
   virtual void upload(const Image<Bgr>& picture) = 0;
   /// The last picture.
   virtual const GlTexture& latest() const = 0;

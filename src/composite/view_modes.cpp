@@ -33,7 +33,7 @@ class Remove : public ViewMode {
   void show(const Image<Bgr>&, const Options&, DiminishedFrame&) const override {}
 };
 
-/// The object as if it were of glass.
+/// The object as if made of glass.
 class Half : public ViewMode {
  public:
   void show(const Image<Bgr>& camera, const Options& options,
@@ -84,7 +84,7 @@ class Outline : public ViewMode {
   }
 };
 
-/// What was seen and what was invented: the former in green, the latter in magenta, hatched.
+/// Shows what was seen in green and what was invented in magenta, hatched.
 class Provenance : public ViewMode {
  public:
   void show(const Image<Bgr>&, const Options&, DiminishedFrame& result) const override {

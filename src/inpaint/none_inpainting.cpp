@@ -3,7 +3,7 @@
 namespace diminish {
 namespace {
 
-/// Unknown pixels stay unknown: black.
+/// Leaves unknown pixels black.
 class NoInpainting : public Inpainter {
  public:
   bool inpaint(const Holes& holes, const Options&, Image<Bgr>& picture) override {

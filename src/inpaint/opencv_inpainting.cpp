@@ -15,7 +15,7 @@ class OpenCvInpainting : public Inpainter {
     const Mask& missing = holes.missing;
     const Rect box = bounding_box(missing);
     if (box.empty()) return true;
-    // A hole's pixels depend on what is within the radius, no more.
+    // A hole's pixels depend only on what is within the radius.
     const Rect part = intersect(grow(box, options.inpaint_radius_px + 2), picture.bounds());
     if (count_nonzero(missing, part) == static_cast<std::size_t>(part.width) * part.height) {
       picture.fill(part, {});

@@ -77,7 +77,7 @@ bool PlaneColors::around(int x, int y, std::uint8_t label, Eigen::Array3f& mean)
                               {0, 0, columns_, rows_});
   const Cell* upper = cell_row(part.y);
   const Cell* lower = cell_row(part.bottom());
-  // Unsigned: what overflows on the way does not matter.
+  // Unsigned: intermediate overflow does no harm.
   const Sum sum = lower[part.right()].sums[plane] - lower[part.x].sums[plane] -
                   upper[part.right()].sums[plane] + upper[part.x].sums[plane];
   if (sum[3] < std::uint32_t{fewest}) return false;

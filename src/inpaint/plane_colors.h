@@ -9,27 +9,27 @@
 
 namespace diminish {
 
-/// The colours of the background's planes a little away from the objects to remove: right beside an
-/// object lies its contact shadow, which must not be spread over what the object hid.
+/// The colours of the background's planes a little away from the objects to remove. Right beside an
+/// object lies its contact shadow, which must not spread over what the object hid.
 class PlaneColors {
  public:
-  /// Further ones are not known.
+  /// More planes are ignored.
   static constexpr int planes = 4;
   static constexpr int cell = 4;   ///< pixels
-  static constexpr int step = 2;   ///< of the pixels, every other row and column says enough
-  static constexpr int gap = 2;    ///< cells around an object that are left out
+  static constexpr int step = 2;   ///< pixels; every other row and column is enough
+  static constexpr int gap = 2;    ///< cells around an object that are skipped
   static constexpr int reach = 5;  ///< cells
-  static constexpr int fewest = 24 / (step * step);  ///< pixels that make a mean
+  static constexpr int fewest = 24 / (step * step);  ///< fewest pixels for a mean
 
   /// occlusion: the objects' mask in `picture`.
   void collect(const Mask& occlusion, const Reconstruction& reconstruction,
                const Image<Bgr>& picture);
-  /// The mean colour of a plane around a pixel; false where too little of it is seen, or the pixel
-  /// is outside the reconstruction's region. Cost: four look-ups (summed-area table, Crow 1984).
+  /// The mean colour of a plane around a pixel. False where too little of it is seen or the pixel
+  /// is outside the reconstruction's region. Cost: four lookups (summed-area table, Crow 1984).
   bool around(int x, int y, std::uint8_t label, Eigen::Array3f& mean) const;
 
  private:
-  /// Blue, green, red, and how many.
+  /// Sums of blue, green and red, and their count.
   using Sum = Eigen::Array<std::uint32_t, 4, 1>;
   struct Cell {
     Sum sums[planes];

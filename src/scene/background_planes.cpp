@@ -18,7 +18,7 @@ constexpr std::size_t fewest_points = 60;
 constexpr double smallest_support = 0.12;
 constexpr double most_behind = 0.04;
 
-/// Small, and the same everywhere.
+/// A small random generator that is the same on every machine.
 class Random {
  public:
   std::size_t below(std::size_t end) {
@@ -39,7 +39,7 @@ BackgroundPlane facing_camera(Eigen::Vector3f normal, const Eigen::Vector3f& poi
   return {normal, distance};
 }
 
-/// Least squares.
+/// Fits a plane by least squares.
 BackgroundPlane fit(const BackgroundPlane& plane, const PlanePoints& points) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
@@ -58,7 +58,7 @@ BackgroundPlane fit(const BackgroundPlane& plane, const PlanePoints& points) {
   return facing_camera(solver.eigenvectors().col(0).cast<float>(), mean.cast<float>());
 }
 
-/// Points no further from the plane than they may be off by.
+/// The points that are no further from the plane than their error bounds.
 int count_on(const BackgroundPlane& plane, const PlanePoints& points) {
   int count = 0;
   const std::size_t size = points.size();
@@ -103,7 +103,7 @@ void BackgroundPlanes::label(Reconstruction& reconstruction) const {
   });
 }
 
-/// Those around the objects: a plane far away says nothing about what is behind them.
+/// Points around the objects: a plane far away says nothing about what is behind them.
 void BackgroundPlanes::choose_points(const Rect& objects, const std::vector<SceneSample>& samples) {
   const int margin = std::max(100, std::max(objects.width, objects.height) / 2);
   const Rect around = grow(objects, margin);
@@ -115,7 +115,7 @@ void BackgroundPlanes::choose_points(const Rect& objects, const std::vector<Scen
   }
 }
 
-/// The plane that most of the points that are on no plane yet lie on, and hardly any behind
+/// The plane with most of the points that are on no plane yet and hardly any points behind it
 /// (RANSAC, Fischler & Bolles 1981).
 bool BackgroundPlanes::next_plane(BackgroundPlane& plane) {
   const auto wanted = std::max<std::size_t>(
@@ -154,7 +154,7 @@ void BackgroundPlanes::label_run(int first, int last, int y, Reconstruction& rec
   std::array<surface_rows::InverseDepth, most_planes> planes;
   for (int x = first; x < last;) {
     const RayGrid::Segment rays = rays_.segment(x, y, last);
-    // Along a row the inverse depth of a plane grows linearly.
+    // Along a row, a plane's inverse depth is linear.
     for (std::size_t k = 0; k < planes_.size(); ++k) {
       planes[k] = {planes_[k].inverse_depth(rays.first.x(), rays.first.y()),
                    planes_[k].normal.head<2>().dot(rays.slope) / planes_[k].distance_m};

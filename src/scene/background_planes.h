@@ -11,21 +11,21 @@
 
 namespace diminish {
 
-/// A plane normal . x = distance in the colour camera's frame, the camera being on the normal's
-/// side: distance < 0.
+/// A plane normal . x = distance in the colour camera's frame. The camera is on the normal's side,
+/// so distance < 0.
 struct BackgroundPlane {
   Eigen::Vector3f normal;
   float distance_m;
 
   /// Positive in front of the plane.
   float height_m(const Eigen::Vector3f& point_m) const { return normal.dot(point_m) - distance_m; }
-  /// 1 / z where the ray (x, y, 1) meets the plane; not positive where it does not.
+  /// 1 / z where the ray (x, y, 1) meets the plane; 0 or negative where it does not.
   float inverse_depth(float x, float y) const {
     return (normal.x() * x + normal.y() * y + normal.z()) / distance_m;
   }
 };
 
-/// Points, channel by channel, with what each may be off by.
+/// Points, coordinate by coordinate, with their error bounds.
 class PlanePoints {
  public:
   std::vector<float> x_m, y_m, z_m, tolerance_m;
@@ -44,7 +44,7 @@ class PlanePoints {
     z_m.push_back(point_m.z());
     tolerance_m.push_back(tolerance);
   }
-  /// Becomes every stride-th point of `all`.
+  /// Takes every stride-th point of `all`.
   void thin(const PlanePoints& all, std::size_t stride) {
     clear();
     for (std::size_t i = 0; i < all.size(); i += stride) add(all[i], all.tolerance_m[i]);
@@ -68,18 +68,18 @@ class PlanePoints {
   }
 };
 
-/// Walls, floors and tables: the planes that bound what is seen around the objects, and to which of
-/// them each pixel belongs. Where nothing was measured, such a plane is the best guess of what is
-/// there: it goes on behind whatever stands in front of it.
+/// Walls, floors and tables: the planes around the objects, and which of them each pixel belongs
+/// to. Where nothing was measured, such a plane is the best guess: it continues behind whatever
+/// stands in front of it.
 class BackgroundPlanes {
  public:
   static constexpr std::size_t most_planes = 3;
-  /// How far a measurement may be from the plane it is on.
+  /// How far a measurement may be from its plane.
   static constexpr DepthNoise tolerance{0.012F, 0.006F};
 
   explicit BackgroundPlanes(const Intrinsics& color) : rays_(color) {}
 
-  /// objects: where they are in the colour camera's picture. Deterministic.
+  /// Finds the planes. objects: their box in the colour camera's picture. Deterministic.
   void find(const Rect& objects, const std::vector<SceneSample>& samples);
   /// Fills `reconstruction.surface`.
   void label(Reconstruction& reconstruction) const;

@@ -16,18 +16,18 @@ namespace {
 
 constexpr float cell_m = CastShadows::cell_m;
 constexpr int grid_cells = CastShadows::grid_cells;
-/// What is this near a plane may be the plane.
+/// Something this near a plane may be the plane.
 constexpr float least_height_m = 0.02F;
 constexpr std::size_t fewest_lit = 150;
 constexpr std::size_t most_lit = 800;
 constexpr std::size_t fewest_blockers = 15;
 constexpr std::size_t most_blockers = 400;
-/// Less light than this is a shadow to see.
+/// With less light than this a shadow is visible.
 constexpr float shadow = 0.97F;
 
 constexpr DepthNoise noise;
 
-/// In cells; the middles of cells are at whole numbers.
+/// In cells; cell centres are at whole numbers.
 Eigen::Vector2f to_cells(const Eigen::Vector2f& place) {
   return place / cell_m + Eigen::Vector2f::Constant(grid_cells / 2);
 }
@@ -35,7 +35,7 @@ Eigen::Vector2f to_place(int x, int y) {
   return cell_m * (Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y)) -
                    Eigen::Vector2f::Constant(grid_cells / 2));
 }
-/// The cell that holds a place, as a rectangle; it may lie outside the grid.
+/// The cell that contains a place, as a rectangle. It may lie outside the grid.
 Rect cell_of(const Eigen::Vector2f& place) {
   const Eigen::Vector2f at = to_cells(place);
   return {static_cast<int>(std::lrint(at.x())), static_cast<int>(std::lrint(at.y())), 1, 1};
@@ -92,7 +92,7 @@ void CastShadows::find(const std::vector<BackgroundPlane>& planes,
   }
 }
 
-/// What is on none of the planes.
+/// The points that are on no plane.
 void CastShadows::choose_blockers(const Ground& ground, const std::vector<BackgroundPlane>& planes,
                                   const std::vector<Eigen::Vector3f>& object_points_m) {
   blockers_.clear();
@@ -106,7 +106,7 @@ void CastShadows::choose_blockers(const Ground& ground, const std::vector<Backgr
   }
 }
 
-/// Of the camera that sees most of the plane: two cameras' colours differ.
+/// Uses the camera that sees most of the plane, because two cameras' colours differ.
 void CastShadows::choose_lit(const Ground& ground, const std::vector<SceneSample>& samples) {
   const auto is_on = [&](const SceneSample& sample) {
     return std::abs(ground.plane.height_m(sample.point_m)) <= 2 * noise.at(sample.point_m.z()) &&
@@ -140,8 +140,8 @@ void CastShadows::for_each_direction(const std::uint64_t* bits, const Visit& vis
   }
 }
 
-/// Blockers are as large as a few cells: what one hides is the cell that its shadow falls on, and
-/// those around it.
+/// A blocker is as large as a few cells: it darkens the cell that its shadow falls on and those
+/// around it.
 void CastShadows::find_hidden() {
   constexpr int rim = 2;
   constexpr int width = grid_cells + 2 * rim;
@@ -150,7 +150,7 @@ void CastShadows::find_hidden() {
   const ByDirection along_u = slopes_u_ / cell_m;
   const ByDirection along_v = slopes_v_ / cell_m;
   for (const Blocker& blocker : blockers_) {
-    // Half a cell more, and cut off: rounded.
+    // Rounds: adds half a cell and truncates.
     const Eigen::Vector2f at = to_cells(blocker.place) + Eigen::Vector2f::Constant(rim + 0.5F);
     using Cells = Eigen::Array<int, directions, 1>;
     const Cells x = (at.x() - blocker.height_m * along_u).max(0.F).min(last).cast<int>();
@@ -191,7 +191,7 @@ bool CastShadows::fit() {
   return fit_.fit();
 }
 
-/// Adds up, cell by cell, what is hidden.
+/// Adds up the hidden light, cell by cell.
 void CastShadows::draw_light(Image<Eigen::Array3f>& light) {
   std::array<Eigen::Array4f, directions> shares;
   std::array<std::uint64_t, words> has_share{};
@@ -220,7 +220,7 @@ void CastShadows::draw_light(Image<Eigen::Array3f>& light) {
     }
     if (last >= 0) shadow = join(shadow, {first, y, last + 1 - first, 1});
   }
-  // Lights have a size: the mean of three by three cells.
+  // Lights have a size, so take the mean of three by three cells.
   const Rect part = intersect(grow(shadow, 1), {1, 1, grid_cells - 2, grid_cells - 2});
   light.resize(grid_cells, grid_cells, Eigen::Array3f::Ones());
   for (int y = part.y; y < part.bottom(); ++y) {
@@ -289,7 +289,7 @@ void CastShadows::find_nodes(const Rect& region) {
       }
     }
   }
-  // A node's block lies between it and the next.
+  // A node's block lies between it and the next node.
   is_shaded_.resize(nodes_box_.width - 1, nodes_box_.height - 1, 0);
   for (std::size_t i = 0; i < shadow_count_; ++i) {
     const auto dark = [&](int column, int row) {
@@ -305,7 +305,8 @@ void CastShadows::find_nodes(const Rect& region) {
   }
 }
 
-/// The share of the light that is taken from the plane's point that a ray meets; 0 beyond the grid.
+/// The share of the light that is lost at the point of the plane that a ray meets; 0 beyond the
+/// grid.
 Eigen::Array3f CastShadows::dark_at(const Shadow& cast, const Eigen::Vector2f& ray) {
   const Eigen::Vector3f direction(ray.x(), ray.y(), 1);
   const float inverse = cast.ground.plane.inverse_depth(ray.x(), ray.y());

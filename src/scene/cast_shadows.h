@@ -15,13 +15,13 @@
 
 namespace diminish {
 
-/// The shadows that the objects to remove cast on the background's planes: of the light from each
-/// direction they hide what lies behind them, and how much comes from where follows from the
-/// brightness of the samples on the plane (ShadowFit). What the objects, as far as RGB-D cameras
-/// see them, cannot have caused stays: other things' shadows, texture.
+/// The shadows that the objects to remove cast on the background's planes. The objects hide part of
+/// the light from each direction, and the brightness of the samples on the plane tells how much
+/// light comes from where (ShadowFit). Everything that the visible part of the objects cannot have
+/// caused stays: other objects' shadows, texture.
 class CastShadows {
  public:
-  /// A plane with coordinates on it, in metres from the point below the objects' middle.
+  /// A plane with coordinates on it, in metres from the point below the centre of the objects.
   struct Ground {
     BackgroundPlane plane;
     Eigen::Vector3f origin, along_u, along_v;
@@ -31,8 +31,7 @@ class CastShadows {
     Eigen::Vector2f coordinates(const Eigen::Vector3f& point_m) const;
     Eigen::Vector3f point_m(const Eigen::Vector2f& place) const;
   };
-  /// What is taken from a plane's light, by cells around the ground's origin, whose middles are at
-  /// whole numbers.
+  /// The light on a plane, in cells around the ground's origin. Cell centres are at whole numbers.
   struct Shadow {
     Ground ground;
     std::uint8_t label = 0;       ///< the plane's, as in Reconstruction::surface
@@ -40,28 +39,29 @@ class CastShadows {
   };
   static constexpr float cell_m = 0.02F;
   static constexpr int grid_cells = 128;
-  /// Light changes little from pixel to pixel: it is looked up at every so many of a row, in every
-  /// so many rows of the picture.
+  /// Light changes little from pixel to pixel, so it is looked up only at every node_px-th pixel of
+  /// every node_rows_px-th row.
   static constexpr int node_px = 16;
   static constexpr int node_rows_px = 8;
-  /// Where less is taken there is no shadow.
+  /// Below this loss of light there is no shadow.
   static constexpr float invisible = 1.F / 256;
-  /// What stands on a plane is labelled as the plane up to some height: shadows fade between this
-  /// and twice this times what a depth may be off by.
+  /// The lowest part of something on a plane is labelled as the plane. So shadows fade between this
+  /// and twice this times the depth's error bound.
   static constexpr float fading_height = 0.6F;
 
   explicit CastShadows(const Intrinsics& color);
 
-  /// samples, object_points_m: in the colour camera's frame. Cost: one to three milliseconds.
+  /// Finds the shadows. samples, object_points_m: in the colour camera's frame. Cost: one to three
+  /// milliseconds.
   void find(const std::vector<BackgroundPlane>& planes, const std::vector<SceneSample>& samples,
             const std::vector<Eigen::Vector3f>& object_points_m);
   void clear() { shadow_count_ = 0; }
-  /// Whether there are any.
+  /// Whether there are any shadows.
   bool any() const { return shadow_count_ > 0; }
   std::span<const Shadow> shadows() const { return {shadows_.data(), shadow_count_}; }
-  /// Where they are in the colour camera's picture.
+  /// The box of the shadows in the colour camera's picture.
   Rect bounds() const;
-  /// Fills `reconstruction.light`: shadows end where something stands on their plane.
+  /// Fills `reconstruction.light`. Shadows end where something stands on their plane.
   void shade(Reconstruction& reconstruction);
 
  private:
@@ -69,7 +69,7 @@ class CastShadows {
   static constexpr int azimuths = 16;
   static constexpr std::array<float, 5> elevations_deg = {25, 38, 51, 64, 77};
   static constexpr std::size_t directions = azimuths * elevations_deg.size();
-  /// A cell's bits, one for each direction, are in two words.
+  /// A cell has one bit for each direction, in two words.
   static constexpr int words = 2;
   static_assert(directions <= bits_a_word * words);
   using ByDirection = Eigen::Array<float, directions, 1>;
@@ -96,11 +96,11 @@ class CastShadows {
 
   Lens lens_;
   RayGrid rays_;
-  ByDirection slopes_u_, slopes_v_;  ///< metres along the plane a metre up
+  ByDirection slopes_u_, slopes_v_;  ///< metres along the plane per metre of height
   std::vector<Blocker> blockers_;
   std::vector<Lit> lit_;
   std::vector<std::uint32_t> on_plane_;  ///< samples
-  /// Words of cells; the first with a rim around the grid: of one cell, and one more for what is
+  /// Words of cells. The first has a rim of one cell around the grid, plus one cell for everything
   /// beyond.
   Image<std::uint64_t> struck_, struck_in_column_, hidden_;
   std::vector<std::uint8_t> hidden_from_;
@@ -108,8 +108,8 @@ class CastShadows {
   Image<Eigen::Array4f> dark_;
   std::vector<Shadow> shadows_;  ///< the first shadow_count_ are this frame's
   std::size_t shadow_count_ = 0;
-  Rect nodes_box_;  ///< of the nodes around the region, in nodes from the picture's corner
-  /// By shadow: dark_at, and the height above the plane for each metre of z.
+  Rect nodes_box_;  ///< the nodes around the region, counted from the picture's corner
+  /// By shadow: dark_at, and the height above the plane per metre of z.
   std::array<Image<Eigen::Array4f>, BackgroundPlanes::most_planes> nodes_;
   Mask is_shaded_;  ///< by block of pixels between four nodes
 };

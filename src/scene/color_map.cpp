@@ -11,11 +11,11 @@ namespace {
 using Terms = Eigen::Matrix<float, 5, 1>;
 
 constexpr int passes = 12;
-/// Residuals below this are noise, in levels.
+/// Levels; residuals below this are noise.
 constexpr float least_scale = 1.5F;
-/// How many pairs what is not known beforehand weighs.
+/// The weight of the prior, in pairs.
 constexpr float prior_pairs = 4;
-/// Of colours while they are fitted, in levels.
+/// The scale of colours during the fit, in levels.
 constexpr float unit = 128;
 
 Terms field_terms(const ColorMap& map, float x, float y) {
@@ -71,13 +71,13 @@ void ColorMapFit::weigh(const std::vector<ColorPair>& pairs) {
     residuals_.push_back((pair.camera - mapped).matrix().norm());
   }
   values_ = residuals_;
-  // Where Tukey's weights end: 4.7 standard deviations.
+  // Where Tukey's weights become 0: 4.7 standard deviations.
   const float end = 4.7F * std::max(least_scale, 0.65F * median(values_));
   weights_.clear();
   for (const float residual : residuals_) weights_.push_back(tukey_weight(residual, end));
 }
 
-/// Matrix and offset, the field being as it is.
+/// Fits matrix and offset with the field fixed.
 void ColorMapFit::fit_channels(const std::vector<ColorPair>& pairs, ColorMapModel model) {
   Eigen::Matrix4f squares = Eigen::Matrix4f::Zero();
   Eigen::Matrix<float, 4, 3> products = Eigen::Matrix<float, 4, 3>::Zero();

@@ -7,7 +7,7 @@
 
 namespace diminish {
 
-/// One surface in two cameras: mean colours of an even neighbourhood, in levels.
+/// A surface in two cameras: mean colours of an even neighbourhood, in levels.
 struct ColorPair {
   Eigen::Vector2f pixel;  ///< in the colour camera's image
   Eigen::Array3f rgbd, camera;
@@ -17,8 +17,8 @@ struct ColorPair {
 ///
 ///   color = field(x, y) (matrix rgbd + offset),   field = 1 + a X + b Y + c X^2 + d X Y + e Y^2
 ///
-/// The matrix and the offset stand for white balance, exposure and filters; the field, which is the
-/// same for all channels, for both lenses' vignetting. X and Y are pixel coordinates from the
+/// The matrix and the offset model white balance, exposure and filters. The field, which is the
+/// same for all channels, models both lenses' vignetting. X and Y are pixel coordinates from the
 /// picture's centre in half widths.
 struct ColorMap {
   Eigen::Matrix3f matrix = Eigen::Matrix3f::Identity();
@@ -27,24 +27,24 @@ struct ColorMap {
   Eigen::Vector2f center = Eigen::Vector2f::Zero();
   float half_width = 1;
 
-  /// The field is held within these: outside the pairs the polynomial may go anywhere.
+  /// The field is clamped to these: outside the pairs the polynomial may go anywhere.
   static constexpr float least_field = 0.5F;
   static constexpr float greatest_field = 2;
   float field_at(float x, float y) const;
   Eigen::Array3f operator()(const Eigen::Array3f& rgbd, float x, float y) const;
 };
 
-/// What a ColorMap may consist of.
+/// The terms that a ColorMap may use.
 enum class ColorMapModel { affine, field };
 
-/// Fits robustly (iteratively reweighted least squares with Tukey's weights): pairs that do not
-/// show the same surface, being occluded or misregistered, have no say as long as they are fewer
-/// than half.
+/// A robust fit (iteratively reweighted least squares with Tukey's weights): pairs that do not show
+/// the same surface, because of occlusion or misregistration, have no influence as long as they are
+/// fewer than half.
 class ColorMapFit {
  public:
-  /// affine: a gain and an offset for each channel. field: everything that a ColorMap has.
-  /// What few pairs do not determine stays near a gain for each channel; without pairs the map
-  /// changes nothing. bounds: the picture's. Cost: 0.1 us a pair.
+  /// affine: a gain and an offset for each channel. field: all terms of a ColorMap. Terms that too
+  /// few pairs determine stay near a gain for each channel; without pairs the map changes nothing.
+  /// bounds: the picture's. Cost: 0.1 us per pair.
   ColorMap fit(const std::vector<ColorPair>& pairs, ColorMapModel model, const Rect& bounds);
 
  private:

@@ -11,12 +11,12 @@
 namespace diminish {
 namespace {
 
-/// Where a channel is nearly black or white it no longer tells how much light there was.
+/// A channel that is nearly black or white does not say how much light there was.
 bool is_exposed(const Eigen::Array3f& levels) {
   return (levels >= 6).all() && (levels <= 245).all();
 }
 
-/// Of each RGB-D camera: more make the map no better.
+/// Pairs of each RGB-D camera: more do not improve the map.
 constexpr std::size_t most_pairs = 2000;
 
 void add_pair(const Image<Bgr>& camera, const Mask& occlusion, const SceneSample& sample,

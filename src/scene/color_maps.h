@@ -14,7 +14,7 @@ namespace diminish {
 struct MappedMethod {
   std::string_view name;
   ColorMapModel model;
-  bool with_membrane;  ///< SoftMembrane adds what is left at the mask's rim
+  bool with_membrane;  ///< adds a SoftMembrane for what is left at the mask's rim
 };
 inline constexpr std::array<MappedMethod, 4> mapped_methods{{
     {"affine", ColorMapModel::affine, false},
@@ -22,22 +22,22 @@ inline constexpr std::array<MappedMethod, 4> mapped_methods{{
     {"affine_membrane", ColorMapModel::affine, true},
     {"field_membrane", ColorMapModel::field, true},
 }};
-/// Null where the name is another correction's.
+/// Null if the name is another correction's.
 const MappedMethod* find_mapped_method(std::string_view name);
 
-/// Each RGB-D camera's colours, mapped to the colour camera's by what both see anywhere in the
-/// picture, in this frame. Unlike Poisson cloning it needs nothing to be right at the mask's rim,
-/// where poses, depth edges and the object's own shadow do the most harm.
+/// Maps each RGB-D camera's colours to the colour camera's, from what both see anywhere in the
+/// picture of this frame. Unlike Poisson cloning it does not depend on the mask's rim, where errors
+/// in poses and depth edges and the object's own shadow do the most harm.
 class ColorMaps {
  public:
-  /// samples: camera by camera. occlusion: where `camera` shows an object to remove, and must not
-  /// be used. Cameras without samples keep their colours. Cost: 0.1 us a sample.
+  /// samples: sorted by camera. occlusion: where `camera` shows an object to remove; not used
+  /// there. Cameras without samples keep their colours. Cost: 0.1 us per sample.
   void fit(const Image<Bgr>& camera, const Mask& occlusion, const std::vector<SceneSample>& samples,
            ColorMapModel model);
   /// Cameras keep their colours.
   void clear();
 
-  /// By Reconstruction::source.
+  /// Indexed by Reconstruction::source.
   const std::vector<ColorMap>& by_source() const { return maps_; }
 
  private:

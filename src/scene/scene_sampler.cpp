@@ -11,16 +11,16 @@
 namespace diminish {
 namespace {
 
-/// Of each camera.
+/// For each camera.
 constexpr double wanted_samples = 4000;
 
-/// Further than this from the depth pixels beside it, relative to its own depth, a depth pixel lies
-/// on an edge, or on a surface seen edge-on.
+/// A depth pixel that is further than this from its neighbours, relative to its own depth, lies on
+/// an edge or on a surface seen edge-on.
 constexpr float edge = 0.03F;
 
 constexpr int reach = 2;
 
-/// From a sample to the next, in depth pixels.
+/// The distance between samples, in depth pixels.
 int step_of(const Image<std::uint16_t>& depth) {
   const double pixels = static_cast<double>(depth.width()) * depth.height();
   return std::max(1, static_cast<int>(std::lround(std::sqrt(pixels / wanted_samples))));

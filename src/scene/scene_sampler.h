@@ -14,18 +14,18 @@
 
 namespace diminish {
 
-/// Takes Reconstruction::samples from the RGB-D images: on a regular grid of depth pixels, those
-/// that lie on surfaces.
+/// Takes Reconstruction::samples from the RGB-D images: those depth pixels of a regular grid that
+/// lie on surfaces.
 class SceneSampler {
  public:
   explicit SceneSampler(const Rig& rig);
 
-  /// masks: grown already. `samples` is sorted by `source`. Cost: about 0.1 us a sample.
+  /// masks: already grown. `samples` is sorted by `source`. Cost: about 0.1 us per sample.
   void sample(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks,
               Reconstruction& reconstruction);
 
  private:
-  /// What some rows of a depth image show.
+  /// Samples from some rows of a depth image.
   struct Half {
     std::vector<SceneSample> samples;
     std::vector<Eigen::Vector3f> object_points_m;

@@ -13,22 +13,22 @@ namespace {
 constexpr int passes = 6;
 constexpr int lenient_passes = 3;
 constexpr float largest_shadow = 0.9F;
-/// Each pass begins with the shares of the last.
+/// Each pass starts with the shares of the last one.
 constexpr int sweeps = 8;
-/// What few points do not tell is no shadow.
+/// Pulls shares that few points determine towards 0.
 constexpr float ridge = 2;
-/// Nor is what a direction hardly explains.
+/// Below this a direction explains hardly anything and gets no share.
 constexpr float least_share = 0.007F;
-/// Of the squared error in the shadow without it, what a fit may leave.
+/// The largest share of the squared error in the shadow that a fit may leave.
 constexpr float most_unexplained = 0.6F;
-/// Objects do not hide all of the sky; a fit that says so explains texture.
+/// Objects do not hide the whole sky. A fit that says so explains texture.
 constexpr float most_shares = 0.75F;
-/// Between the channels' shares: what differs more is not a shadow but a colour.
+/// The largest difference between the channels' shares: a larger one is a colour, not a shadow.
 constexpr float largest_ratio = 1.6F;
 constexpr std::size_t fewest_in_shadow = 12;
 
 constexpr int terms = 6;
-/// Of x^a y^b in Monomials.
+/// The index of x^a y^b in Monomials.
 constexpr int place_of(int a, int b) {
   return (a + b) * (a + b + 1) / 2 + b;
 }
@@ -61,7 +61,7 @@ void ShadowFit::add(const Eigen::Vector2f& place, const Eigen::Array3f& levels,
 bool ShadowFit::fit() {
   if (points_.empty()) return false;
   sort_by_direction();
-  // The field begins as that of the points that nothing can hide.
+  // The field starts from the points that nothing can hide.
   for (Point& point : points_) point.weight = point.first_hidden == point.last_hidden ? 1.F : 0.1F;
   for (int pass = 0; pass < passes; ++pass) {
     fit_field(brightness);
@@ -85,7 +85,7 @@ Eigen::Array3f ShadowFit::share(std::size_t direction) const {
 void ShadowFit::sort_by_direction() {
   first_point_.assign(static_cast<std::size_t>(shares_.rows()) + 1, 0);
   for (const std::uint8_t direction : hidden_) ++first_point_[direction];
-  // Filled from behind: each begins where it will end.
+  // Filled from the end, so that each begin ends up in place.
   std::partial_sum(first_point_.begin(), first_point_.end(), first_point_.begin());
   hidden_points_.resize(hidden_.size());
   for (std::size_t p = points_.size(); p-- > 0;) {
@@ -95,8 +95,8 @@ void ShadowFit::sort_by_direction() {
   }
 }
 
-/// The light being as it is. What the terms' products sum up to are monomials, too: fifteen instead
-/// of thirty-six sums.
+/// Fits the field with the light fixed. The sums of products of terms are monomials too: fifteen
+/// sums instead of thirty-six.
 void ShadowFit::fit_field(int channel) {
   Monomials moments = Monomials::Zero();
   Eigen::Array<float, 8, 1> sums = Eigen::Array<float, 8, 1>::Zero();
@@ -125,7 +125,7 @@ void ShadowFit::fit_field(int channel) {
   }
 }
 
-/// end_in_shadow: residuals below this are not yet mistakes where there may be a shadow.
+/// end_in_shadow: smaller residuals do not count as outliers where there may be a shadow.
 void ShadowFit::weigh(float end_in_shadow) {
   residuals_.clear();
   const auto residual = [](const Point& point) {
@@ -142,8 +142,8 @@ void ShadowFit::weigh(float end_in_shadow) {
   has_column_.assign(static_cast<std::size_t>(shares_.rows()), 0);
 }
 
-/// How the others' light and this direction's meet in points. Most directions get no share, and
-/// nobody asks for their columns.
+/// The column of the normal equations for this direction. Most directions get no share, so their
+/// columns are never needed.
 const float* ShadowFit::column(std::size_t direction) {
   float* const sums = squares_.col(static_cast<Eigen::Index>(direction)).data();
   if (has_column_[direction] != 0) return sums;
@@ -159,7 +159,8 @@ const float* ShadowFit::column(std::size_t direction) {
   return sums;
 }
 
-/// The field being as it is: least squares without negative shares, one after the other.
+/// Fits the shares with the field fixed: least squares without negative shares, one after the
+/// other.
 void ShadowFit::fit_shares(int channel) {
   const Eigen::Index count = shares_.rows();
   squares_.resize(count, count);
@@ -192,7 +193,7 @@ void ShadowFit::fit_shares(int channel) {
   }
 }
 
-/// By the brightness' shares.
+/// Sets the light that is left at each point, from the shares of the brightness.
 void ShadowFit::find_light() {
   for (Point& point : points_) point.light = 1;
   for (std::size_t d = 0; d < has_column_.size(); ++d) {

@@ -7,37 +7,39 @@
 
 namespace diminish {
 
-/// How much of a plane's light comes from where, by the shadows on it.
+/// Finds how much of a plane's light comes from where, using the shadows on it.
 ///
 /// The plane's brightness is a smooth field, quadratic in its coordinates, times the light that is
 /// left, and that is
 ///
 ///   light(p) = 1 - sum over directions d of  share_d hidden_d(p)
 ///
-/// where hidden_d(p) says that something stands between p and the light from d. Field and shares,
+/// where hidden_d(p) is 1 if something stands between p and the light from d. Field and shares,
 /// none of them negative, follow from the brightness by robust alternating least squares (Sato,
 /// Sato & Ikeuchi 2003, "Illumination from shadows").
 class ShadowFit {
  public:
-  /// Some light comes from everywhere.
+  /// There is always some ambient light.
   static constexpr float least_light = 0.15F;
 
-  /// Starts without points.
+  /// Starts a fit without points.
   void begin(std::size_t directions);
-  /// place: on the plane. levels: its colour. hidden: the directions from which something hides it.
+  /// Adds a point. place: on the plane. levels: its colour. hidden: the directions in which
+  /// something hides the light.
   void add(const Eigen::Vector2f& place, const Eigen::Array3f& levels,
            const std::vector<std::uint8_t>& hidden);
   std::size_t size() const { return points_.size(); }
 
-  /// Whether shadows explain the brightness: much better than none, taking no more light away than
-  /// objects on a plane can, and about as much of each channel. Cost: about 1 us a point.
+  /// Fits, and returns whether shadows explain the brightness: much better than no shadows, with no
+  /// more loss of light than objects on a plane can cause, and about the same loss in each channel.
+  /// Cost: about 1 us per point.
   bool fit();
-  /// By channel, of the light of one direction. After fit().
+  /// The share of one direction's light, by channel. Call after fit().
   Eigen::Array3f share(std::size_t direction) const;
 
  private:
   static constexpr int brightness = 3;  ///< a fourth channel: the mean of all
-  /// x^a y^b of a place (x, y), up to a + b = 4; those up to 2 first, which the field consists of.
+  /// x^a y^b of a place (x, y), up to a + b = 4. Those up to 2, which the field uses, come first.
   using Monomials = Eigen::Array<float, 16, 1>;
   struct Point {
     Monomials monomials;
@@ -56,10 +58,10 @@ class ShadowFit {
 
   std::vector<Point> points_;
   std::vector<std::uint8_t> hidden_;
-  /// By direction: the points that are hidden from it begin in hidden_points_ at first_point_, and
-  /// end where the next one's begin.
+  /// By direction: its hidden points begin in hidden_points_ at first_point_ and end where the next
+  /// direction's begin.
   std::vector<std::uint32_t> first_point_, hidden_points_;
-  /// The left side of the shares' equations, of those columns that were asked for.
+  /// The left side of the equations for the shares; only the columns that were needed.
   Eigen::MatrixXf squares_;
   std::vector<std::uint8_t> has_column_;
   Eigen::ArrayXf diagonal_, gradient_;

@@ -52,7 +52,7 @@ void LabelByPlanes(const float* depth_m, int count, const InverseDepth* all_plan
   });
 }
 
-/// Unrolled for as many planes as there are at most.
+/// Unrolled for the largest number of planes.
 void Label(const float* depth_m, int count, const InverseDepth* planes, int plane_count,
            const DepthNoise& tolerance, std::uint8_t* surface) {
   using ByPlanes = decltype(&LabelByPlanes<0>);

@@ -8,7 +8,7 @@
 #include "diminish/image.h"
 #include "diminish/reconstruction.h"
 
-// What BackgroundPlanes and CastShadows do to a few pixels of a row, on vector instructions.
+// The row kernels of BackgroundPlanes and CastShadows, on vector instructions.
 namespace diminish::surface_rows {
 
 /// 1 / z of a plane along a row: start + i slope.
@@ -16,25 +16,26 @@ struct InverseDepth {
   float start, slope;
 };
 
-/// Writes the label of each of `count` pixels: of the plane that it lies on, the last of several;
-/// where nothing was measured, of the nearest plane.
+/// Writes the label of each of `count` pixels: of the plane that it lies on (the last of several),
+/// or where nothing was measured, of the nearest plane.
 /// plane_count: at most 3.
-/// planes: their labels follow each other from surface_label::first_plane on.
+/// planes: their labels are consecutive from surface_label::first_plane on.
 void label(const float* depth_m, int count, const InverseDepth* planes, int plane_count,
            const DepthNoise& tolerance, std::uint8_t* surface);
 
 /// A shadow on some pixels of a row.
 struct Shading {
   std::uint8_t label;  ///< the plane's
-  /// A point is above it by z times what `first` says, less this.
+  /// A point's height above the plane is z times what `first` says, minus this.
   float distance_m;
   /// Shadows fade between this and twice this above the plane, times the noise.
   float fading_height;
-  /// The light that is missing in three channels, and the height for each metre of z; the second
-  /// is by how much they grow from pixel to pixel.
+  /// The missing light in three channels and the height per metre of z; the second value is their
+  /// step from pixel to pixel.
   Eigen::Array4f first, slope;
 };
-/// Writes the light that is left on `count` pixels: all but on those that have a shading's label.
+/// Writes the light that is left on `count` pixels: all of it, except on those with a shading's
+/// label.
 void shade(std::span<const Shading> shadings, const float* depth_m, const std::uint8_t* surface,
            int count, Bgr* light);
 

@@ -25,7 +25,7 @@ class ProcessorMaskDrawer : public MaskDrawer {
     DiscDilation dilation;
   };
 
-  std::vector<Tools> tools_;  ///< of each image
+  std::vector<Tools> tools_;  ///< one per image
 };
 
 const bool registered =

@@ -12,19 +12,19 @@
 
 namespace diminish {
 
-/// What one image's mask still needs.
+/// What is left to do for one image's mask.
 struct MaskDrawing {
   const Polygons* polygons = nullptr;  ///< to be drawn
-  int margin_px = 0;                   ///< by which the mask grows then
-  bool is_blank = true;                ///< nothing is set in it yet
-  Rect part;             ///< outside of which nothing is set, or will be before it grows
-  Mask* mask = nullptr;  ///< 0 and 255; of the image's size
-  /// By object, 0: becomes 1 where a polygon of its covers a pixel.
+  int margin_px = 0;                   ///< by which the mask grows afterwards
+  bool is_blank = true;                ///< no pixel is set yet
+  Rect part;                           ///< nothing is set outside it, now or before the mask grows
+  Mask* mask = nullptr;                ///< 0 and 255; of the image's size
+  /// By object: set to 1 where one of its polygons covers a pixel.
   std::vector<std::uint8_t> covers;
 };
 
-/// Finishes masks: draws polygons into them, and grows them by discs (DiscDilation). Any
-/// implementation sets the same pixels. Registered by name: "cpu", "gl".
+/// Finishes masks: draws polygons into them and grows them by discs (DiscDilation). All
+/// implementations set the same pixels. Registered by name: "cpu", "gl".
 class MaskDrawer {
  public:
   static constexpr const char* kind = "drawing of masks";
@@ -32,8 +32,8 @@ class MaskDrawer {
 
   virtual ~MaskDrawer() = default;
 
-  /// All drawings have the same number of objects. Throws Error where a GPU fails: the masks are
-  /// then as they were.
+  /// All drawings have the same number of objects. Throws Error if a GPU fails; the masks are then
+  /// unchanged.
   virtual void draw(std::span<MaskDrawing> drawings) = 0;
 };
 

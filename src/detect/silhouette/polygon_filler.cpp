@@ -9,7 +9,7 @@ std::int64_t divide_down(std::int64_t number, std::int64_t by) {
   return number / by - (number % by < 0 ? 1 : 0);
 }
 
-/// An edge on its way down the rows [first_row, last_row) that it crosses.
+/// An edge, followed down the rows [first_row, last_row) that it crosses.
 class Edge {
  public:
   int first_row, last_row;
@@ -31,7 +31,7 @@ class Edge {
     step_rest_ = step - step_ * unit_;
   }
 
-  /// The first column whose centre is at the edge, or right of it.
+  /// The first column whose centre is at the edge or right of it.
   int column(int width) const {
     return static_cast<int>(std::clamp<std::int64_t>(column_ + (rest_ > 0 ? 1 : 0), 0, width));
   }
@@ -75,10 +75,10 @@ void PolygonFiller::fill(const Polygons& polygons, Mask& mask, std::span<std::ui
   }
 }
 
-/// Where the polygon's edges cross each of its rows.
+/// Finds where the polygon's edges cross each of its rows.
 void PolygonFiller::list_columns(std::span<const Polygons::Corner> corners, const PolygonRows& rows,
                                  const Rect& picture) {
-  // First how many cross each row, so that there is a place for each.
+  // First counts the crossings of each row, to reserve a place for each.
   ends_.assign(static_cast<std::size_t>(rows.last - rows.first) + 1, 0);
   const auto end_of = [&](int row) -> int& {
     return ends_[static_cast<std::size_t>(row - rows.first)];
@@ -88,7 +88,7 @@ void PolygonFiller::list_columns(std::span<const Polygons::Corner> corners, cons
   });
   for (std::size_t row = 1; row < ends_.size(); ++row) ends_[row] += ends_[row - 1];
   columns_.resize(static_cast<std::size_t>(ends_.back()));
-  // What begins each row's list is moved to its end.
+  // Each row's begin is moved to its end.
   for_each_edge(corners, picture.height, [&](Edge edge) {
     for (int row = edge.first_row; row < edge.last_row; ++row) {
       columns_[static_cast<std::size_t>(end_of(row)++)] = edge.column(picture.width);
@@ -97,7 +97,7 @@ void PolygonFiller::list_columns(std::span<const Polygons::Corner> corners, cons
   });
 }
 
-/// row: of the polygon's.
+/// row: counted from the polygon's first.
 bool PolygonFiller::fill_row(int row, std::uint8_t* pixels) {
   const auto begin = columns_.begin() + (row > 0 ? ends_[static_cast<std::size_t>(row) - 1] : 0);
   const auto end = columns_.begin() + ends_[static_cast<std::size_t>(row)];

@@ -12,8 +12,8 @@ namespace diminish {
 /// Fills polygons.
 class PolygonFiller {
  public:
-  /// Sets the pixels inside to 255; leaves the others alone. covers: by object, becomes 1 where one
-  /// of its polygons covers a pixel.
+  /// Sets the pixels inside to 255 and leaves the others alone. covers: by object, set to 1 where
+  /// one of its polygons covers a pixel.
   void fill(const Polygons& polygons, Mask& mask, std::span<std::uint8_t> covers);
 
  private:
@@ -22,7 +22,7 @@ class PolygonFiller {
   bool fill_row(int row, std::uint8_t* pixels);
 
   std::vector<int> columns_;  ///< the first at or right of each edge, row by row
-  std::vector<int> ends_;     ///< of each row's columns
+  std::vector<int> ends_;     ///< end of each row's columns
 };
 
 }  // namespace diminish

@@ -10,10 +10,10 @@
 
 namespace diminish {
 
-/// Polygons in a picture, and by whole numbers which pixels they cover, so that any implementation
-/// sets the same ones and neighbours with a common edge neither overlap nor leave gaps: corners are
-/// rounded to 1/256 pixel; an edge crosses the rows from its upper end to before its lower one; a
-/// pixel is inside when the edges that cross its row at its centre or left of it are odd in number.
+/// Polygons in a picture. Whole numbers decide which pixels they cover, so all implementations set
+/// the same ones, and neighbours with a common edge neither overlap nor leave gaps. Corners are
+/// rounded to 1/256 pixel. An edge crosses the rows from its upper end to just before its lower
+/// one. A pixel is inside if an odd number of edges cross its row at its centre or left of it.
 struct Polygons {
   static constexpr int subpixels = 256;
 
@@ -21,8 +21,8 @@ struct Polygons {
     std::int32_t x, y;  ///< in subpixels
   };
   struct Polygon {
-    std::uint32_t end;     ///< its last corner's index and 1; it begins where the last one ends
-    std::uint32_t object;  ///< whose it is
+    std::uint32_t end;     ///< index after its last corner; it begins where the one before ends
+    std::uint32_t object;  ///< its object
   };
 
   std::vector<Corner> corners;
@@ -33,9 +33,9 @@ struct Polygons {
     polygons.clear();
   }
 
-  /// Begins or goes on with a polygon.
+  /// Adds a corner; begins a polygon if none is open.
   void add_corner(const Eigen::Vector2d& pixel) {
-    // Far outside of any picture; products of differences then fit into 53 bits.
+    // Far outside any picture; products of differences still fit into 53 bits.
     static constexpr double farthest_px = 65536;
     const auto rounded = [](double px) {
       const double within_px = std::clamp(px, -farthest_px, farthest_px);
@@ -57,7 +57,7 @@ struct Polygons {
     return polygon > 0 ? polygons[polygon - 1].end : 0;
   }
 
-  /// A part of the picture, outside of which no pixel is inside.
+  /// The part of the picture outside which no pixel is inside.
   Rect bounds(const Rect& picture) const {
     // Corners may be far outside.
     int left = picture.right();
@@ -86,7 +86,7 @@ struct PolygonRows {
     if (begin == end) return;
     const auto by_y = [](const auto& a, const auto& b) { return a.y < b.y; };
     const auto [top, bottom] = std::minmax_element(begin, end, by_y);
-    // What ends at a row's centre does not cross it.
+    // An edge that ends at a row's centre does not cross it.
     first = std::clamp(Polygons::row_from(top->y), 0, height);
     last = std::clamp(Polygons::row_from(bottom->y), first, height);
   }

@@ -17,8 +17,8 @@ double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-/// Where the line through two points meets the plane (or line) at which the signed distances that
-/// belong to them become 0.
+/// Where the line through two points meets the plane (or line) with these signed distances from the
+/// points.
 template <class Point>
 Point meeting_point(const Point& a, double distance_a, const Point& b, double distance_b) {
   return a + distance_a / (distance_a - distance_b) * (b - a);
@@ -41,12 +41,12 @@ void clip(const std::vector<Point>& polygon, const SignedDistance& distance,
   }
 }
 
-/// The rays that can reach the picture: a regular polygon around it, inside the radius where the
+/// The rays that can reach the picture: a regular polygon around it, within the radius where the
 /// distortion polynomial folds back.
 class FieldOfView {
  public:
   explicit FieldOfView(const Lens& lens) {
-    // A little more than the picture, so that the polygon's sides stay outside of it.
+    // A little larger than the picture, so that the polygon's sides stay outside it.
     const double radius = std::min(1.02 * picture_radius(lens), valid_radius(lens));
     constexpr int sides = 32;
     constexpr double half_angle = std::numbers::pi / sides;
@@ -56,7 +56,7 @@ class FieldOfView {
     }
   }
 
-  /// Cuts off a convex polygon's part outside.
+  /// Cuts off the part of a convex polygon that is outside.
   void clip_to_field(Polygon& rays, Polygon& scratch) const {
     const auto inside = [this](const Eigen::Vector2d& ray) { return ray.norm() <= inner_radius_; };
     if (std::all_of(rays.begin(), rays.end(), inside)) return;
@@ -94,7 +94,7 @@ class FieldOfView {
     return radius;
   }
 
-  /// The radius up to which the lens has a pixel for a ray.
+  /// The radius up to which the lens maps a ray to a pixel.
   static double valid_radius(const Lens& lens) {
     double valid = 0;
     double invalid = 10;
@@ -110,12 +110,12 @@ class FieldOfView {
   std::vector<Eigen::Vector2d> normals_;
 };
 
-/// Outlines polygons of rays; keeps its memory from one polygon to the next.
+/// Outlines polygons of rays; reuses its memory.
 class BentOutline {
  public:
   explicit BentOutline(const Lens& lens) : lens_(lens), field_(lens) {}
 
-  /// Adds the picture of a convex polygon of rays. Changes `rays`.
+  /// Adds the image of a convex polygon of rays. Changes `rays`.
   void add(Polygon& rays, std::uint32_t object, Polygons& polygons) {
     field_.clip_to_field(rays, scratch_);
     if (rays.size() < 3) return;
@@ -130,13 +130,13 @@ class BentOutline {
   }
 
  private:
-  /// Adds the picture of the edge from ray `a` to ray `b`, without its first point, as straight
-  /// pieces that follow its bend.
+  /// Adds the image of the edge from ray `a` to ray `b`, without its first point, as straight
+  /// pieces that follow its curve.
   void add_bent_edge(const Eigen::Vector2d& a, const Eigen::Vector2d& pixel_a,
                      const Eigen::Vector2d& b, const Eigen::Vector2d& pixel_b,
                      Polygons& polygons) const {
     constexpr double always_straight_px = 4;
-    constexpr double longest_px = 64;  // a longer piece could bend to both sides of its middle
+    constexpr double longest_px = 64;  // a longer piece could curve both ways
     constexpr double largest_bend_px = 0.02;
     const double length_px = (pixel_b - pixel_a).norm();
     if (length_px > always_straight_px) {
@@ -201,7 +201,8 @@ void Silhouette::outline_convex_hull(const std::vector<Eigen::Vector3d>& points_
   for (const Eigen::Vector3d& point : points_in_camera) {
     if (point.z() < near_m) continue;
     rays.emplace_back(point.head<2>() / point.z());
-    // What the near plane leaves of the hull has corners on lines between points on its two sides.
+    // After cutting by the near plane, the hull has corners on lines between points on its two
+    // sides.
     for (const Eigen::Vector3d& behind : points_in_camera) {
       if (behind.z() >= near_m) continue;
       const Eigen::Vector3d corner =

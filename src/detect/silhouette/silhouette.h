@@ -12,9 +12,9 @@
 
 namespace diminish {
 
-/// Outlines projected shapes as one lens pictures them, distortion included, to better than 0.1 px.
-/// What is closer than 1 cm to the camera's plane or behind it is cut off, as is what is far
-/// outside of the picture. Points are in the camera's frame, metres, finite.
+/// Outlines projected shapes as one lens pictures them, including distortion, to better than 0.1
+/// px. Cuts off everything less than 1 cm in front of the camera's plane, behind it, or far outside
+/// the picture. Points are in the camera's frame, metres, finite.
 class Silhouette {
  public:
   explicit Silhouette(const Lens& lens);
@@ -22,7 +22,7 @@ class Silhouette {
   Silhouette(Silhouette&&) noexcept;
   Silhouette& operator=(Silhouette&&) noexcept;
 
-  /// Adds the convex hull of `points_in_camera`, which may be flat, as an object's.
+  /// Adds the convex hull of `points_in_camera`, which may be flat, as part of an object.
   void outline_convex_hull(const std::vector<Eigen::Vector3d>& points_in_camera,
                            std::uint32_t object, Polygons& polygons);
 
@@ -36,7 +36,7 @@ class Silhouette {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// Draws silhouettes at once: sets their pixels to 255 and leaves the others alone. `mask` has the
+/// Draws silhouettes directly: sets their pixels to 255 and leaves the others alone. `mask` has the
 /// lens's size. Functions return whether the shape covers a pixel.
 class SilhouetteDrawer {
  public:
