@@ -10,7 +10,7 @@ namespace diminish::gl {
 
 namespace {
 
-/// Throws Error where the driver's `limit` is lower than `count`.
+/// Throws Error if the driver's `limit` is lower than `count`.
 void expect_limit(GLenum limit, std::size_t count, const char* things, const char* unit) {
   GLint64 most = 0;
   glGetInteger64v(limit, &most);

@@ -7,7 +7,7 @@
 
 namespace diminish::gl {
 
-/// A buffer's name; deleted with it, which must happen while the context is current.
+/// A buffer's name. Deletes the buffer at its end, when the context must be current.
 class BufferName {
  public:
   BufferName() = default;
@@ -33,13 +33,13 @@ class BufferName {
   GLuint name_ = 0;
 };
 
-/// Memory of the GPU's own.
+/// A buffer in the GPU's own memory.
 class Buffer {
  public:
-  /// Makes it this large at least; what it held is lost if it grows. Returns whether it grew.
-  /// Throws Error where it is larger than what the driver's storage blocks may be.
+  /// Makes it at least this large. Its contents are lost if it grows. Returns whether it grew.
+  /// Throws Error if it exceeds the driver's limit for storage blocks.
   bool reserve(std::size_t bytes);
-  /// For shaders, as storage block `binding`.
+  /// Binds it for shaders as storage block `binding`.
   void bind(GLuint binding) const {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, name_.get());
   }
@@ -50,7 +50,7 @@ class Buffer {
   std::size_t size_ = 0;
 };
 
-/// A buffer as a texture of `format`: what shaders that only read it do best.
+/// A buffer as a texture of `format`: best for shaders that only read it.
 class BufferTexture {
  public:
   BufferTexture() = default;
@@ -60,8 +60,8 @@ class BufferTexture {
   BufferTexture(const BufferTexture&) = delete;
   BufferTexture& operator=(const BufferTexture&) = delete;
 
-  /// The buffer as it is now: made anew when it grows. Throws Error where it has more texels
-  /// than the driver takes.
+  /// Takes the buffer as it is now; create it again when the buffer grows. Throws Error if it has
+  /// more texels than the driver allows.
   void create(const Buffer& buffer, GLenum format, std::size_t texels);
   void bind(GLuint unit) const { glBindTextureUnit(unit, name_); }
 
@@ -69,8 +69,8 @@ class BufferTexture {
   GLuint name_ = 0;
 };
 
-/// Memory that the processor and the GPU both reach, mapped for as long as it lives: what is
-/// uploaded and downloaded passes through it.
+/// Memory that both the CPU and the GPU can access, mapped for as long as it lives. Uploads and
+/// downloads pass through it.
 class MappedBuffer {
  public:
   enum class Use { upload, download };
@@ -87,12 +87,12 @@ class MappedBuffer {
   std::byte* data_ = nullptr;
 };
 
-/// Copies `bytes` from the start of one buffer to another, from its byte `at` on.
+/// Copies `bytes` from the start of one buffer to another, at byte `at`.
 inline void copy(GLuint from, GLuint to, std::size_t bytes, std::size_t at = 0) {
   glCopyNamedBufferSubData(from, to, 0, static_cast<GLintptr>(at), static_cast<GLsizeiptr>(bytes));
 }
 
-/// Waits until everything that was asked for so far is done. Throws Error after ten seconds.
+/// Waits until all commands so far are done. Throws Error after ten seconds.
 void wait_until_done();
 
 }  // namespace diminish::gl

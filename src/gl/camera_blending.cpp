@@ -40,7 +40,7 @@ Rect cells_of(const Rect& region) {
           std::max(1, region.height / Grid::cell_px)};
 }
 
-/// Rows of 64.
+/// In rows of 64.
 void dispatch(const Program& program, const Rect& size, std::size_t depth = 1) {
   program.use();
   glDispatchCompute(static_cast<GLuint>((size.width + 63) / 64), static_cast<GLuint>(size.height),

@@ -12,33 +12,33 @@
 
 namespace diminish::gl {
 
-/// The files of a pass over what a Rasterizer has found, before its own. seen_files: the
+/// The shader files that come before those of a pass over a Rasterizer's results. seen_files: the
 /// Rasterizer's.
 std::vector<std::string> files_before(const std::vector<std::string>& seen_files);
 
-/// Blends what several RGB-D cameras show by the rules of layers.h: what CameraBlender does, in
-/// compute passes over pixels and over the cells of a ConfidenceGrid. Nothing is taken out of the
-/// cameras' surfaces: a sliver's camera is not among those that see the pixel.
-/// Made, used (but for `pack`) and deleted while the context is current.
+/// Blends the views of several RGB-D cameras by the rules of layers.h, like CameraBlender, in
+/// compute passes over pixels and over the cells of a ConfidenceGrid. Does not change the cameras'
+/// surfaces: a sliver's camera simply does not count as seeing the pixel. Create, use (except
+/// `pack`) and delete it while the context is current.
 class CameraBlending {
  public:
-  /// What `pack` adds to an upload at most.
+  /// The most bytes that `pack` adds to an upload.
   static constexpr std::size_t most_added_bytes =
       most_cameras * sizeof(CameraPlaceBlock) + block_alignment;
 
-  /// seen_files: of the Rasterizer. Throws Error where the driver does not take the shaders.
+  /// seen_files: the Rasterizer's. Throws Error if the driver rejects the shaders.
   CameraBlending(const Rig& rig, const std::vector<std::string>& seen_files);
 
-  /// Adds the cameras' places to the upload, which has packed the frame; needs no context.
+  /// Adds the cameras' places to the upload, which has packed the frame. Needs no context.
   void pack(FrameUpload& upload);
-  /// Whether so few cameras take part that `run` blends them however many see something. Else it
-  /// may leave the result to the pass that chooses one, which must come before.
+  /// Whether there are few enough cameras that `run` always blends them. Otherwise it may leave the
+  /// result to the pass that chooses one camera, which must run before.
   static bool surely_blends(const FrameUpload& upload) {
     return static_cast<std::size_t>(upload.cameras()) <= blending::most_cameras;
   }
-  /// Which cameras the region's pixels are taken from, and their colours. work: the cameras'
-  /// WorkBlocks, in order. What the Rasterizer has found, and both buffers of results
-  /// (ResultBuffers), are bound.
+  /// Finds which cameras the region's pixels are taken from, and their colours. work: the cameras'
+  /// WorkBlocks, in order. The Rasterizer's results and both result buffers (ResultBuffers) must be
+  /// bound.
   void run(const FrameUpload& upload, const Rect& region, const Buffer& work, PassTimer& timer);
 
  private:

@@ -64,7 +64,7 @@ struct CompositionBlock {
   ColorMapBlock maps[most_cameras];
 };
 static_assert(sizeof(ShadowBlock) == 64 && sizeof(ColorMapBlock) == 96);
-// What any driver takes as a uniform block.
+// The size that every driver supports for a uniform block.
 static_assert(sizeof(CompositionBlock) <= 16384);
 
 }  // namespace diminish::gl

@@ -4,8 +4,8 @@
 
 namespace diminish::gl {
 
-/// The constants that the processor's stages have, for composition.glsl and the passes after it, as
-/// lines of definitions.
+/// The constants of the CPU's stages as lines of definitions, for composition.glsl and the passes
+/// after it.
 std::string composition_rules();
 
 }  // namespace diminish::gl

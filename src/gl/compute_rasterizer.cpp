@@ -6,8 +6,8 @@
 namespace diminish::gl {
 namespace {
 
-/// The default: rules 1 to 5 of sdct.h in compute shaders, to the rounding what the processor does.
-/// Surviving triangles are listed, and drawn by what the list's length asks for.
+/// The default: rules 1 to 5 of sdct.h in compute shaders, with the CPU's rounding. Lists the
+/// surviving triangles, and draws as many as the list holds.
 class ComputeRasterizer : public Rasterizer {
  public:
   ComputeRasterizer(const Rig& rig, const FrameUpload& upload)

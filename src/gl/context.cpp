@@ -43,7 +43,7 @@ struct Context::State {
   EGLDisplay display = EGL_NO_DISPLAY;
   EGLContext context = EGL_NO_CONTEXT;
   Driver driver;
-  /// Held by all contexts that have their objects in common.
+  /// Shared by all contexts that share objects.
   std::shared_ptr<const int> group = std::make_shared<int>();
 
   State() = default;

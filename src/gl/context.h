@@ -8,21 +8,21 @@
 
 namespace diminish::gl {
 
-/// What draws.
+/// The driver that draws.
 struct Driver {
-  std::string name;      ///< as the driver calls itself: "llvmpipe (LLVM 15.0.6, 256 bits)"
-  std::string version;   ///< of OpenGL, and the driver's own
-  bool software = true;  ///< the processor does the work; also where the driver does not say
+  std::string name;      ///< the driver's own name: "llvmpipe (LLVM 15.0.6, 256 bits)"
+  std::string version;   ///< OpenGL's, and the driver's own
+  bool software = true;  ///< runs on the CPU; also if the driver does not say
 };
 
-/// An OpenGL 4.5 core context without a window, by EGL: on Mesa's surfaceless platform, else on a
-/// device of the device platform. A hardware driver is taken before a software one.
+/// An OpenGL 4.5 core context without a window, through EGL: on Mesa's surfaceless platform, else
+/// on a device of the device platform. Prefers a hardware driver.
 class Context {
  public:
   /// Throws Error that says what is missing.
   Context();
-  /// One that has its textures, buffers, programs and fences in common with another, which may be
-  /// current in another thread. Throws Error that says what is wrong with that.
+  /// A context that shares textures, buffers, programs and fences with another, which may be
+  /// current in another thread. Throws Error that says what is wrong if that is impossible.
   static Context sharing_with(const GlSharing& application);
   static Context sharing_with(const Context& other);
   ~Context();
@@ -30,11 +30,11 @@ class Context {
   Context& operator=(Context&&) noexcept;
 
   const Driver& driver() const;
-  /// Whether they have their objects in common.
+  /// Whether two contexts share their objects.
   bool shares_with(const Context& other) const;
 
-  /// Throws Error if a call since the last check failed or the context was lost. doing: what the
-  /// message names.
+  /// Throws Error if a call since the last check failed or the context was lost. doing: the step
+  /// that the message names.
   void check(const char* doing) const;
 
   struct State;
@@ -45,8 +45,8 @@ class Context {
   std::unique_ptr<State> state_;
 };
 
-/// While it lives, this thread's OpenGL calls go to the context; afterwards to what they went to
-/// before. Nothing that may run another frame on this thread (a TBB loop) belongs inside.
+/// While it lives, this thread's OpenGL calls go to the context; afterwards to the one before. Code
+/// that may run another frame on this thread (a TBB loop) must not be inside.
 class Current {
  public:
   /// Throws Error if the context cannot be used.
@@ -63,7 +63,7 @@ class Current {
   void* previous_read_;
 };
 
-/// Deletes what was made in the context. Where that is gone, all that it held is gone with it.
+/// Deletes what was created in the context. If the context is gone, everything in it is gone too.
 template <class Resources>
 void delete_in(const Context& context, std::unique_ptr<Resources>& resources) {
   try {
@@ -74,7 +74,7 @@ void delete_in(const Context& context, std::unique_ptr<Resources>& resources) {
   }
 }
 
-/// Whether a context can be made, and hardware draws.
+/// Whether a context can be created and hardware draws.
 bool has_hardware_driver();
 
 }  // namespace diminish::gl

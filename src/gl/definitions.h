@@ -11,8 +11,8 @@
 
 namespace diminish::gl {
 
-// A constant of the processor's code as a line that shaders are compiled with: they have no numbers
-// of their own.
+// A constant of the CPU's code as a line to compile shaders with: they have no numbers of their
+// own.
 
 inline std::string define_as(const char* name, const std::string& value) {
   return fmt::format("#define {} {}\n", name, value);

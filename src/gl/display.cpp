@@ -16,7 +16,7 @@ namespace {
 constexpr int major_version = 4;
 constexpr int minor_version = 5;
 
-/// Whether a list of extensions, divided by spaces, names one.
+/// Whether a space-separated list of extensions names one.
 bool lists(const char* extensions, std::string_view name) {
   std::string_view rest = extensions ? extensions : "";
   while (!rest.empty()) {
@@ -52,7 +52,7 @@ std::string_view egl_error_name(EGLint error) {
   }
 }
 
-/// libepoxy ends the program where there is no EGL library at all.
+/// libepoxy aborts the program if there is no EGL library at all.
 void expect_egl_library() {
   static void* const library = dlopen("libEGL.so.1", RTLD_LAZY | RTLD_GLOBAL);
   if (!library) throw Error("gl: expected an EGL library (libEGL.so.1), there is none");
@@ -94,7 +94,7 @@ void* make_context(void* display, void* shared) {
                       {EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET});
     const EGLContext context = eglCreateContext(display, config, shared, attributes.data());
     if (context != EGL_NO_CONTEXT) return context;
-    // Contexts that share must be alike in this (EGL 1.5, 3.7.1).
+    // Contexts that share must agree in this (EGL 1.5, 3.7.1).
     attributes[count] = EGL_NONE;
   }
   return eglCreateContext(display, config, shared, attributes.data());
@@ -153,7 +153,7 @@ Display find_display() {
 }  // namespace
 
 const Display& chosen_display() {
-  // Looked for once: displays belong to the process.
+  // Searched once: displays belong to the process.
   static const Display display = find_display();
   return display;
 }

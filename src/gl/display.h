@@ -4,29 +4,29 @@
 
 namespace diminish::gl {
 
-// EGL's handles are pointers: what they point to is EGL's own.
+// EGL's handles are opaque pointers.
 
-/// A place where contexts can be made.
+/// A display on which contexts can be created.
 struct Display {
   void* display = nullptr;  ///< EGLDisplay, initialised
-  bool software = true;     ///< the processor draws
+  bool software = true;     ///< the CPU draws
 };
 
-/// The first display with a hardware driver, else the first that can do what is needed. Throws
-/// Error where there is none.
+/// The first display with a hardware driver, else the first usable one. Throws Error if there is
+/// none.
 const Display& chosen_display();
 
-/// Throws Error where there is no EGL: before any other call of it.
+/// Throws Error if there is no EGL. Call before any other EGL function.
 void expect_egl_library();
 
-/// True also where the platform does not say.
+/// Also true if the platform does not say.
 bool draws_in_software(void* display);
 
-/// An EGLContext of OpenGL 4.5 core that needs no surface; null where it cannot be made. shared: an
-/// EGLContext whose objects it shares, or null.
+/// Creates an EGLContext of OpenGL 4.5 core that needs no surface; null if that fails. shared: an
+/// EGLContext to share objects with, or null.
 void* make_context(void* display, void* shared = nullptr);
 
-/// What eglGetError has returned.
+/// The text of eglGetError's result.
 std::string_view egl_error_name(int error);
 
 }  // namespace diminish::gl

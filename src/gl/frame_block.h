@@ -63,7 +63,7 @@ struct CameraBlock {
 };
 static_assert(sizeof(CameraBlock) == 192);
 
-/// Where a camera is, in the colour camera's frame (blending.glsl): CameraPlace.
+/// A camera's place in the colour camera's frame (blending.glsl): CameraPlace.
 struct CameraPlaceBlock {
   float eye_m[4] = {};
   float forward[4] = {};
@@ -76,13 +76,14 @@ struct CameraPlaceBlock {
   }
 };
 
-/// Ranges of buffers that shaders see as blocks begin at multiples of this: what any driver takes.
+/// Ranges of buffers that shaders see as blocks begin at multiples of this, which every driver
+/// accepts.
 constexpr std::size_t block_alignment = 256;
 
-/// As many RGB-D cameras as a frame may have.
+/// The most RGB-D cameras of a frame.
 constexpr std::size_t most_cameras = 128;
 
-/// work.glsl's Work.
+/// Work in work.glsl.
 struct WorkBlock {
   std::uint32_t small_groups[3], small_count;
   std::uint32_t large_groups[3], large_count;

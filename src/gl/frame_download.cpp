@@ -7,7 +7,7 @@
 namespace diminish::gl {
 namespace {
 
-/// Where the parts begin; the picture is the first.
+/// Where the parts begin; the picture comes first.
 struct Layout {
   std::size_t counts, result, surface, second, end;
 

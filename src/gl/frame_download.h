@@ -9,34 +9,35 @@
 
 namespace diminish::gl {
 
-/// What comes back of a frame that was composed on the GPU.
+/// Downloads a frame that was composed on the GPU.
 class FrameDownload {
  public:
-  /// The objects' pixels, and those of them that no camera saw.
+  /// The number of the objects' pixels, and of those that no camera saw.
   struct Counts {
     std::uint32_t mask, missing;
   };
-  /// What there is: of the region, row by row.
+  /// The results on the GPU, for the region, row by row.
   struct Source {
     const Buffer& picture;  ///< colour, and provenance in the highest byte
     const Buffer& counts;
     const Buffer& surface;  ///< Reconstruction::surface, and ::light above it
     const ResultBuffers& reconstruction;
   };
-  /// What of it comes back, besides the counts.
+  /// What to download besides the counts.
   struct Wanted {
     bool picture;
     bool reconstruction;
   };
 
-  /// While the context is current: room for regions up to `whole`. blends: whether frames may have
-  /// second views.
+  /// Reserves memory for regions up to `whole`. The context must be current. blends: whether frames
+  /// may have second views.
   void reserve(const Rect& whole, bool blends);
-  /// Likewise: sends it on its way. upload: of this frame.
+  /// Starts the download. The context must be current. upload: this frame's.
   void begin(const Source& source, const Rect& region, const Wanted& wanted,
              const FrameUpload& upload);
-  /// When the GPU is done: fills the result's pixel counts and what was wanted. Outside the region
-  /// its images are the caller's. What was not wanted of the reconstruction is empty.
+  /// Call when the GPU is done. Fills the result's pixel counts and what was wanted. Outside the
+  /// region its images are the caller's business. Unwanted images of the reconstruction become
+  /// empty.
   void read(const FrameInputs& inputs, const FrameUpload& upload, DiminishedFrame& result) const;
 
  private:

@@ -12,10 +12,10 @@
 namespace diminish::gl {
 namespace {
 
-/// As many groups of 64 as one dispatch may have.
+/// The most groups of 64 in one dispatch.
 constexpr std::size_t most_depth_pixels_of_a_camera = 64 * 65535;
 
-/// The frame's block, and then the cameras'.
+/// The frame's block, then the cameras'.
 constexpr std::size_t block_at(std::size_t index) {
   return index * block_alignment;
 }
@@ -62,7 +62,7 @@ FrameUpload::FrameUpload(const Rig& rig, std::size_t most_added_bytes) {
   constexpr int tile = TiledRegion::tile;
   bytes += whole_words(static_cast<std::size_t>(rig.color.width / tile + 1) *
                        static_cast<std::size_t>(rig.color.height / tile + 1));
-  // A pixel's last byte is read with the word after it.
+  // A pixel's last byte is read together with the next word.
   bytes += 4 + most_added_bytes;
   mapped_.reserve(bytes);
   on_gpu_.reserve(bytes);

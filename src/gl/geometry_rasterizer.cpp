@@ -6,7 +6,7 @@
 namespace diminish::gl {
 namespace {
 
-/// A texture's or framebuffer's name and the like, deleted by `destroy`.
+/// The name of a texture, framebuffer or the like; deleted with `destroy`.
 template <auto* destroy>
 class Name {
  public:
@@ -20,10 +20,10 @@ class Name {
   GLuint value = 0;
 };
 
-/// The way of Meerits & Saito 2015, section 3.3: the graphics pipeline draws every cell of the
-/// depth image; its geometry shader leaves out triangles across depth edges and those that face
-/// away. Which pixels a triangle covers is the driver's decision, and may differ where a pixel's
-/// centre is within its rounding of an edge.
+/// The paper's way (Meerits & Saito 2015, section 3.3): the graphics pipeline draws every cell of
+/// the depth image, and its geometry shader removes triangles across depth edges and those that
+/// face away. The driver decides which pixels a triangle covers, so results may differ where a
+/// pixel's centre is within its rounding of an edge.
 class GeometryRasterizer : public Rasterizer {
  public:
   GeometryRasterizer(const Rig& rig, const FrameUpload& /*upload*/)
@@ -60,7 +60,7 @@ class GeometryRasterizer : public Rasterizer {
       glViewport(0, 0, picture_.width, picture_.height);
       glEnable(GL_SCISSOR_TEST);
       glScissor(region.x, region.y, region.width, region.height);
-      // Depth is near / z: nearer is more.
+      // Depth is near / z: larger is nearer.
       glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
       glEnable(GL_DEPTH_TEST);
       glDepthFunc(GL_GREATER);
@@ -114,7 +114,7 @@ class GeometryRasterizer : public Rasterizer {
 
   Intrinsics picture_;
   Program program_;
-  std::vector<Indices> indices_;  ///< of each of the rig's cameras
+  std::vector<Indices> indices_;  ///< one for each of the rig's cameras
   Name<&glDeleteTextures> seen_;
   Name<&glDeleteRenderbuffers> depth_;
   Name<&glDeleteFramebuffers> target_;

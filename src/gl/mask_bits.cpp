@@ -7,7 +7,7 @@
 namespace diminish::gl {
 namespace {
 
-/// Eight pixels for each eight bits.
+/// Eight pixels for every eight bits.
 std::array<std::array<std::uint8_t, 8>, 256> make_pixels() {
   std::array<std::array<std::uint8_t, 8>, 256> all{};
   for (std::size_t bits = 0; bits < all.size(); ++bits) {

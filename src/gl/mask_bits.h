@@ -6,15 +6,15 @@
 
 namespace diminish::gl {
 
-// Masks as a bit a pixel: words of 32 pixels of a row, the leftmost in the lowest bit.
+// Masks with one bit per pixel: words of 32 pixels of a row, the leftmost in the lowest bit.
 
-/// A part of a mask, in rows and words of a row.
+/// A part of a mask, in rows and words.
 struct BitWindow {
   int first_word = 0, first_row = 0;
   int words = 0, rows = 0;
 
   BitWindow() = default;
-  /// The whole words that hold a part of the picture.
+  /// The whole words that contain a part of the picture.
   explicit BitWindow(const Rect& part);
   int size() const { return words * rows; }
 };

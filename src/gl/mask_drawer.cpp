@@ -10,12 +10,12 @@
 namespace diminish::gl {
 namespace {
 
-/// Half a disc's row reaches no further than the next word.
+/// Half a row of the disc reaches at most into the next word.
 constexpr int most_margin_px = 31;
 constexpr int rows_of_part = 32;
 constexpr std::size_t parts_across = 32768;
 
-// What masks.glsl declares.
+// As declared in masks.glsl.
 
 /// A window of an image's mask, and where it begins in the arrays.
 struct ImageBlock {
@@ -33,11 +33,11 @@ struct PartBlock {
 };
 static_assert(sizeof(PartBlock) == 16);
 
-/// What shaders see as a block: a range of bytes.
+/// A range of bytes that shaders see as a block.
 struct Range {
   std::size_t begin = 0, bytes = 0;
 
-  /// The one after `last`.
+  /// The range after `last`.
   static Range after(const Range& last, std::size_t bytes) {
     const std::size_t end = last.begin + last.bytes;
     return {(end + block_alignment - 1) / block_alignment * block_alignment, bytes};
@@ -49,7 +49,8 @@ void bind(GLuint binding, GLuint buffer, const Range& range) {
                     static_cast<GLsizeiptr>(std::max<std::size_t>(range.bytes, 4)));
 }
 
-/// Outlines grow and shrink from frame to frame: where there is not enough room, half as much more.
+/// Outlines grow and shrink from frame to frame. If there is not enough room, takes half as much
+/// more.
 std::size_t room_for(std::size_t bytes, std::size_t& room) {
   if (bytes > room) room = bytes + bytes / 2;
   return room;
@@ -86,7 +87,7 @@ struct GpuMaskDrawer::Resources {
 
   Range image_range_, part_range_, corner_range_, bit_range_;         ///< of the input
   Range grown_range_, cover_range_;                                   ///< of the output
-  std::size_t input_bytes_ = 0, drawn_bytes_ = 0, output_bytes_ = 0;  ///< that there is room for
+  std::size_t input_bytes_ = 0, drawn_bytes_ = 0, output_bytes_ = 0;  ///< for which there is room
 };
 
 void GpuMaskDrawer::Resources::list(std::span<const MaskDrawing> drawings) {

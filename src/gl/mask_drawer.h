@@ -8,10 +8,10 @@
 
 namespace diminish::gl {
 
-/// Draws and grows the masks of all images on the GPU: corners go up, a bit a pixel comes down.
+/// Draws and grows the masks of all images on the GPU: corners go up, one bit per pixel comes down.
 class GpuMaskDrawer : public MaskDrawer {
  public:
-  /// Throws Error where there is no driver that can do it.
+  /// Throws Error if no driver can do it.
   GpuMaskDrawer();
   ~GpuMaskDrawer() override;
 
@@ -22,7 +22,7 @@ class GpuMaskDrawer : public MaskDrawer {
 
   Context context_;
   std::unique_ptr<Resources> resources_;
-  DiscDilation dilation_;  ///< for margins that are too wide for the GPU
+  DiscDilation dilation_;  ///< for margins that are too large for the GPU
 };
 
 }  // namespace diminish::gl

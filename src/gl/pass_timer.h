@@ -10,9 +10,9 @@
 
 namespace diminish::gl {
 
-/// Measures the GPU's time in each pass of a frame: by timestamp queries, which the GPU answers
-/// when it comes to them. A software driver, whose queries say little of compute shaders, is let
-/// finish each pass and asked for its clock: what works is the processor, and nothing else waits.
+/// Measures the GPU's time in each pass of a frame with timestamp queries. A software driver's
+/// queries say little about compute shaders, so there each pass is finished before its clock is
+/// read: the CPU does the work, and nothing else waits.
 class PassTimer {
  public:
   explicit PassTimer(bool software) : software_(software) {}
@@ -29,7 +29,7 @@ class PassTimer {
     mark();
   }
 
-  /// Calls `pass`, whose time will be called `name`. A name may come again.
+  /// Calls `pass` and measures it as `name`. A name may be used again.
   template <class Pass>
   void measure(const char* name, const Pass& pass) {
     pass();
@@ -37,7 +37,7 @@ class PassTimer {
     mark();
   }
 
-  /// Gives the frame's passes, in the order of their first call. Waits for the GPU where it has not
+  /// Returns the frame's passes in the order of their first call. Waits for the GPU if it has not
   /// finished.
   void read(std::vector<GpuPass>& passes) {
     passes.clear();

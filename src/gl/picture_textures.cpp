@@ -56,7 +56,7 @@ PictureTextures::PictureTextures(const GlSharing& application, const Intrinsics&
   }
   const Current current(context_);
   resources_ = std::make_unique<Resources>(color, application.textures);
-  // What is made in one context is there for the others when that is done.
+  // Objects created in one context are there for the others when that is done.
   wait_until_done();
   context_.check("making textures");
 }
@@ -94,7 +94,7 @@ void PictureTextures::draw_packed() const {
 void PictureTextures::draw_region(const Buffer& pixels, const Rect& region) const {
   const Resources& r = *resources_;
   pixels.bind(0);
-  // As whole numbers: what is stored is what was computed.
+  // As integers, so that the stored value is the computed one.
   glBindImageTexture(0, r.slots[r.next]->texture, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8UI);
   r.draw_region.use();
   glProgramUniform4i(r.draw_region.name(), 0, region.x, region.y, region.width, region.height);
@@ -110,7 +110,7 @@ void PictureTextures::publish() {
   r.next = (r.next + 1) % r.slots.size();
   glDeleteSync(slot.ready);
   slot.ready = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
-  // Another context may wait for it only once it is on its way.
+  // Another context may wait for it only after it was flushed.
   glFlush();
   latest_ = {slot.texture, color_.width, color_.height, slot.ready};
 }

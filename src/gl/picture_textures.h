@@ -9,11 +9,11 @@
 
 namespace diminish::gl {
 
-/// A few textures, which frames' pictures go to in turn, in a context that shares with an
-/// application's. What is `packed` and `drawn` belongs to one picture; `publish` ends it.
+/// A few textures that take frames' pictures in turn, in a context that shares with an
+/// application's. Everything `packed` and `drawn` belongs to one picture, until `publish`.
 class PictureTextures : public TextureOutput {
  public:
-  /// Throws Error where the application's context cannot be shared.
+  /// Throws Error if the application's context cannot be shared.
   PictureTextures(const GlSharing& application, const Intrinsics& color);
   ~PictureTextures() override;
 
@@ -23,13 +23,15 @@ class PictureTextures : public TextureOutput {
   /// What is called with a context that shares with this one current may draw into the textures.
   const Context& context() const { return context_; }
 
-  /// Writes a picture into mapped memory; needs no context. The GPU must be done with the last.
+  /// Writes a picture into mapped memory. Needs no context. The GPU must be done with the last
+  /// picture.
   void pack(const Image<Bgr>& picture);
-  /// In a context that shares: what is packed, to the next texture.
+  /// Copies the packed picture to the next texture. Needs a context that shares.
   void draw_packed() const;
-  /// Likewise, over it: a region's pixels, row by row; blue, green, red and any byte.
+  /// Draws a region's pixels over it, row by row: blue, green, red and any byte. Needs a context
+  /// that shares.
   void draw_region(const Buffer& pixels, const Rect& region) const;
-  /// Likewise: what was drawn is the latest picture.
+  /// Makes what was drawn the latest picture. Needs a context that shares.
   void publish();
 
  private:

@@ -6,7 +6,7 @@
 
 namespace diminish::gl {
 
-/// How many they are.
+/// The number of pixels.
 inline std::size_t pixels_of(const Rect& region) {
   return static_cast<std::size_t>(region.width) * static_cast<std::size_t>(region.height);
 }

@@ -14,11 +14,11 @@
 namespace diminish::gl {
 namespace {
 
-/// Lines are numbered from `file_lines` times the file's place on: drivers write "0:12(5): error:
-/// ..." or "0(12) : error ...", and not all care for #line's second number.
+/// The lines of file number i are numbered from i * `file_lines` on: drivers write "0:12(5): error:
+/// ..." or "0(12) : error ...", and not all of them use #line's second number.
 constexpr std::size_t file_lines = 10000;
 
-/// The first error in a compiler's log, with the names of the files that it was given.
+/// The first error in a compiler's log, with the names of the files.
 std::string first_error(std::string_view log, const std::vector<std::string>& files) {
   const std::size_t error = std::min(log.find("error"), log.size());
   const std::size_t before = error == 0 ? std::string_view::npos : log.rfind('\n', error - 1);
@@ -53,7 +53,7 @@ std::string log_of(GLuint object, const Get& get, const Log& get_log) {
   return log.c_str();
 }
 
-/// A shader object, deleted when its program has been linked.
+/// A shader object; deleted after its program has been linked.
 class ShaderObject {
  public:
   explicit ShaderObject(const Shader& shader) : name_(glCreateShader(shader.stage)) {

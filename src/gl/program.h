@@ -8,17 +8,17 @@
 
 namespace diminish::gl {
 
-/// One stage of a program: files of src/gl/shaders, one after the other.
+/// One stage of a program: files of src/gl/shaders, concatenated.
 struct Shader {
   GLenum stage;
   std::vector<std::string> files;
-  std::string defines;  ///< lines that stand before them
+  std::string defines;  ///< lines before them
 };
 
-/// A linked program. Made and deleted while the context is current.
+/// A linked program. Create and delete it while the context is current.
 class Program {
  public:
-  /// Throws Error that names file and line of what the driver's compiler did not take.
+  /// Throws Error with file and line of what the driver's compiler rejected.
   explicit Program(const std::vector<Shader>& shaders);
   ~Program() { glDeleteProgram(name_); }
   Program(Program&& other) noexcept : name_(std::exchange(other.name_, 0)) {}
@@ -29,7 +29,7 @@ class Program {
 
   void use() const { glUseProgram(name_); }
   GLuint name() const { return name_; }
-  /// -1 where the compiler left the uniform out: setting that is no error.
+  /// -1 if the compiler removed the uniform; setting that is no error.
   GLint location(const char* uniform) const { return glGetUniformLocation(name_, uniform); }
   void set(const char* uniform, int value) const {
     glProgramUniform1i(name_, location(uniform), value);
@@ -50,7 +50,7 @@ inline Program compute_program(std::vector<std::string> files, std::string defin
 /// Whether src/gl/shaders has a file of this name.
 bool has_shader_file(const std::string& name);
 
-/// What every shader begins with: the version, and the constants of sdct.h.
+/// The beginning of every shader: the version and the constants of sdct.h.
 std::string shader_prologue();
 
 }  // namespace diminish::gl

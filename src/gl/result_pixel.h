@@ -10,17 +10,17 @@
 
 namespace diminish::gl {
 
-/// A pixel of the reconstruction's region as color.comp leaves it.
+/// A pixel of the reconstruction's region, as color.comp writes it.
 struct ResultPixel {
   std::uint8_t b, g, r;
   std::uint8_t place;  ///< among the cameras that take part, from 1 on; 0: nothing
   float depth_m;
 };
 
-/// What a second camera shows of the same surface, where cameras are blended.
+/// A second camera's view of the same surface, if cameras are blended.
 struct SecondPixel {
   std::uint8_t b, g, r;
-  std::uint8_t place;   ///< as above; 0: there is none
+  std::uint8_t place;   ///< as above; 0: none
   std::uint32_t share;  ///< SecondView::share
 };
 
@@ -29,12 +29,12 @@ static_assert(sizeof(ResultPixel) == 8 && sizeof(SecondPixel) == 8);
 /// Both of the region's pixels.
 struct ResultBuffers {
   Buffer first;   ///< ResultPixels
-  Buffer second;  ///< SecondPixels; of no meaning where the upload does not blend
+  Buffer second;  ///< SecondPixels; meaningless if the upload does not blend
 };
 
-/// Writes colour, depth and source of the reconstruction's region. Where the upload blends the
-/// second view's, too, whose images have their size; it becomes empty if it is so in all pixels.
-/// upload: of this frame.
+/// Writes colour, depth and source of the reconstruction's region. If the upload blends, also
+/// writes the second view, whose images have the same size; it becomes empty if all its pixels are.
+/// upload: this frame's.
 void unpack(const ResultPixel* pixel, const SecondPixel* second, const FrameUpload& upload,
             Reconstruction& reconstruction);
 

@@ -13,10 +13,10 @@
 namespace diminish::gl {
 namespace {
 
-/// What a work group's own memory holds on any driver (32 KiB).
+/// The memory of a work group on every driver (32 KiB).
 constexpr std::size_t coarsest_cells = 1900;
 constexpr int tile = 32;
-/// Grids halve, each has two steps, and the last ones are solved in one.
+/// Grids halve in size and take two steps each. The last ones are solved in one step.
 constexpr int most_steps = 32;
 
 // Locations of fill.glsl's uniforms.
@@ -32,7 +32,7 @@ enum Location : GLint {
   rest_sizes
 };
 
-// Of the work buffer: the flags, and where the dispatches begin.
+// Places in the work buffer: the flags, and where the dispatches begin.
 constexpr std::size_t flags_bytes = 16;
 constexpr std::size_t dispatch_bytes = 12;
 
@@ -107,8 +107,8 @@ SurfaceFilling::SurfaceFilling()
   work_.reserve(flags_bytes + most_steps * dispatch_bytes);
 }
 
-/// The grids: the window's pixels, and on until all that follow fit into a work group's memory.
-/// Then the steps: down to the coarsest, and up again.
+/// Lays out the grids: the window's pixels, and smaller ones until the rest fits into a work
+/// group's memory. Then the steps: down to the coarsest grid and up again.
 void SurfaceFilling::lay_out(const Rect& window) {
   const auto fit = [](Rect rect) {
     std::size_t cells = pixels_of(rect);
@@ -167,7 +167,7 @@ void SurfaceFilling::fill(const Buffers& buffers, const Rect& stored, const Rect
   });
 }
 
-/// States, plane colours, and what the holes border on.
+/// Computes states, plane colours and the holes' borders.
 void SurfaceFilling::find_holes(const Rect& region, const Rect& window) const {
   const auto over_window = [&](const Program& program) {
     program.use();
@@ -184,8 +184,8 @@ void SurfaceFilling::find_holes(const Rect& region, const Rect& window) const {
   }
 }
 
-/// The rest: what is left when each label has been filled from its own pixels. Whether there is any
-/// the GPU knows.
+/// Fills what is left after each label has been filled from its own pixels. Only the GPU knows
+/// whether there is any.
 void SurfaceFilling::solve(bool is_rest) const {
   if (is_rest) glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, work_.name());
   for (std::size_t i = 0; i < steps_.size(); ++i) {

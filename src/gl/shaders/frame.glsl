@@ -1,4 +1,4 @@
-// A frame as the processor uploads it: src/gl/frame_block.h.
+// A frame as the CPU uploads it: src/gl/frame_block.h.
 
 struct Lens {
   vec4 pinhole;  // fx, fy, cx, cy
