@@ -1,4 +1,4 @@
-// Rule 2: what is known of each cell of the camera whose turn it is. One cell each.
+// Rule 2: fills each cell of the current turn's camera. One invocation per cell.
 
 layout(local_size_x = 64) in;
 
@@ -22,7 +22,7 @@ void main() {
   while (turn < blended_cameras() && works[turn].turn != layer) ++turn;
   if (cell.x >= grid_size().x || turn == blended_cameras()) return;
   ivec2 first = CELL_PX * cell;
-  // The last ones take what is left.
+  // The last cells take the rest.
   ivec2 end = mix(first + CELL_PX, region.zw, equal(cell, grid_size() - 1));
   int own = cell_index(turn, cell);
   if (!is_covered(turn, first, end)) {

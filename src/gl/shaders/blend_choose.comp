@@ -1,10 +1,10 @@
-// Rule 3: the two cameras that are trusted most. One pixel of the region each.
+// Rule 3: chooses the two most trusted cameras. One invocation per pixel of the region.
 
 layout(local_size_x = 64) in;
 
 // The camera's place in the highest byte (0: nothing), and z as a float's bits.
 layout(std430, binding = 7) writeonly buffer Result { uvec2 result[]; };
-// The second camera's place, likewise, and its share in 1/255.
+// The second camera's place in the same form, and its share in 1/255.
 layout(std430, binding = 0) writeonly buffer Second { uvec2 second[]; };
 
 float confidence_of(uint turn, ivec2 cell) { return cells[cell_index(turn, cell)].confidence; }

@@ -1,8 +1,9 @@
-// Rule 1: which cameras see the nearest surface, without slivers. One pixel of the region each.
+// Rule 1: finds which cameras see the nearest surface, without slivers. One invocation per pixel of
+// the region.
 
 layout(local_size_x = 64) in;
 
-// 1 / z of what a turn's camera shows of a pixel of the region; 0: nothing.
+// 1 / z of what a turn's camera shows in a pixel of the region; 0: nothing.
 float inverse_z_in_turn(uint turn, ivec2 pixel) {
   return uintBitsToFloat(kept_inverse_z_at(works[turn].turn, pixel));
 }
@@ -13,7 +14,8 @@ float noise_m(uint turn, ivec2 pixel, float z_m) {
   return DEPTH_NOISE.x + DEPTH_NOISE.y * depth_m * depth_m;
 }
 
-// A bit for each. left_out: likewise, those that do not count. there: those that see anything.
+// One bit for each. left_out: bits of those that do not count. there: bits of those that see
+// anything.
 uint cameras_of_nearest(ivec2 pixel, uint left_out, out uint there) {
   there = 0u;
   uint front = 0u;
@@ -66,7 +68,7 @@ void main() {
   uint there = 0u;
   uint seen = is_kept(pixel) ? cameras_of_nearest(pixel, 0u, there) : 0u;
   bool is_lone = bitCount(seen) == 1 && bitCount(there) > 1;
-  // What is behind it is now seen.
+  // Now the surface behind it is seen.
   if (is_lone && is_sliver(uint(findLSB(seen)), pixel)) {
     seen = cameras_of_nearest(pixel, seen, there);
   }

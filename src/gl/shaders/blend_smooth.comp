@@ -1,4 +1,4 @@
-// Rule 2: the confidences, smoothed. One cell of each turn's camera each.
+// Rule 2: smooths the confidences. One invocation per cell of each turn's camera.
 
 layout(local_size_x = 64) in;
 

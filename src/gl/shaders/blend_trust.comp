@@ -1,4 +1,5 @@
-// Rule 2: how far each turn's camera is trusted (ConfidenceGrid::trust). One cell each.
+// Rule 2: computes how far each turn's camera is trusted (ConfidenceGrid::trust). One invocation
+// per cell.
 
 layout(local_size_x = 64) in;
 
@@ -21,7 +22,7 @@ void main() {
   vec3 away = point - camera_places[works[turn].turn].eye_m.xyz;
   float lengths = sqrt(dot(point, point) * dot(away, away));
   float cosine = dot(point, away) / (lengths + 1e-9);
-  // The chord: nearly the angle, and cheaper.
+  // The chord is nearly the angle, and cheaper.
   float angle = sqrt(max(0.0, 2.0 - 2.0 * cosine));
   cells[own].trust = clamp(mean, 0.0, 1.0) / (angle + LEAST_ANGLE);
 }

@@ -1,4 +1,4 @@
-// Several cameras on their way to one picture, by the rules of layers.h: src/gl/camera_blending.h.
+// Blends several cameras by the rules of layers.h: src/gl/camera_blending.h.
 
 // CameraPlace (camera_place.h).
 struct CameraPlace {
@@ -12,7 +12,7 @@ layout(std140, binding = 2) uniform Places {
 layout(std430, binding = 1) readonly buffer AllWork { Work works[]; };
 // The cameras that see the nearest surface of each pixel of the region: bit i is the i-th turn's.
 layout(std430, binding = 2) buffer SeenBy { uint seen_by[]; };
-// ConfidenceGrid's, of each turn's camera.
+// The ConfidenceGrid of each turn's camera.
 struct Cell {
   float resolution, z_m;
   float trust;       // the confidence before it is smoothed
@@ -24,7 +24,7 @@ uint blended_cameras() { return works[0].blended; }
 
 ivec2 grid_size() { return max(region.zw / CELL_PX, ivec2(1)); }
 
-// Beyond the border the last cell goes on.
+// Beyond the border the last cell is repeated.
 int cell_index(uint turn, ivec2 cell) {
   ivec2 size = grid_size();
   ivec2 inside = clamp(cell, ivec2(0), size - 1);

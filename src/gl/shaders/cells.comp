@@ -1,4 +1,4 @@
-// Rules 2 and 3 of sdct.h: what may be seen of each 2x2 cell is put on the list. One cell each.
+// Rules 2 and 3 of sdct.h: lists what may be visible of each 2x2 cell. One invocation per cell.
 
 layout(local_size_x = 64) in;
 

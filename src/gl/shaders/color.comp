@@ -1,11 +1,11 @@
-// Looks up the colours of the pixels that show what the camera sees. BLENDED: also of those that show
-// it as a second view. One pixel of the region each.
+// Looks up the colours of the pixels that show this camera's view. BLENDED: also of those that show
+// it as a second view. One invocation per pixel of the region.
 
 layout(local_size_x = 64) in;
 
 layout(std430, binding = 7) buffer Result { uvec2 result[]; };
 #ifdef BLENDED
-// What a second camera shows (SecondPixel).
+// A second camera's view (SecondPixel).
 layout(std430, binding = 0) buffer Second { uvec2 second[]; };
 #endif
 
@@ -14,7 +14,7 @@ void main() {
   if (place.x >= region.z) return;
   int index = place.y * region.z + place.x;
   ivec2 pixel = region.xy + place;
-  // So far the place among the cameras that take part, from 1 on.
+  // Until now the place among the cameras that take part, from 1 on.
   uint own = (layer + 1u) << 24;
 #ifdef BLENDED
   bool is_first = result[index].x == own;

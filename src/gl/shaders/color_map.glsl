@@ -1,4 +1,4 @@
-// A RGB-D camera's colour as the colour camera would see it. seen: as in Result and Second.
+// An RGB-D camera's colour as the colour camera would see it. seen: as in Result and Second.
 vec3 mapped_color(uint seen, ivec2 pixel) {
   uint camera = (seen >> 24) - 1u;
   vec4 field = maps[camera].field;

@@ -1,5 +1,5 @@
-// A frame on its way from the reconstruction to the picture: src/gl/composition_block.h. All buffers
-// hold the region, row by row.
+// From the reconstruction to the picture: src/gl/composition_block.h. All buffers hold the region,
+// row by row.
 
 // A plane normal . x = distance (w), in the colour camera's frame.
 struct CastShadow {
@@ -23,7 +23,7 @@ layout(std140, binding = 2) uniform Composition {
   uint camera_at, light_at;  // in `words`
   ivec2 nodes_size;          // of the membrane; 0: there is none
   int ray_columns;
-  uint missing_code;         // the provenance of what no camera sees
+  uint missing_code;         // the provenance of pixels that no camera sees
   uint rim_px;
   float opacity;             // of the object, in the mode half
   bool mixes_second;
@@ -36,13 +36,13 @@ layout(std430, binding = 0) buffer Picture { uint picture[]; };
 layout(std430, binding = 1) buffer State { uint state[]; };
 // Reconstruction::surface in the lowest byte, Reconstruction::light above.
 layout(std430, binding = 2) buffer Surface { uint surface[]; };
-// To the rim of the objects' mask, in steps.
+// The distance to the rim of the objects' mask, in steps.
 layout(std430, binding = 3) buffer Distances { uint distances[]; };
 // The reconstruction: colour, with the camera's place among those that take part, from 1 on, in the
 // highest byte (0: nothing was seen), and z as a float's bits.
 layout(std430, binding = 7) readonly buffer Result { uvec2 result[]; };
 
-// What a second camera shows, where cameras are blended: likewise, and its share in 1/255.
+// A second camera's view if cameras are blended, in the same form, and its share in 1/255.
 layout(std430, binding = 6) readonly buffer Second { uvec2 second[]; };
 
 const uint color_bits = 0xFFFFFFu;
@@ -58,7 +58,7 @@ bool is_object(int index) { return camera_word(index) > color_bits; }
 
 uvec3 levels_of(uint word) { return uvec3(word, word >> 8, word >> 16) & 0xFFu; }
 uint word_of(uvec3 levels) { return levels.x | levels.y << 8 | levels.z << 16; }
-// Rounded to the nearest levels, clamped.
+// Rounds to the nearest levels, clamped.
 uint word_of_channels(vec3 channels) {
   return word_of(uvec3(clamp(roundEven(channels), vec3(0), vec3(255))));
 }

@@ -1,4 +1,4 @@
-// How many pixels of the region the camera sees. One pixel each.
+// Counts the pixels of the region that the camera sees. One invocation per pixel.
 
 layout(local_size_x = 64) in;
 

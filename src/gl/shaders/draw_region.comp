@@ -1,4 +1,4 @@
-// A region's pixels into a picture's texture: red first, opaque. One pixel each.
+// Writes a region's pixels into a picture's texture: red first, opaque. One invocation per pixel.
 
 layout(local_size_x = 64) in;
 

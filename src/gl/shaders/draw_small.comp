@@ -1,6 +1,6 @@
-// Rules 4 and 5 of sdct.h: draws small cells, one each: both triangles at once, which share no pixel.
-// FIND_NEAREST: writes the nearest 1 / z of each pixel. Otherwise: of the triangles that are there,
-// the first.
+// Rules 4 and 5 of sdct.h: draws small cells, one per invocation. Its two triangles share no pixel
+// and are drawn together. FIND_NEAREST: writes the nearest 1 / z of each pixel. Otherwise: writes
+// the first of the nearest triangles.
 
 layout(local_size_x = 64) in;
 
@@ -37,7 +37,7 @@ void draw(uint entry) {
   ivec4 b = position_of(first + 1u);
   ivec4 c = position_of(below);
   ivec4 e = position_of(below + 1u);
-  // The corner that a lone triangle has not is moved onto one that it has.
+  // The corner that a single triangle lacks is moved onto one that it has.
   bool has_first = (entry & 1u) != 0u;
   bool has_second = (entry & 2u) != 0u;
   a = has_first ? a : b;

@@ -1,27 +1,27 @@
-// Filling by surfaces (src/composite/surface_inpainting.cpp), for all labels at once: what its
-// passes share. Places are the picture's; those of a grid l the picture's / 2^l.
+// Shared by the passes that fill by surfaces (src/inpaint/surface_inpainting.cpp), for all labels
+// at once. Places are those in the picture; in grid l, the picture's / 2^l.
 
-// b, g, r and a byte that is free.
+// b, g, r and a free byte.
 layout(std430, binding = 0) buffer Picture { uint picture[]; };
 // In the low 8 bits.
 layout(std430, binding = 1) buffer Provenance { uint provenance[]; };
-// In the low 8 bits; of the region's pixels.
+// In the low 8 bits; the region's pixels.
 layout(std430, binding = 2) buffer Surface { uint surface[]; };
-// Of the window's pixels: the colour that it lends, and in the highest 8 bits its state.
+// The window's pixels: the colour that each lends, and in the highest 8 bits its state.
 layout(std430, binding = 3) buffer Pixels { uint pixels[]; };
-// Likewise: another pixel of the same hole, at last its first; and, of that one, how many pixels
-// beside the hole are on the hole's plane and how many in front of it.
+// The window's pixels: another pixel of the same hole, in the end its first one. And for that one:
+// how many pixels around the hole are on the hole's plane and how many in front of it.
 struct Part {
   uint parent, on_plane, in_front;
 };
 layout(std430, binding = 4) coherent buffer Parts { Part parts[]; };
-// Of each cell of the region, the planes' colours added up: b | g << 16, r | pixels << 16.
+// For each cell of the region, the sums of the planes' colours: b | g << 16, r | pixels << 16.
 layout(std430, binding = 5) buffer PlaneSums { uvec2 plane_sums[]; };
-// Of the grids from the second on, label by label: three times ten bits of colour, in quarters of
-// a level, and the kind.
+// The grids from the second on, label by label: three times ten bits of colour, in quarters of a
+// level, and the kind.
 layout(std430, binding = 6) buffer Cells { uint cells[]; };
-// Labels, as bits: that something is known of, and that are to be filled; and what is known in the
-// end. What the passes that fill the rest are dispatched with.
+// Labels, as bits: those with known pixels, those to fill, and those known in the end. The work
+// groups of the passes that fill the rest.
 layout(std430, binding = 7) buffer Work {
   uint known_labels, open_labels, rest_is_known, padding;
   uint rest_groups[];
@@ -31,14 +31,14 @@ layout(std430, binding = 7) buffer Work {
 layout(location = 0) uniform ivec4 stored;
 layout(location = 1) uniform ivec4 region;
 layout(location = 2) uniform ivec4 window;
-// The grids that a pass is about, and where their cells begin.
+// The grids of this pass, and where their cells begin.
 layout(location = 3) uniform ivec4 fine;
 layout(location = 4) uniform ivec4 coarse;
 layout(location = 5) uniform int fine_at;
 layout(location = 6) uniform int coarse_at;
-// What no label's pixels could fill is filled from all there is, as label 0.
+// What no label's pixels could fill is filled from everything, as label 0.
 layout(location = 7) uniform int is_rest;
-// Of the passes that fill the rest: their work groups across and down.
+// The passes that fill the rest: their work groups across and down.
 layout(location = 8) uniform ivec2 rest_sizes[REST_PASSES];
 
 // A pixel's state: its label, and whether it is open.
@@ -66,7 +66,7 @@ uint state_at(ivec2 place) {
   return holds(window, place) ? pixels[index_in(window, place)] >> 24 : OUTSIDE;
 }
 
-// The one of the label layers that an open pixel belongs to.
+// The label layer that an open pixel belongs to.
 uint layer_of(uint state) { return state == REST ? 0u : state & LABEL; }
 
 uint pack_cell(vec3 color, uint kind) {

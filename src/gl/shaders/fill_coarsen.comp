@@ -1,4 +1,5 @@
-// Cells that hold a known one are known, and have their mean; else open, if they hold an open one.
+// A cell with known cells in it is known, with their mean. Otherwise it is open if it has an open
+// one in it.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 

@@ -1,4 +1,5 @@
-// All grids from `coarse` on, of one label a work group, in its own memory: made from `fine`, solved.
+// Makes all grids from `coarse` on out of `fine` and solves them: one label per work group, in its
+// own memory.
 
 layout(local_size_x = 256) in;
 

@@ -1,5 +1,5 @@
-// The second grid, from the pixels: which of them are open in the end, and which lend their colour
-// to which labels. One of the grid's cells each, in `coarse`.
+// Makes the second grid from the pixels: which pixels are open in the end, and which lend their
+// colour to which labels. One invocation per cell of the grid in `coarse`.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -9,8 +9,8 @@ shared uint known_here, open_here;
 
 const ivec2 beside[4] = ivec2[](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
 
-// A hole that mostly borders on what is in front of its plane is not filled from the plane. The
-// answer is the same whether or not it has been given already.
+// A hole that mostly borders on something in front of its plane is not filled from the plane. The
+// answer is the same before and after it has been given up.
 uint final_state(ivec2 place) {
   uint state = state_at(place);
   if ((state & OPEN) == 0u || state == OUTSIDE || state == REST) return state;

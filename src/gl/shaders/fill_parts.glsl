@@ -1,6 +1,6 @@
-// Holes: parts of open pixels of a plane that hang together, united without locks.
+// Holes: connected open pixels of a plane, united without locks.
 
-// The part's first pixel, as far as is known by now.
+// The part's first pixel, as far as known yet.
 uint root(uint pixel) {
   uint parent = parts[pixel].parent;
   while (parent != pixel) {

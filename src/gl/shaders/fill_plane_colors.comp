@@ -1,4 +1,5 @@
-// The planes' colours in cells of the region that are not near an object: PlaneColors::collect.
+// Computes the planes' colours in cells of the region that are not near an object:
+// PlaneColors::collect.
 
 layout(local_size_x = 16, local_size_y = 16) in;
 

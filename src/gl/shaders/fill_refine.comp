@@ -1,16 +1,16 @@
-// A grid's open cells from the coarser grid's, relaxed: a tile a work group, with as much around it
-// as the half sweeps reach, so that nobody waits for another. FINEST: the picture's pixels, of
-// all labels. Else one label's cells.
+// Computes a grid's open cells from the coarser grid and relaxes them: one tile per work group,
+// with a border as wide as the half sweeps reach, so that no group waits for another. FINEST: the
+// picture's pixels, of all labels. Otherwise one label's cells.
 
-// A row of a tile and its surroundings, red or black cells alone; and eight rows.
+// A row of a tile and its border, red or black cells only; and eight rows.
 layout(local_size_x = 24, local_size_y = 8) in;
 
 const int TILE = 32;
 const int SIDE = TILE + 2 * HALF_SWEEPS;
 // Where an open cell's labels begin.
 const uint FIRST_OPEN = 256u;
-// Colours in 64ths of a level, from -256 levels on: blue and green; red and, in the higher half, of
-// an open cell FIRST_OPEN and its label, of a known one its label and 1; 0: there is none.
+// Colours in 64ths of a level, starting at -256 levels: blue and green; red and, in the higher
+// half, FIRST_OPEN plus the label of an open cell, or the label of a known one plus 1; 0: no cell.
 shared uint blue_green[SIDE * SIDE];
 shared uint red_state[SIDE * SIDE];
 shared bool has_open;
@@ -28,7 +28,7 @@ void set_value(int at, vec3 value, uint state) {
   red_state[at] = bits.z | state << 16;
 }
 
-// Bilinear, of the cells that are there.
+// Bilinear, from the cells that exist.
 vec3 interpolated(ivec2 place, uint layer) {
   ivec2 near = place >> 1;
   ivec2 side = 2 * (place & 1) - 1;
@@ -89,7 +89,7 @@ void relax(int at, ivec2 place, int half_sweep) {
     vec3 before = value_at(at, own);
     set_value(at, before + FACTORS[half_sweep] * (sum.rgb / sum.w - before), state);
   } else if (half_sweep == 0) {
-    // All alone.
+    // No neighbours.
     set_value(at, interpolated(place, state - FIRST_OPEN), state);
   }
 }
@@ -132,7 +132,7 @@ void main() {
   }
   barrier();
   for (int k = 0; k < HALF_SWEEPS; ++k) {
-    // What is left of the border after k half sweeps does not matter any more.
+    // After k half sweeps the rest of the border no longer matters.
     for (int y = k + 1 + own.y; y < SIDE - (k + 1); y += 8) {
       int x = k + 1 + 2 * own.x;
       x += (corner.x + corner.y + x + y + k) & 1;

@@ -1,4 +1,4 @@
-// The state of each pixel of the window. Pixels of a row that hang together begin as one part.
+// Computes the state of each pixel of the window. Connected pixels of a row begin as one part.
 
 layout(local_size_x = 64) in;
 

@@ -1,4 +1,4 @@
-// Joins the runs of pixels that touch: to the one above, and where a work group's row ended.
+// Joins runs of pixels that touch: with the row above, and where a work group's row ended.
 
 layout(local_size_x = 64) in;
 
@@ -9,7 +9,7 @@ void unite(uint a, uint b) {
     if (a == b) return;
     uint first = min(a, b);
     uint second = max(a, b);
-    // Unless another invocation was faster, the second was its part's first.
+    // If no other invocation was faster, the second one was the first pixel of its part.
     if (atomicCompSwap(parts[second].parent, second, first) == second) return;
   }
 }
@@ -22,6 +22,6 @@ void main() {
   bool joins_left = state_at(place - ivec2(1, 0)) == state;
   if (gl_LocalInvocationID.x == 0u && joins_left) unite(index, index - 1u);
   if (state_at(place - ivec2(0, 1)) != state) return;
-  // Else the pixel to the left does it.
+  // Otherwise the pixel to the left does it.
   if (!joins_left || state_at(place - ivec2(1, 1)) != state) unite(index, index - uint(window.z));
 }

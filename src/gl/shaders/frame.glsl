@@ -6,7 +6,7 @@ struct Lens {
   float k3, max_radius_squared;
 };
 
-// Rows of the rotation, each with its coordinate of the translation.
+// Rows of the rotation, each with its component of the translation.
 struct Transform {
   vec4 rows[3];
 };
@@ -19,10 +19,10 @@ layout(std140, binding = 0) uniform Frame {
   // The region's tiles: first column, first row, columns, place in `words`; 0 columns: all are kept.
   ivec3 tiles;
   uint tiles_at;
-  uint most_blended;  // if no more cameras than these see something, they are blended; 0: one is chosen
+  uint most_blended;  // if at most so many cameras see something, they are blended; 0: one is chosen
 };
 
-// The RGB-D camera whose turn it is.
+// The current turn's RGB-D camera.
 layout(std140, binding = 1) uniform Camera {
   Lens rgbd_color;
   Transform rgbd_color_from_depth, color_from_depth;

@@ -1,4 +1,4 @@
-// Rule 3 of sdct.h, as the paper decides it: a triangle goes on or does not.
+// Rule 3 of sdct.h in the paper's way: keeps or drops a triangle.
 
 layout(triangles) in;
 layout(triangle_strip, max_vertices = 3) out;

@@ -1,4 +1,4 @@
-// The paper's way: a vertex for each depth pixel.
+// The paper's way: one vertex for each depth pixel.
 
 flat out ivec4 position;
 flat out vec2 place;

@@ -1,5 +1,5 @@
 // BackgroundPlanes::label: the plane that each pixel shows or, where nothing was measured, would
-// show. One pixel of the region each.
+// show. One invocation per pixel of the region.
 
 layout(local_size_x = 64) in;
 

@@ -1,4 +1,4 @@
-// ShadowLifting::lift: lights up all of the region. One pixel each.
+// ShadowLifting::lift: lifts the shadows in all of the region. One invocation per pixel.
 
 layout(local_size_x = 64) in;
 

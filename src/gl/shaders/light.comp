@@ -1,5 +1,5 @@
-// CastShadows::shade: the share of the light on the planes that the objects leave. One pixel of the
-// region each.
+// CastShadows::shade: the share of the light on the planes that the objects leave. One invocation
+// per pixel of the region.
 
 layout(local_size_x = 64) in;
 
@@ -8,7 +8,8 @@ vec3 light_of_cell(uint which, ivec2 cell) {
   return uintBitsToFloat(uvec3(word_at(word), word_at(word + 1u), word_at(word + 2u)));
 }
 
-// The share that is taken from the plane's point that a ray meets; 0 beyond the grid.
+// The share of the light that is lost at the point of the plane that a ray meets; 0 beyond the
+// grid.
 vec3 dark_at(uint which, vec2 ray) {
   float inverse = inverse_depth(shadows[which].plane, ray);
   if (!(inverse > 0.0)) return vec3(0);

@@ -1,5 +1,6 @@
-// Writes the mapped colours, with the membrane's correction, where an object is removed and something
-// is seen. SECOND_VIEW: mixes in the second camera's, likewise. One pixel of the region each.
+// Writes the mapped colours, with the membrane's correction, where an object is removed and
+// something is seen. SECOND_VIEW: mixes in the second camera's mapped colours. One invocation per
+// pixel of the region.
 
 layout(local_size_x = 64) in;
 

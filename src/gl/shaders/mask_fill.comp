@@ -1,4 +1,4 @@
-// Fills polygons by the rule of src/detect/polygons.h: a part each, a row a thread.
+// Fills polygons by the rule of src/detect/silhouette/polygons.h: one part per work group, one row per thread.
 
 layout(local_size_x = 32) in;
 
@@ -8,8 +8,8 @@ const int subpixels = 256;
 
 bool crosses(ivec2 a, ivec2 b, int row_y) { return (a.y <= row_y) != (b.y <= row_y); }
 
-// The first column whose centre is at the edge, or right of it. All numbers are whole and below 2^53:
-// only the quotient can be rounded, and that is put right.
+// The first column whose centre is at the edge or right of it. All numbers are whole and below
+// 2^53; only the quotient can be rounded, and that is corrected.
 int first_column(ivec2 a, ivec2 b, int row_y) {
   if (a.y > b.y) {
     ivec2 other = a;
@@ -32,7 +32,7 @@ int first_column(ivec2 a, ivec2 b, int row_y) {
   return int(column) + (rest > 0.0 ? 1 : 0);
 }
 
-// The word's pixels from a column of its on.
+// The word's pixels from one of its columns on.
 uint pixels_from(int column) { return column <= 0 ? ~0u : column >= 32 ? 0u : ~0u << column; }
 
 void main() {

@@ -1,8 +1,8 @@
-// Grows masks by discs, as DiscDilation does: a word a thread, an image a row of work groups.
+// Grows masks by discs like DiscDilation: one word per thread, one image per row of work groups.
 
 layout(local_size_x = 64) in;
 
-// The largest whole number whose square is not larger.
+// The largest integer whose square is not larger.
 int root_of(int number) {
   int root = int(sqrt(float(number)));
   if ((root + 1) * (root + 1) <= number) ++root;
@@ -10,7 +10,8 @@ int root_of(int number) {
   return root;
 }
 
-// The middle word's pixels that are at most `reach` (31 at most) from one that is set, in doubling steps.
+// The pixels of the middle word that are at most `reach` (up to 31) from a set one, found in
+// doubling steps.
 uint spread(uint left, uint middle, uint right, int reach) {
   uint rightwards = middle;
   uint leftwards = middle;

@@ -1,6 +1,7 @@
-// Masks of several images, a bit a pixel: src/gl/mask_drawer.cpp.
+// Masks of several images, one bit per pixel: src/gl/mask_drawer.cpp.
 
-// A window of an image's mask, in words of 32 pixels, the leftmost of which is the lowest bit, and rows.
+// A window of an image's mask, in rows and words of 32 pixels; the leftmost pixel is the lowest
+// bit.
 struct MaskImage {
   ivec2 begin, size;
   int width;  // of the whole image, pixels

@@ -1,6 +1,6 @@
-// SoftMembrane::solve, by one work group: sweeps over the nodes in the processor's order, with its
+// SoftMembrane::solve by one work group: sweeps over the nodes in the CPU's order, with the CPU's
 // sums. A node waits for its left and upper neighbours of the same sweep and for the others of the
-// last, so that in turn t all nodes of diagonal t - 2 sweep are ready, in every sweep.
+// last one. So in turn t all nodes of diagonal t - 2 sweep are ready, in every sweep.
 
 layout(local_size_x = 256) in;
 

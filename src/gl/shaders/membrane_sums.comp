@@ -1,5 +1,5 @@
-// SoftMembrane::add: what is left after mapping colours, where the reconstruction reaches beyond the
-// objects. One node of the grid each.
+// SoftMembrane::add: the difference after mapping colours, where the reconstruction reaches beyond
+// the objects. One invocation per node of the grid.
 
 layout(local_size_x = 64) in;
 

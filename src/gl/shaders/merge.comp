@@ -1,5 +1,5 @@
-// Merges what several cameras show, by the rule of merge_layers (layers.cpp), where they are not
-// blended. One pixel of the region each.
+// Merges the views of several cameras by the rule of merge_layers (layers.cpp) if they are not
+// blended. One invocation per pixel of the region.
 
 layout(local_size_x = 64) in;
 

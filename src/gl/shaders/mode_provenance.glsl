@@ -1,4 +1,4 @@
-// What was seen and what was invented: the latter hatched.
+// What was seen, and what was invented, hatched.
 uint shown(ivec2 place, uint color, uint origin) {
   bool seen = origin < PROVENANCE_INPAINTED;
   ivec2 pixel = region.xy + place;

@@ -1,5 +1,5 @@
-// In which order cameras are merged: the one that sees most of the region first (layers.cpp). And
-// whether they are blended.
+// The order in which cameras are merged: the one that sees most of the region first (layers.cpp).
+// Also whether they are blended.
 
 layout(local_size_x = 1) in;
 

@@ -1,5 +1,5 @@
-// ShadowLifting::restore_outside: outside the objects' mask the picture is the camera's again; over
-// the last pixels before the rim the shadow comes back. One pixel of the region each.
+// ShadowLifting::restore_outside: outside the objects' mask the picture is the camera's again, and
+// over the last pixels before the rim the shadow returns. One invocation per pixel of the region.
 
 layout(local_size_x = 64) in;
 

@@ -1,6 +1,6 @@
-// SoftRim's distances: 0 outside the objects, else 1 and as many more as erosions take until the pixel
-// is outside; every second by corners, too. One pixel of the region and one erosion each: what has
-// survived it gets one more. Beyond the region nothing is outside.
+// SoftRim's distances: 0 outside the objects, else 1 plus the number of erosions until the pixel is
+// outside; every second erosion also by corners. One erosion, one invocation per pixel of the
+// region: a surviving pixel gets one more. Nothing beyond the region is outside.
 
 layout(local_size_x = 64) in;
 

@@ -1,5 +1,5 @@
-// How far each pixel is from the objects' outside along its row, at most SHADOW_FADING_PX. One pixel
-// of the region each.
+// The distance of each pixel along its row to the outside of the objects, at most SHADOW_FADING_PX.
+// One invocation per pixel of the region.
 
 layout(local_size_x = 64) in;
 

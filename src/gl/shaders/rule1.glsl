@@ -23,7 +23,7 @@ bool distort(Lens lens, float x, float y, out vec2 pixel) {
   return r2 < lens.max_radius_squared;
 }
 
-// Where the point is in the picture of a camera that is at `camera_from_depth`.
+// The point's place in the picture of a camera at `camera_from_depth`.
 bool project(Lens lens, Transform camera_from_depth, vec3 point, out vec2 pixel, out float z) {
   z = transformed(camera_from_depth.rows[2], point);
   bool is_inside = distort(lens, transformed(camera_from_depth.rows[0], point) / z,

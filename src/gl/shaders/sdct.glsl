@@ -1,4 +1,4 @@
-// The rules of step-discontinuity constrained triangulation, as src/reconstruct/sdct.h states them.
+// The rules of step-discontinuity constrained triangulation, as in src/render/sdct.h.
 
 const int subpixels = 1 << SUBPIXEL_BITS;
 
@@ -20,7 +20,7 @@ float edge_value(ivec2 a, ivec2 b, ivec2 point) { return cross_product(b - a, po
 // Rule 4.
 bool top_or_left(ivec2 a, ivec2 b) { return b.y < a.y || (b.y == a.y && b.x > a.x); }
 
-// Rule 3, but for facing.
+// Rule 3, except for facing.
 bool joined(vec3 depths_m) {
   float least = min(min(depths_m.x, depths_m.y), depths_m.z);
   float most = max(max(depths_m.x, depths_m.y), depths_m.z);

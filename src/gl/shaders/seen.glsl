@@ -1,4 +1,4 @@
-// What the cameras see, by the rasteriser's file before.
+// What the cameras see, from the rasteriser's file before this one.
 
 // 1 / z as a float's bits, of any pixel of the region's rectangle; 0: nothing of the region is seen.
 uint inverse_z_at(uint which, ivec2 pixel) {

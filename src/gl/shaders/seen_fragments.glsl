@@ -1,8 +1,8 @@
-// What geometry.frag has drawn: colour, and 1 / z as a float's bits; a layer for each camera.
+// What geometry.frag has drawn: colour, and 1 / z as a float's bits, one layer per camera.
 
 layout(binding = 0) uniform usampler2DArray seen;
 
-// 1 / z as a float's bits, 0: the camera sees nothing. Of a pixel that belongs to the region.
+// 1 / z as a float's bits in a pixel of the region; 0: the camera sees nothing.
 uint kept_inverse_z_at(uint which, ivec2 pixel) {
   return texelFetch(seen, ivec3(pixel, which), 0).y;
 }
@@ -19,8 +19,8 @@ vec2 ray_of(vec2 pixel) {
   return ray;
 }
 
-// Of the camera whose turn it is: where in its colour image a pixel that it sees is. Only the colour
-// was drawn; this goes back from the point.
+// Where a pixel lies in the colour image of the current turn's camera. Only the colour was drawn,
+// so this goes back from the point.
 vec2 seen_place(ivec2 pixel, float z) {
   vec3 point = z * vec3(ray_of(vec2(pixel)), 1);
   vec4 rows[3] = color_from_depth.rows;
@@ -32,5 +32,5 @@ vec2 seen_place(ivec2 pixel, float z) {
   return place;
 }
 
-// Likewise: its colour there.
+// Its colour there.
 uint seen_color(ivec2 pixel, float z) { return texelFetch(seen, ivec3(pixel, layer), 0).x; }

@@ -1,9 +1,9 @@
-// What draw_small and draw_large have found: looks up the one triangle that is seen.
+// What draw_small and draw_large have found: looks up the one visible triangle.
 
-// 1 / z as a float's bits, 0: the camera sees nothing. Of a pixel that belongs to the region.
+// 1 / z as a float's bits in a pixel of the region; 0: the camera sees nothing.
 uint kept_inverse_z_at(uint which, ivec2 pixel) { return layers[layer_index(which, pixel)]; }
 
-// Of the camera whose turn it is: where in its colour image a pixel that it sees is.
+// Where a pixel lies in the colour image of the current turn's camera.
 vec2 seen_place(ivec2 pixel, float z) {
   uint id = layers[layer_index(layer, pixel) + 1u];
   uvec3 corners = corners_of(id);
@@ -20,5 +20,5 @@ vec2 seen_place(ivec2 pixel, float z) {
           weights.z * place_of(corners.z)) * z;
 }
 
-// Likewise: its colour there.
+// Its colour there.
 uint seen_color(ivec2 pixel, float z) { return sample_bilinear(seen_place(pixel, z)); }

@@ -1,5 +1,5 @@
-// The soft rim, and the view mode (`shown`); provenance goes into the highest byte, for the download.
-// One pixel of the region each.
+// Applies the soft rim and the view mode (`shown`). Provenance goes into the highest byte for the
+// download. One invocation per pixel of the region.
 
 layout(local_size_x = 64) in;
 

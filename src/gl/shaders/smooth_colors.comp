@@ -1,5 +1,5 @@
-// Each pixel that was seen becomes a mean of those around it, by how alike their guide is. One pixel
-// of the region each.
+// Each seen pixel becomes a mean of its neighbours, weighted by how alike their guide is. One
+// invocation per pixel of the region.
 
 layout(local_size_x = 64) in;
 

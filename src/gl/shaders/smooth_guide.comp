@@ -1,5 +1,5 @@
-// Of each pixel that was seen: the mean with its neighbours, first of its row, then of its column. One
-// pixel of the region each.
+// The mean of each seen pixel with its neighbours, first along its row, then along its column. One
+// invocation per pixel of the region.
 
 layout(local_size_x = 64) in;
 

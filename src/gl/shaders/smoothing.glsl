@@ -1,5 +1,5 @@
-// ColorSmoothing (color_smoothing.h): its guide takes the distances' place, before there are any; 0
-// where nothing is seen.
+// ColorSmoothing (color_smoothing.h). Its guide uses the distances' memory before they are
+// computed; 0 where nothing is seen.
 
 // The picture before smoothing.
 layout(std430, binding = 5) buffer Values { uint values[]; };

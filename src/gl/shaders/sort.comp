@@ -1,4 +1,5 @@
-// Sorts the pixels into the camera's, seen and missing, and counts. One pixel of the region each.
+// Sorts the pixels into camera, seen and missing, and counts them. One invocation per pixel of the
+// region.
 
 layout(local_size_x = 64) in;
 

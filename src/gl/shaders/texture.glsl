@@ -1,4 +1,5 @@
-// Bilinear interpolation in the camera's colour image, to levels as sample_bilinear (rasterizer.cpp).
+// Bilinear interpolation in the camera's colour image, rounded to levels like sample_bilinear
+// (rasterizer.cpp).
 
 // Blue, green and red of the pixel whose first byte is `byte_index`.
 vec3 read_color(uint byte_index) {

@@ -1,14 +1,14 @@
-// What is drawn: small cells from the start of the list (four times the index of the first pixel,
-// plus 1 if the first triangle is drawn, plus 2 if the second is), large triangles from its end.
+// The list of what to draw: small cells from the start (four times the index of the first pixel,
+// plus 1 if the first triangle is drawn, plus 2 if the second is), large triangles from the end.
 
-// Larger ones are shared by a work group.
+// A work group shares larger ones.
 const int small_side_px = 16;
 
 layout(std430, binding = 5) writeonly buffer Triangles { uint triangles[]; };
 layout(binding = 5) uniform usamplerBuffer listed;  // the same
 
-// Of each pixel of the region, a camera's after the other's: 1 / z as a float's bits, and the
-// triangle that is seen.
+// For each pixel of the region, camera after camera: 1 / z as a float's bits, and the visible
+// triangle.
 layout(std430, binding = 6) buffer Layers { uint layers[]; };
 
 uint layer_index(uint which, ivec2 pixel) {

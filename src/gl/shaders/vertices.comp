@@ -1,4 +1,4 @@
-// One depth pixel each.
+// One invocation per depth pixel.
 
 layout(local_size_x = 64) in;
 

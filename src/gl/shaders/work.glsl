@@ -1,5 +1,5 @@
-// Of a camera: what the passes that draw are dispatched with, how long the list is, and how
-// many pixels are drawn.
+// For each camera: the work groups of the passes that draw, the list's length, and the number of
+// drawn pixels.
 struct Work {
   uint small_groups[3];
   uint small_count;
@@ -7,9 +7,9 @@ struct Work {
   uint large_count;
   uint drawn_pixels;
   uint turn;  // the i-th: which camera is merged in the i-th turn
-  uint blended;  // of the first: how many cameras are blended, in their turns; 0: one is chosen
+  uint blended;  // in the first entry: how many cameras are blended, in their turns; 0: one is chosen
   uint padding[53];
 };
 
-// Of the camera whose turn it is.
+// The current turn's camera.
 layout(std430, binding = 4) buffer CameraWork { Work work; };
