@@ -13,7 +13,7 @@ double area(const std::array<Eigen::Vector2d, 4>& corners) {
   return std::abs(a.x() * b.y() - a.y() * b.x()) / 2;
 }
 
-/// `camera_from_marker`, known in the camera of `from`, in the camera of `to`.
+/// `camera_from_marker`, known in `from`'s camera, in `to`'s camera.
 RigidTransform carry_over(const RigidTransform& camera_from_marker, const MarkerView& from,
                           const MarkerView& to) {
   return to.common_from_camera->inverse() * *from.common_from_camera * camera_from_marker;
@@ -35,8 +35,8 @@ std::optional<RigidTransform> own_pose(const std::vector<MarkerView>& views, con
   if (!view.corners) return std::nullopt;
   const auto pose = estimate_marker_pose(*view.corners, size_m, *view.lens);
   if (!pose) return std::nullopt;
-  // The other views see the marker through the cameras' poses, which are not exact either: they
-  // only decide what the view itself cannot.
+  // The other views depend on the cameras' poses, which are not exact either. So they only decide
+  // what the view itself cannot.
   constexpr double ambiguous = 0.4;
   if (pose->ambiguity < ambiguous || !view.common_from_camera) return pose->camera_from_marker;
   return error_in_all_views(views, view, pose->alternative, size_m) <

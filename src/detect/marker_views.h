@@ -14,13 +14,13 @@ namespace diminish {
 struct MarkerView {
   const Lens* lens = nullptr;
   std::optional<std::array<Eigen::Vector2d, 4>> corners;
-  /// To a frame that is common to the views; absent where the camera's pose is not known.
+  /// The transform to a frame that all views share; absent if the camera's pose is unknown.
   std::optional<RigidTransform> common_from_camera;
 };
 
-/// Fills camera_from_marker of each view: from the view's own corners where there are any, of two
-/// poses that fit them about equally well the one that agrees with the other views; else from the
-/// view in which the marker is largest. Absent where neither is possible.
+/// Fills camera_from_marker of each view. Uses the view's own corners if it has any; of two poses
+/// that fit them about equally well, takes the one that agrees with the other views. Otherwise uses
+/// the view in which the marker is largest. Absent if neither is possible.
 void locate_marker(const std::vector<MarkerView>& views, double size_m,
                    std::vector<std::optional<RigidTransform>>& camera_from_marker);
 

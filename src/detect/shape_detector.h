@@ -9,25 +9,25 @@
 
 namespace diminish {
 
-/// Objects' outlines, in the images that OcclusionMasks has.
+/// Objects' outlines in the images of OcclusionMasks.
 struct OcclusionOutlines {
   Polygons color;
   std::vector<Polygons> rgbd_color, rgbd_depth;
 
-  /// Of as many RGB-D cameras, with nothing in it.
+  /// Empty, for this many RGB-D cameras.
   void clear(std::size_t cameras);
 };
 
-/// A detector of objects whose shape is known. It outlines them, and whoever draws the masks
-/// (MaskDrawer) draws these, too.
+/// A detector of objects with a known shape. It outlines them, and the MaskDrawer draws its
+/// outlines with the others.
 class ShapeDetector : public OccluderDetector {
  public:
-  /// Adds the object's outlines, as those of `object`, and leaves the others alone. What it covers
-  /// is known when it has been drawn: the report's `in_color` and `in_rgbd` are left false.
+  /// Adds the object's outlines, labelled `object`, and leaves the others alone. What they cover is
+  /// known only after drawing, so the report's `in_color` and `in_rgbd` stay false.
   virtual OccluderReport outline(const Observation& observation, std::uint32_t object,
                                  OcclusionOutlines& outlines) = 0;
 
-  /// Outlines and draws.
+  /// Outlines, then draws.
   OccluderReport detect(const Observation& observation, OcclusionMasks& masks) override;
 
  private:

@@ -18,7 +18,7 @@ void clear_outside(const Rect& region, const Rect& drawn, Image<Pixel>& image) {
 }  // namespace detail
 
 /// Gives a reconstruction its size and its region. Everything outside becomes empty; the region's
-/// pixels are to be written afterwards. Cost: what the last region had that this one has not.
+/// pixels are written later. Cost: clearing what the last region had and this one does not.
 inline void clear_outside(const Intrinsics& color, const TiledRegion& region,
                           Reconstruction& reconstruction) {
   const bool same_size =
@@ -35,7 +35,7 @@ inline void clear_outside(const Intrinsics& color, const TiledRegion& region,
   reconstruction.region = region;
 }
 
-/// Makes room for a second camera's view where there is to be one. Its pixels are to be written.
+/// Makes room for a second camera's view if there will be one. Its pixels are written later.
 inline void resize_second(bool blended, const Intrinsics& color, SecondView& second) {
   const int width = blended ? color.width : 0;
   const int height = blended ? color.height : 0;

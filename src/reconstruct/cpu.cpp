@@ -20,8 +20,9 @@ namespace {
 /// Colours are looked up eight bytes at a time.
 constexpr int min_texture_side = 8;
 
-/// Draws one RGB-D camera's mesh, in two parts that threads may draw side by side: every other band
-/// of the depth image's rows, so that both have about as much to do wherever the objects are.
+/// Draws one RGB-D camera's mesh in two parts, which two threads may draw at the same time:
+/// alternate bands of the depth image's rows, so that both have about the same work wherever the
+/// objects are.
 class CameraMesh {
  public:
   static constexpr int parts = 2;
@@ -33,7 +34,7 @@ class CameraMesh {
     }
   }
 
-  /// To be called before its parts are drawn.
+  /// Call before drawing the parts.
   void begin(const Image<std::uint16_t>& depth, const RigidTransform& color_from_depth,
              const Rect& region) {
     visible_.find(depth, color_from_depth, region);
@@ -41,7 +42,8 @@ class CameraMesh {
 
   const VisibleBlocks& visible() const { return visible_; }
 
-  /// Two rows of vertices at a time; cells that cannot touch the region are left out by the block.
+  /// Two rows of vertices at a time. Whole blocks of cells that cannot touch the region are
+  /// skipped.
   void draw(const VertexRows::Frame& frame, const TiledRegion& region,
             const sdct::Threshold& threshold, int which) {
     parts_[which].surface.clear(frame.region);
@@ -51,7 +53,7 @@ class CameraMesh {
     }
   }
 
-  /// Brings a row's parts together, once they are drawn.
+  /// Merges a row's parts after they are drawn.
   void merge(const TiledRegion& region, int y) {
     SurfaceBuffer& upper = parts_[0].surface;
     SurfaceBuffer& lower = parts_[1].surface;
@@ -77,7 +79,7 @@ class CameraMesh {
     SurfaceBuffer surface;
   };
 
-  /// The cells below each of the rows.
+  /// Draws the cells below each of the rows.
   void draw_band(const VertexRows::Frame& frame, const TiledRegion& region,
                  const sdct::Threshold& threshold, Rows rows, Part& part) const {
     auto& [vertices, surface] = part;
@@ -174,15 +176,15 @@ class VectorizedReconstructor : public Reconstructor {
     int pixels;
   };
 
-  /// What one thread needs for a row.
+  /// Scratch memory of one thread for a row.
   struct Thread {
     std::vector<SurfaceRow> surfaces;
     std::vector<float> second_depth_m;
     CameraBlender::Scratch blending;
   };
 
-  /// The camera that sees most of the region first, as merge_layers does; those that see nothing of
-  /// it are left out.
+  /// Orders the cameras: the one that sees most of the region first, like merge_layers. Cameras
+  /// that see nothing of it are left out.
   void sort_by_coverage(const Rect& region) {
     for (Drawn& drawn : drawn_) {
       drawn.pixels = sum_over_rows(region.height, [&](Rows rows) {

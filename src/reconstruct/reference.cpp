@@ -9,7 +9,7 @@
 namespace diminish {
 namespace {
 
-/// The plain version: every depth pixel, every triangle, one after the other.
+/// The plain version: every depth pixel and every triangle, one after the other.
 class ReferenceReconstructor : public Reconstructor {
  public:
   explicit ReferenceReconstructor(const Rig& rig) : color_(rig.color) {

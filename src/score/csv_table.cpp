@@ -8,7 +8,7 @@
 namespace diminish {
 namespace {
 
-/// The cells of the line at `position`, which is moved behind it.
+/// The cells of the line at `position`, which moves past it.
 std::vector<std::string> parse_line(const std::string& text, std::size_t& position) {
   std::vector<std::string> cells(1);
   bool quoted = false;

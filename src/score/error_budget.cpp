@@ -13,7 +13,7 @@ enum Cause { of_mask, of_missing, of_pose, of_edges, of_color, of_texture };
 
 constexpr int largest_shift_px = 4;
 constexpr int edge_reach_px = 4;
-/// Standard deviation of what counts as "neighbours".
+/// Standard deviation of the neighbourhood.
 constexpr double neighbourhood_px = 6;
 
 cv::Mat to_levels(const cv::Mat& picture) {
@@ -67,7 +67,7 @@ cv::Mat near_edges(const cv::Mat& truth, const cv::Mat& seen) {
   return grow(edges | (seen & ~eroded), edge_reach_px);
 }
 
-/// The mean of `difference` around each pixel, of those in `mask`.
+/// The mean of `difference` around each pixel, over the pixels in `mask`.
 cv::Mat mean_around(const cv::Mat& difference, const cv::Mat& mask) {
   cv::Mat weights;
   mask.convertTo(weights, CV_64F, 1.0 / 255);
@@ -82,7 +82,7 @@ cv::Mat mean_around(const cv::Mat& difference, const cv::Mat& mask) {
   return mean;
 }
 
-/// Of the region, with room for what shifts and averages read.
+/// The region, with room for what shifts and averages read.
 cv::Rect surroundings(const cv::Mat& region) {
   constexpr int margin = 24;
   const cv::Rect box = cv::boundingRect(region);

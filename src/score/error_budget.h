@@ -7,7 +7,7 @@
 
 namespace diminish {
 
-/// A frame's pictures: 8-bit BGR; masks: one channel, all of one size.
+/// A frame's pictures (8-bit BGR) and masks (one channel), all of one size.
 struct ErrorInput {
   cv::Mat result, truth;
   cv::Mat region;  ///< where errors count
@@ -15,23 +15,24 @@ struct ErrorInput {
   cv::Mat seen;    ///< by an RGB-D camera
 };
 
-/// To which cause each pixel's squared error is laid.
+/// The cause of each pixel's squared error.
 struct ErrorCauses {
-  std::optional<ErrorBudget> budget;  ///< nothing where there is no error at all
-  /// One CV_64F picture a cause, as in `error_causes`: squared levels, summed over the channels.
+  std::optional<ErrorBudget> budget;  ///< nothing if there is no error at all
+  /// One CV_64F picture per cause, as in `error_causes`: squared levels, summed over the channels.
   /// What a shift saves may be negative in a pixel.
   std::array<cv::Mat, error_causes.size()> squares;
 };
 
-/// - mask: the object still stands there;
+/// - mask: the object is still visible;
 /// - missing: no camera saw it;
-/// - pose: of the seen pixels, what a shift of the whole picture by a few pixels would save;
-/// - edges: of the rest, what is within 4 pixels of an edge of the truth, or of what was seen;
-/// - color: of the rest, what neighbours have in common (shading, shadows, white balance);
-/// - texture: what is left: blur, noise.
+/// - pose: of the seen pixels, the error that a shift of the whole picture by a few pixels would
+/// save;
+/// - edges: of the rest, pixels within 4 pixels of an edge of the truth or of what was seen;
+/// - color: of the rest, the error that neighbours share (shading, shadows, white balance);
+/// - texture: the rest: blur, noise.
 ErrorCauses find_error_causes(const ErrorInput& whole);
 
-/// Each pixel in the colour of its greatest cause, the lighter the larger its error.
+/// Draws each pixel in the colour of its main cause, lighter for larger errors.
 cv::Mat draw_error_causes(const ErrorCauses& causes);
 
 }  // namespace diminish

@@ -8,13 +8,13 @@
 
 namespace diminish::html {
 
-/// Text that may hold any character.
+/// Escapes text that may contain any character.
 std::string escaped(std::string_view text);
 
-/// The picture as a data URI, JPEG.
+/// The picture as a JPEG data URI.
 std::string data_uri(const cv::Mat& picture);
 
-/// A line plot (SVG). Values that are absent leave gaps; nothing is drawn if all are.
+/// A line plot (SVG). Absent values leave gaps; nothing is drawn if all are absent.
 std::string plot(const std::string& title, const std::vector<std::optional<double>>& values);
 
 }  // namespace diminish::html

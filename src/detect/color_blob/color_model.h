@@ -5,13 +5,13 @@
 
 namespace diminish {
 
-/// In standard deviations.
+/// A colour's deviations from a model, in standard deviations.
 struct ColorDeviation {
-  double tint = 0;  ///< the larger of hue's and saturation's
+  double tint = 0;  ///< the larger of the hue's and the saturation's
   double value = 0;
 };
 
-/// How an object's colour is distributed over its training images' pixels, in HSV (section 3.2 of
+/// The distribution of an object's colour over its training images' pixels, in HSV (section 3.2 of
 /// Meerits & Saito 2015). Saturation and value are from 0 to 1.
 struct ColorModel {
   double hue_deg = 0;  ///< circular mean, weighted by chroma: grey pixels have no hue
@@ -20,7 +20,7 @@ struct ColorModel {
   double saturation_spread = 0;
   double value = 0;
   double value_spread = 0;
-  /// The smallest of the training images' objects, as a part of the picture.
+  /// The smallest object in the training images, as a share of the picture.
   double smallest_area = 0;
 
   /// How far a mean colour (blue, green, red; 0 to 255) is from the model's.
@@ -28,18 +28,18 @@ struct ColorModel {
 };
 
 /// Learns from all images NAME.jpg (or png, bmp) in `folder` with their NAME_mask.png, which is 255
-/// on the object. Throws Error, naming the file, if there are none, or if a mask is missing, of
-/// another size, or empty.
+/// on the object. Throws Error that names the file if there are no images, or if a mask is missing,
+/// has another size or is empty.
 ColorModel train_color_model(const std::filesystem::path& folder);
 
-/// Where `folder`'s model is kept.
+/// The file that holds `folder`'s model.
 std::filesystem::path color_model_file(const std::filesystem::path& folder);
 
-/// Returns whether the file could be written.
+/// Writes the model. Returns whether that worked.
 bool save_color_model(const ColorModel& model, const std::filesystem::path& file);
 
-/// The kept model of `folder` if it is newer than its images; else trains, and keeps the model if
-/// the folder can be written. Throws Error as training does, and on a malformed model file.
+/// Loads the model of `folder` if it is newer than its images. Otherwise trains, and saves the
+/// model if the folder is writable. Throws Error like training, and on a malformed model file.
 ColorModel load_color_model(const std::filesystem::path& folder);
 
 /// The folder of camera `camera` ("color" or an RGB-D camera's name) in `training`, or `color`'s.

@@ -13,7 +13,7 @@ std::uint8_t quantized(double deviation) {
 }  // namespace
 
 ColorTable::ColorTable(const ColorModel& model) {
-  // Colours on the corners of the table's cells.
+  // Colours at the corners of the table's cells.
   constexpr int corners = side + 1;
   std::vector<Entry> lattice;
   for (int b = 0; b < corners; ++b) {

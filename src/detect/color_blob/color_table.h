@@ -9,14 +9,14 @@
 
 namespace diminish {
 
-/// A colour model's deviations, for each of 32^3 colours the least in its neighbourhood: which
-/// pixels may belong to the object at all, quickly.
+/// A colour model's deviations in a table of 32^3 colours, with the least of each one's
+/// neighbourhood: a quick test of which pixels may belong to the object at all.
 class ColorTable {
  public:
   explicit ColorTable(const ColorModel& model);
 
-  /// Of a colour: tint and value alike; and with half of value's, which shading changes most.
-  /// In 1 / per_deviation standard deviations.
+  /// A colour's deviation with tint and value weighted alike, and with half the value's, which
+  /// shading changes most. In 1 / per_deviation standard deviations.
   struct Entry {
     std::uint8_t core, neighbor;
   };

@@ -7,7 +7,7 @@
 namespace diminish {
 namespace {
 
-/// Of a x^2 + b x y + c y^2 + d x + e y + f = 0; absent if it is not an ellipse.
+/// The ellipse a x^2 + b x y + c y^2 + d x + e y + f = 0; nothing if it is not an ellipse.
 std::optional<Ellipse> ellipse_of_conic(const Eigen::Vector3d& quadratic,
                                         const Eigen::Vector3d& linear) {
   Eigen::Matrix2d form;
@@ -19,7 +19,7 @@ std::optional<Ellipse> ellipse_of_conic(const Eigen::Vector3d& quadratic,
   const double at_center = linear[2] + linear.head<2>().dot(ellipse.center) / 2;
   const double mean = form.trace() / 2;
   const double difference = std::hypot((form(0, 0) - form(1, 1)) / 2, form(0, 1));
-  // The form's eigenvalues; the first axis is that of the first. Both have the form's sign.
+  // The eigenvalues of the form, the first one for the first axis. Both have the form's sign.
   const double first = mean + std::copysign(difference, mean);
   const Eigen::Vector2d squares(-at_center / first, -at_center * first / determinant);
   if (!(squares.minCoeff() > 0)) return std::nullopt;
@@ -49,7 +49,7 @@ std::optional<Ellipse> Moments::fit_ellipse() const {
   system << reduced.row(2) / 2, -reduced.row(1), reduced.row(0) / 2;
   const Eigen::EigenSolver<Eigen::Matrix3d> solver(system);
   if (solver.info() != Eigen::Success) return std::nullopt;
-  // Of the three solutions one is an ellipse.
+  // One of the three solutions is an ellipse.
   for (int i = 0; i < 3; ++i) {
     const Eigen::Vector3d conic = solver.eigenvectors().col(i).real();
     if (4 * conic[0] * conic[2] - conic[1] * conic[1] <= 0) continue;

@@ -7,16 +7,16 @@
 
 namespace diminish {
 
-/// An ellipse, or a circle if both half axes are the same.
+/// An ellipse, or a circle if both half axes are equal.
 struct Ellipse {
   Eigen::Vector2d center{0, 0};
   Eigen::Vector2d half_axes{0, 0};
   double angle_rad = 0;  ///< of the first axis
 };
 
-/// The sums of x^i y^j over points, for i + j up to 4: all that fitting a conic takes. Coordinates
-/// are from a point near the points' middle, in units of their extent, so that the sums are of
-/// similar size.
+/// The sums of x^i y^j over points, for i + j up to 4: all that a conic fit needs. Coordinates are
+/// relative to a point near the points' centre, in units of their extent, so that the sums have
+/// similar sizes.
 class Moments {
  public:
   Moments(const Eigen::Vector2d& origin, double unit) : origin_(origin), per_unit_(1 / unit) {}
@@ -44,8 +44,8 @@ class Moments {
     sums_[0][4] += yy * yy;
   }
 
-  /// The ellipse of the least sum of squared algebraic distances (Fitzgibbon, Pilu & Fisher 1999,
-  /// in the form of Halir & Flusser 1998); absent if the points determine none.
+  /// The ellipse with the least sum of squared algebraic distances (Fitzgibbon, Pilu & Fisher 1999,
+  /// in the form of Halir & Flusser 1998); nothing if the points do not determine one.
   std::optional<Ellipse> fit_ellipse() const;
   /// Least squares on x^2 + y^2 = 2 a x + 2 b y + c (Kasa 1976).
   std::optional<Ellipse> fit_circle() const;

@@ -13,7 +13,7 @@ void combine(const std::uint8_t* __restrict other, std::ptrdiff_t count, const C
   for (std::ptrdiff_t i = 0; i < count; ++i) result[i] = choose(result[i], other[i]);
 }
 
-/// Combines `result` with `values` moved by up to `reach` times `step` bytes to both sides.
+/// Combines `result` with `values` shifted by up to `reach` times `step` bytes to both sides.
 template <class Choose>
 void combine_moved(const std::uint8_t* values, std::ptrdiff_t count, std::ptrdiff_t step, int reach,
                    const Choose& choose, std::uint8_t* result) {
@@ -23,7 +23,7 @@ void combine_moved(const std::uint8_t* values, std::ptrdiff_t count, std::ptrdif
   }
 }
 
-/// Columns [first, last) of a row, a value at a time.
+/// Columns [first, last) of a row, one value at a time.
 template <class Choose>
 void filter_columns(const std::uint8_t* row, int width, int channels, int reach, int first,
                     int last, const Choose& choose, std::uint8_t* result) {
@@ -50,13 +50,13 @@ void filter(const Image<Pixel>& image, const Reach& reach, const Choose& choose,
   const auto* const values = reinterpret_cast<const std::uint8_t*>(image.data());
   auto* const columns = reinterpret_cast<std::uint8_t*>(scratch.data());
   auto* const both = reinterpret_cast<std::uint8_t*>(result.data());
-  // The whole image at a time, because rows may be short.
+  // The whole image at once, because rows may be short.
   std::copy_n(values, count, columns);
   combine_moved(values, count, pitch, reach.y, choose, columns);
   std::copy_n(columns, count, both);
   if (reach.x == 0) return;
   combine_moved(columns, count, channels, reach.x, choose, both);
-  // That went on from one row's end to the next row's begin.
+  // That ran on from each row's end into the next row.
   for (int y = 0; y < image.height(); ++y) {
     const std::uint8_t* const row = columns + y * pitch;
     const int left_end = std::min(reach.x, width);

@@ -16,7 +16,7 @@ constexpr std::uint8_t background_label = 2;
 // How far, in cells, the outline may be inside and outside the region's.
 constexpr int inward = 1;
 constexpr int outward = 2;
-// The rim of what is looked at is outside, and a watershed gives no label to the outermost pixels.
+// The border of the area is outside, and a watershed does not label the outermost pixels.
 constexpr int rim = outward + 1;
 
 int squared_distance(const Bgr& a, const Bgr& b) {
@@ -43,10 +43,10 @@ Rect OutlineRefinement::refine(const Image<Bgr>& image, const Mask& region, cons
   return visible;
 }
 
-/// `cells_`: what is surely inside or outside, and what is not known.
+/// Fills `cells_`: surely inside, surely outside, or unknown.
 void OutlineRefinement::find_band(const Mask& region, const Rect& box) {
-  // Beyond the picture's border both go on as they are at the border, so that an object that is
-  // cut off there is not closed.
+  // Beyond the picture's border both continue, so that an object that is cut off there is not
+  // closed.
   coarse_.resize(box.width + 2 * rim, box.height + 2 * rim);
   for (int y = 0; y < coarse_.height(); ++y) {
     const std::uint8_t* const row = region.row(std::clamp(box.y + y - rim, 0, region.height() - 1));
@@ -102,8 +102,8 @@ void OutlineRefinement::smooth_band(const Image<Bgr>& image, const Rect& part, i
   }
 }
 
-/// On which side of the watershed's line a pixel of the line belongs: the one with the neighbour
-/// of the most similar colour.
+/// The side to which a pixel of the watershed line belongs: that of the neighbour with the most
+/// similar colour.
 std::uint8_t OutlineRefinement::nearest_side(int pixel) const {
   std::uint8_t side = object_label;
   int smallest = std::numeric_limits<int>::max();
@@ -121,7 +121,7 @@ std::uint8_t OutlineRefinement::nearest_side(int pixel) const {
   return side;
 }
 
-/// The outermost pixels are outside.
+/// Marks the outermost pixels as outside.
 void OutlineRefinement::write_object(const Rect& part, const Rect& visible, Mask& object) const {
   object.resize(visible.width, visible.height);
   for (int y = 0; y < visible.height; ++y) {

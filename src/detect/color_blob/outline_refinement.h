@@ -9,15 +9,14 @@
 
 namespace diminish {
 
-/// An object's outline at full resolution, from one that was found in a small picture. Keeps its
-/// memory from one picture to the next.
+/// Refines an object's outline from a small picture to full resolution. Reuses its memory.
 class OutlineRefinement {
  public:
   /// The watershed of `image`'s colours between the inside and the outside of `region` (255 on the
   /// object, one pixel per `scale` image pixels), which lies in the small picture's `window`.
-  /// Writes the object's pixels, 255, and the others around it, 0, to `object`, and returns where
-  /// that lies in the image; the object's border is inside unless it is cut off by the image's.
-  /// Cost: in proportion to the outline's length, but for filling `object`.
+  /// Writes the object's pixels (255) and the others around it (0) to `object`, and returns where
+  /// that lies in the image. The object's border is inside unless the image cuts it off. Cost:
+  /// proportional to the outline's length, except for filling `object`.
   Rect refine(const Image<Bgr>& image, const Mask& region, const Rect& window, int scale,
               Mask& object);
 

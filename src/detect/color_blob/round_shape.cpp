@@ -10,7 +10,7 @@ namespace {
 
 constexpr int fewest_points = 8;
 
-/// How far out a point is: 1 on the ellipse, less inside.
+/// The relative radius of a point: 1 on the ellipse, less inside.
 class RelativeRadius {
  public:
   explicit RelativeRadius(const Ellipse& ellipse)
@@ -34,7 +34,8 @@ class RelativeRadius {
     return center_.x() - mixed / squares * (y - center_.y());
   }
 
-  /// How fast the squared relative radius grows with the squared distance from there, as a root.
+  /// The square root of the factor by which the squared relative radius grows with the squared
+  /// distance from there.
   double slope() const { return std::hypot(first_axis_.x(), second_axis_.x()); }
 
  private:
@@ -55,7 +56,7 @@ void for_each_row(const Ellipse& ellipse, const Rect& part, const Visit& visit) 
     const double half_width = std::sqrt(1 - radius * radius) / relative_radius.slope();
     const auto left = std::max<double>(middle - half_width, part.x);
     const auto right = std::min<double>(middle + half_width, part.right() - 1);
-    // Both are rounded; what decides is the radius.
+    // Both are rounded, so the radius decides.
     int first = static_cast<int>(std::ceil(left));
     int last = static_cast<int>(std::floor(right));
     while (first > part.x && relative_radius(first - 1, y) <= 1) --first;
@@ -112,13 +113,13 @@ std::optional<RoundShape> RoundShapeFitter::fit(const Outline& outline, const Ma
   for (const Eigen::Vector2i& point : points_) box_.extend(point);
   good_.assign(points_.size(), 1);
   std::optional<Ellipse> ellipse = fit_good_points(is_cut_off);
-  // The first fit is drawn towards what does not belong to the outline, the later ones less.
+  // Points that do not belong to the outline pull the first fit, and later ones less.
   for (int pass = 0; pass < 4 && ellipse && is_usable(*ellipse); ++pass) {
     if (!leave_out_outliers(*ellipse)) break;
     ellipse = fit_good_points(is_cut_off);
   }
   if (!ellipse || !is_usable(*ellipse)) return std::nullopt;
-  // The outline leads through the centres of the region's outermost pixels.
+  // The outline runs through the centres of the region's outermost pixels.
   ellipse->half_axes += Eigen::Vector2d(0.5, 0.5);
   return RoundShape{*ellipse, intersection_over_union(*ellipse, region, picture)};
 }

@@ -10,7 +10,7 @@ void sum_rows(const std::uint8_t* above, const std::uint8_t* middle, const std::
   }
 }
 
-/// Of sums a pixel (3) apart.
+/// From sums that are one pixel (3) apart.
 void average_columns(const std::uint16_t* sums, int count, std::uint8_t* __restrict result) {
   for (int i = 0; i < count; ++i) {
     const auto sum = static_cast<std::uint16_t>(sums[i] + 2 * sums[i + 3] + sums[i + 6] + 8);

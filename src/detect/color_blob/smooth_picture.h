@@ -8,16 +8,16 @@
 namespace diminish {
 
 /// Averages 3x3 pixels with the weights 1 2 1 in both directions (a Gaussian of 0.85 pixels),
-/// rounded; as `cv::GaussianBlur` does with a kernel of 3x3. Keeps its memory.
+/// rounded, like `cv::GaussianBlur` with a 3x3 kernel. Reuses its memory.
 class PictureSmoother {
  public:
-  /// Smooths columns [first, last) of row y of the picture's part `part`, which may reach beyond
-  /// the picture: there it goes on as it is at the border. Coordinates are the part's.
+  /// Smooths columns [first, last) of row y of the picture's part `part`. The part may extend
+  /// beyond the picture, whose border is then repeated. Coordinates are relative to the part.
   void smooth_row(const Image<Bgr>& picture, const Rect& part, int y, int first, int last,
                   Bgr* result);
 
  private:
-  /// Columns [first, last) of a row of the picture, which both may lie outside.
+  /// Columns [first, last) of a row of the picture; both may lie outside.
   const std::uint8_t* row(const Image<Bgr>& picture, int y, int first, int last,
                           std::vector<Bgr>& scratch);
 
