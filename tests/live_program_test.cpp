@@ -56,7 +56,7 @@ TEST(LiveProgram, ChecksLiveCameras) {
   const auto gone = Program::run({"check", calendar, "--color", replay, "--rgbd",
                                   "recording:/nowhere", "--seconds", "3", "--frames", "8"});
   EXPECT_EQ(gone.exit_code, 3) << gone.err;
-  EXPECT_THAT(gone.out, ContainsRegex("frames go without rgbd0"));
+  EXPECT_THAT(gone.out, ContainsRegex("frames have no images of rgbd0"));
 }
 
 TEST(LiveProgram, ASyncCheckNamesTheCameraThatIsNotThere) {

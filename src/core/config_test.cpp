@@ -105,7 +105,7 @@ TEST(Config, MalformedYamlIsOneLineWithFileAndLine) {
         << yaml;
   }
   EXPECT_EQ(error_of([] { parse("x: 0\na: 1\na: 2\n"); }),
-            "folder/rig.yaml:3: key 'a' is there twice");
+            "folder/rig.yaml:3: key 'a' is repeated");
 }
 
 TEST(Config, EmptyFiles) {

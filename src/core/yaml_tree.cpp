@@ -47,7 +47,7 @@ class TreeBuilder final : public YAML::EventHandler {
   }
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     const auto found = anchors_.find(anchor);
-    if (found == anchors_.end()) fail(file_, mark.line + 1, "an alias inside of its own anchor");
+    if (found == anchors_.end()) fail(file_, mark.line + 1, "an alias inside its own anchor");
     add(found->second, YAML::NullAnchor);
   }
   void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
@@ -113,7 +113,7 @@ class TreeBuilder final : public YAML::EventHandler {
   void begin_entry(Open& map, const YamlNode& key) {
     if (key.kind != YamlNode::Kind::scalar) fail(file_, key.line, "expected a word as the key");
     if (!map.keys.insert(key.text).second) {
-      fail(file_, key.line, fmt::format("key '{}' is there twice", printable(key.text)));
+      fail(file_, key.line, fmt::format("key '{}' is repeated", printable(key.text)));
     }
     map.pending = YamlEntry{key.text, key.line, nullptr};
   }

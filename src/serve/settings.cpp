@@ -69,14 +69,13 @@ Json describe_settings(const LiveSession& session) {
     if (!methods.empty()) setting["choices"] = methods;
     list.push_back(std::move(setting));
   });
-  list.push_back(
-      {{"name", budget_name},
-       {"kind", "number"},
-       {"unit", "milliseconds"},
-       {"help", "What a frame may take before quality steps down; 0: as long as it takes"},
-       {"value", session.live_options().budget_ms},
-       {"min", 0},
-       {"max", most_budget_ms}});
+  list.push_back({{"name", budget_name},
+                  {"kind", "number"},
+                  {"unit", "milliseconds"},
+                  {"help", "Time budget of a frame, above which quality steps down; 0: none"},
+                  {"value", session.live_options().budget_ms},
+                  {"min", 0},
+                  {"max", most_budget_ms}});
   Json objects = Json::array();
   for (const OccluderSpec& occluder : session.scene().occluders) objects.push_back(occluder.name);
   return {{"settings", list}, {"objects", objects}};

@@ -65,7 +65,7 @@ TEST_F(CalibrateProgram, SaysOfEachImageWhatItWasGoodForAndWritesTheRig) {
   EXPECT_THAT(outcome.out, HasSubstr("broken.png: not used: cannot be decoded"));
   EXPECT_THAT(outcome.out, HasSubstr("grey.png: not used: the board was not found"));
   EXPECT_THAT(outcome.out, HasSubstr("small.png: not used: expected 480x360"));
-  EXPECT_THAT(outcome.out, HasSubstr("again.png: not used: shows the board as"));
+  EXPECT_THAT(outcome.out, HasSubstr("again.png: not used: shows the board like"));
   EXPECT_THAT(outcome.out, HasSubstr("coverage"));
   EXPECT_EQ(outcome.exit_code == 3, outcome.out.find("Warning:") != std::string::npos);
   const auto matrix = load_rig_file().at("color").at("camera_matrix").numbers(4);
@@ -105,7 +105,7 @@ rgbd:
                     board_text, "--seconds", "9", "--out", path("live.yaml")});
   EXPECT_TRUE(outcome.exit_code == 0 || outcome.exit_code == 3) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("so far 9 views"));
-  EXPECT_THAT(outcome.out, HasSubstr(" s: not used: shows the board as "));
+  EXPECT_THAT(outcome.out, HasSubstr(" s: not used: shows the board like "));
   const auto matrix =
       Config::load(folder.path() / "live.yaml").at("color").at("camera_matrix").numbers(4);
   EXPECT_NEAR(matrix[0], truth.fx, 0.015 * truth.fx);

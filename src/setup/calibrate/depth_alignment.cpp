@@ -135,8 +135,8 @@ double root_mean_square(const std::vector<double>& values) {
 }
 
 std::string direction_name(const Vector6d& direction) {
-  constexpr const char* names[] = {"turning about x",  "turning about y",  "turning about z",
-                                   "shifting along x", "shifting along y", "shifting along z"};
+  constexpr const char* names[] = {"rotation about x", "rotation about y", "rotation about z",
+                                   "shift along x",    "shift along y",    "shift along z"};
   Eigen::Index largest = 0;
   direction.cwiseAbs().maxCoeff(&largest);
   return names[largest];

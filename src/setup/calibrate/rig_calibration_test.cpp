@@ -186,9 +186,9 @@ TEST(RigCalibration, SaysWhatParallelPlanesDoNotDetermine) {
   }
   const DepthToColor result = calibration.depth_to_color(0);
   EXPECT_EQ(result.undetermined.size(), 3U);
-  EXPECT_THAT(result.undetermined, Contains("shifting along x"));
-  EXPECT_THAT(result.undetermined, Contains("shifting along y"));
-  EXPECT_THAT(result.undetermined, Contains("turning about z"));
+  EXPECT_THAT(result.undetermined, Contains("shift along x"));
+  EXPECT_THAT(result.undetermined, Contains("shift along y"));
+  EXPECT_THAT(result.undetermined, Contains("rotation about z"));
   EXPECT_THAT(result.warnings, Contains(HasSubstr("3 of 6")));
   // Along the line of sight it is found all the same.
   EXPECT_NEAR(result.color_from_depth.translation.z(),

@@ -67,10 +67,10 @@ ViewCollection::ViewCollection(int width, int height)
 std::string ViewCollection::add(BoardView view) {
   for (const BoardView& other : views_) {
     if (distance_px(view, other) < same_view * width_) {
-      return "shows the board as " + other.name + " does";
+      return "shows the board like " + other.name;
     }
   }
-  if (views_.size() == most_views) return fmt::format("there are {} views already", most_views);
+  if (views_.size() == most_views) return fmt::format("already {} views", most_views);
   Image<int> touched(cell_columns, cell_rows, 0);
   for (const Eigen::Vector2d& pixel : view.pixels) {
     const int x = static_cast<int>((pixel.x() + 0.5) / width_ * cell_columns);

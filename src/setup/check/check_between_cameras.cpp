@@ -32,10 +32,10 @@ bool check_swapped_cameras(Diagnosis& setup, std::size_t k, double most_px) {
         Severity::serious, "swapped",
         fmt::format("{} is where {} should be: they are swapped", setup.rig.rgbd[k].name,
                     setup.rig.rgbd[other].name),
-        fmt::format("markers agree to {:.1f} pixels with the place of {}, to {:.1f} with its own",
+        fmt::format("markers agree to {:.1f} pixels with the pose of {}, to {:.1f} with its own",
                     median_of(errors), setup.rig.rgbd[other].name,
                     median_of(setup.survey.between_px[k])),
-        "exchange the cameras' names, in the recording or the driver");
+        "swap the cameras' names, in the recording or the driver");
     setup.explained = true;
     return true;
   }
@@ -57,10 +57,10 @@ void check_between_cameras(Diagnosis& setup) {
     if (fixed && check_swapped_cameras(setup, k, most)) continue;
     setup.explained = true;
     setup.find(Severity::serious, "disagreement",
-               fmt::format("{} and color do not agree where markers are", setup.rig.rgbd[k].name),
+               fmt::format("{} and color disagree on where markers are", setup.rig.rgbd[k].name),
                fmt::format("{:.1f} pixels", error),
-               fixed ? "if cameras were moved: diminish calibrate rig"
-                     : "a larger world marker, seen less frontally; calibrate the cameras");
+               fixed ? "if cameras were moved, run diminish calibrate rig"
+                     : "use a larger world marker, tilted more; calibrate the cameras");
   }
 }
 

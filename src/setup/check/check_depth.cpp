@@ -79,8 +79,8 @@ bool check_foreign_depth(Diagnosis& setup, std::size_t k) {
                     name, setup.rig.rgbd[other].name),
         fmt::format("the depth of {} fits the markers in {}'s colour images, {}'s own does not",
                     setup.rig.rgbd[other].name, name, name),
-        fmt::format("exchange {}_depth.txt and {}_depth.txt, or the cameras' names in the driver",
-                    name, setup.rig.rgbd[other].name));
+        fmt::format("swap {}_depth.txt and {}_depth.txt, or the cameras' names in the driver", name,
+                    setup.rig.rgbd[other].name));
     return true;
   }
   const auto mirrored = depth_ratios(
@@ -88,7 +88,7 @@ bool check_foreign_depth(Diagnosis& setup, std::size_t k) {
   if (!all_right(mirrored)) return false;
   setup.find(Severity::serious, "mirrored", name + " depth is mirrored",
              "the depth of its markers is right when the image is flipped left to right",
-             "switch mirroring off in the driver");
+             "switch off mirroring in the driver");
   return true;
 }
 
@@ -96,9 +96,9 @@ void blame_marker(Diagnosis& setup, int id, double ratio) {
   const double size = setup.sizes.at(id);
   setup.find(
       Severity::serious, "marker-size",
-      fmt::format("marker {} is not {:.1f} mm wide, but {:.1f} mm by the depth measured on it", id,
+      fmt::format("marker {} is not {:.1f} mm wide, but {:.1f} mm according to its depth", id,
                   1000 * size, 1000 * size * ratio),
-      fmt::format("measured by computed depth {:.3f}", ratio),
+      fmt::format("measured / computed depth: {:.3f}", ratio),
       "measure the black square, without its white rim, and correct size_m in scene.yaml; print "
       "at 100 %");
   setup.sizes[id] = size * ratio;
@@ -201,7 +201,7 @@ void check_depth(Diagnosis& setup) {
     if (setup.usable[k]) ratios[k] = depth_ratios(setup, setup.rig, k);
     for (const auto& [id, measured] : ratios[k]) {
       setup.note(
-          fmt::format("{}: depth of marker {}, measured by computed", setup.rig.rgbd[k].name, id),
+          fmt::format("{}: depth of marker {}, measured / computed", setup.rig.rgbd[k].name, id),
           measured.ratio, "");
     }
   }

@@ -77,7 +77,7 @@ void check_focal_length(Diagnosis& setup) {
   }
   blame_focal_length(
       setup, 0, best_factor,
-      fmt::format("so the cameras' pictures agree by {:.2f}, now by {:.2f}", best, *as_is));
+      fmt::format("then the cameras' pictures agree by {:.2f}, now by {:.2f}", best, *as_is));
 }
 
 }  // namespace diminish

@@ -44,7 +44,7 @@ bool check_mirrored(Diagnosis& setup, std::size_t sensor) {
       fmt::format("markers are found in {} of {} images, but only when these are flipped left "
                   "to right",
                   found, images),
-      "switch mirroring off in the driver; of an RGB-D camera check the depth images, too");
+      "switch off mirroring in the driver; for an RGB-D camera also check the depth images");
   return true;
 }
 
@@ -80,7 +80,7 @@ bool check_dictionary(Diagnosis& setup) {
   }
   if (best.empty() || best == setup.scene.marker_dictionary) return false;
   setup.find(Severity::serious, "dictionary",
-             fmt::format("the markers are of another dictionary: {}", best),
+             fmt::format("the markers belong to another dictionary: {}", best),
              fmt::format("none of {} is found, but of {} ids {}", setup.scene.marker_dictionary,
                          best, ids),
              fmt::format("marker_dictionary: {} in scene.yaml", best));
@@ -104,8 +104,8 @@ bool check_too_small(Diagnosis& setup, const SensorSurvey& sensor, std::size_t i
   setup.find(
       Severity::serious, "marker-small",
       fmt::format("world marker {} is too small in {}", id, sensor.name),
-      fmt::format("{:.0f} pixels; expected {:.0f} and more", median_of(sides), small_marker_px),
-      "print it larger, or bring it nearer");
+      fmt::format("{:.0f} pixels; expected at least {:.0f}", median_of(sides), small_marker_px),
+      "print it larger or bring it nearer");
   return true;
 }
 
@@ -122,7 +122,7 @@ void check_world_marker(Diagnosis& setup, const SensorSurvey& sensor, std::size_
   }
   setup.find(
       count == 0 ? Severity::serious : Severity::warning, "marker-not-visible",
-      fmt::format("world marker {} is {} visible in {}", id, count == 0 ? "never" : "seldom",
+      fmt::format("world marker {} is {} visible in {}", id, count == 0 ? "never" : "rarely",
                   sensor.name),
       fmt::format("{} of {} frames", count, sensor.images),
       "turn the camera or move the marker until every camera sees all of it; check its id and "
@@ -138,8 +138,8 @@ void check_marker_sizes(Diagnosis& setup, const SensorSurvey& sensor) {
     if (side >= small_marker_px) continue;
     setup.find(Severity::warning, "marker-small",
                fmt::format("marker {} is small in {}", id, sensor.name),
-               fmt::format("{:.0f} pixels; expected {:.0f} and more", side, small_marker_px),
-               "print it larger, or bring it nearer");
+               fmt::format("{:.0f} pixels; expected at least {:.0f}", side, small_marker_px),
+               "print it larger or bring it nearer");
   }
 }
 
@@ -174,7 +174,7 @@ void check_markers(Diagnosis& setup) {
     });
     if (seen || !mirrored.empty()) continue;
     setup.find(Severity::serious, "marker-not-visible",
-               fmt::format("marker {} is never visible, in no camera", id),
+               fmt::format("marker {} is never visible in any camera", id),
                fmt::format("0 of {} frames", setup.survey.frames),
                "check its id, that it is whole and in view, and its white rim");
   }

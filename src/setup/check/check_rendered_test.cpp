@@ -95,7 +95,7 @@ TEST(CheckSetup, FindsAClockOffsetByAWavedMarker) {
   PairedByStamps together(waved, 0);
   const SetupReport fine = check_setup(waved.rig, waved.scene, together);
   EXPECT_TRUE(fine.fine()) << setup_report_text(fine);
-  EXPECT_THAT(setup_report_text(fine), ::testing::HasSubstr("clock of rgbd0 after color's"));
+  EXPECT_THAT(setup_report_text(fine), ::testing::HasSubstr("clock of rgbd0 minus color's"));
   for (const int late : {2, -2}) {
     PairedByStamps apart(waved, late);
     const SetupReport report = check_setup(waved.rig, waved.scene, apart);
@@ -104,7 +104,7 @@ TEST(CheckSetup, FindsAClockOffsetByAWavedMarker) {
     EXPECT_THAT(report.findings[0].what,
                 ::testing::HasSubstr(late > 0 ? "ahead of color's" : "behind color's"));
     for (const SetupFigure& figure : report.figures) {
-      if (figure.name != "clock of rgbd0 after color's") continue;
+      if (figure.name != "clock of rgbd0 minus color's") continue;
       RecordProperty("figures", fmt::sprintf("clock offset %.1f ms, truth %.1f ms", figure.value,
                                              late * 1000 * period_s));
       EXPECT_NEAR(figure.value, late * 1000 * period_s, 10);

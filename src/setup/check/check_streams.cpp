@@ -29,15 +29,16 @@ void check_streams(Diagnosis& setup) {
     if (missing == setup.survey.frames) setup.usable[k] = false;
     setup.find(
         none ? Severity::serious : Severity::warning, "no-partner",
-        fmt::format("{} of {} frames go without {}", missing, setup.survey.frames, name),
+        fmt::format("{} of {} frames have no images of {}", missing, setup.survey.frames, name),
         setup.survey.first_missing[k],
-        "synchronise the clocks, or shift the timestamps in its lists; if it is only a little, "
+        "synchronise the clocks, or shift the timestamps in its lists; if they are only slightly "
+        "off, "
         "raise --sync-tolerance-s");
   }
   if (setup.survey.fault_count > 0) {
     setup.find(Severity::warning, "faults",
                fmt::format("{} images could not be used", setup.survey.fault_count),
-               setup.survey.faults.front(), "record again, or see what damages the files");
+               setup.survey.faults.front(), "record again, or find out what damages the files");
   }
 }
 
@@ -50,12 +51,12 @@ void check_exposure(Diagnosis& setup) {
     if (level < dark_level) {
       setup.find(Severity::warning, "dark", sensor->name + " is too dark",
                  fmt::format("mean brightness {:.0f} of 255", level),
-                 "more light, a longer exposure or a larger aperture");
+                 "use more light, a longer exposure or a larger aperture");
     }
     if (over > overexposed_share) {
       setup.find(Severity::warning, "overexposed", sensor->name + " is overexposed",
                  fmt::format("{:.0f} % of its pixels are white", 100 * over),
-                 "a shorter exposure, or less light");
+                 "use a shorter exposure or less light");
     }
   }
 }
@@ -69,7 +70,7 @@ void check_clocks(Diagnosis& setup) {
     }
     const double half_frame = setup.survey.frame_period_s / 2;
     if (!best || best->deviation_s > half_frame) continue;
-    setup.note(fmt::format("clock of {} after color's", setup.rig.rgbd[k].name),
+    setup.note(fmt::format("clock of {} minus color's", setup.rig.rgbd[k].name),
                1000 * best->offset_s, "milliseconds");
     if (std::abs(best->offset_s) <= std::max(half_frame, 4 * best->deviation_s)) continue;
     setup.find(

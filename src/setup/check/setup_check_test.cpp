@@ -260,7 +260,7 @@ TEST(CheckProgram, SaysItOnTheTerminalAndAsJson) {
   const std::string json = (copy.path() / "report.json").string();
   const auto fine = Program::run({"check", copy.path().string()});
   EXPECT_EQ(fine.exit_code, 0) << fine.err;
-  EXPECT_THAT(fine.out, HasSubstr("nothing wrong was found"));
+  EXPECT_THAT(fine.out, HasSubstr("no problems found"));
   copy.replace("rig.yaml", "unit_m: 0.001", "unit_m: 0.01");
   const auto wrong = Program::run({"check", copy.path().string(), "--json", json});
   EXPECT_EQ(wrong.exit_code, 3);

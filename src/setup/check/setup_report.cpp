@@ -25,7 +25,7 @@ std::string setup_report_text(const SetupReport& report) {
                    finding.code, finding.what, finding.figure, finding.remedy);
   }
   fmt::format_to(out, "\n{} frames: {}\n", report.frames,
-                 report.fine() ? "nothing wrong was found"
+                 report.fine() ? "no problems found"
                                : fmt::format("{} {}", report.findings.size(),
                                              report.findings.size() == 1 ? "finding" : "findings"));
   return text;

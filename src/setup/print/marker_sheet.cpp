@@ -43,11 +43,10 @@ Page empty_page(const Paper& paper, double cell_mm) {
     const double height = mm % 10 == 0 ? 4 : mm % 5 == 0 ? 3 : 1.8;
     page.black.push_back({page_margin + mm - line / 2, bottom - 6 - height, line, height});
   }
-  page.texts.push_back(
-      {page_margin, bottom - 1, font_height,
-       fmt::format("Print at 100 %, not \"fit to page\". From the first to the last "
-                   "mark of this ruler it must be {:.0f} mm.",
-                   ruler_length)});
+  page.texts.push_back({page_margin, bottom - 1, font_height,
+                        fmt::format("Print at 100 %, not \"fit to page\". The first and the last "
+                                    "mark of this ruler must be {:.0f} mm apart.",
+                                    ruler_length)});
   return page;
 }
 
