@@ -204,7 +204,7 @@ function showStatus(status) {
   element("skipped").textContent = status.skipped;
   element("seen").textContent = `${(100 * status.seen_share).toFixed(0)} %`;
   element("quality").hidden = status.quality_level === 0;
-  element("quality").textContent = `To keep ${status.budget_ms} ms: ${status.quality}`;
+  element("quality").textContent = `To stay within ${status.budget_ms} ms: ${status.quality}`;
   plot(status.stage_ms);
   showCameras(status);
   for (const object of status.objects) {
@@ -237,7 +237,7 @@ events.onerror = () => {
   const warnings = element("warnings");
   warnings.hidden = false;
   warnings.classList.add("bad");
-  warnings.textContent = "diminish does not answer; trying again";
+  warnings.textContent = "No answer from diminish; trying again";
 };
 showSettings(await get("api/settings"));
 moveSlider();
