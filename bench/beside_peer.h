@@ -15,8 +15,9 @@ double milliseconds(Work&& work) {
       .count();
 }
 
-/// Runs ours and the peer's in turn, so that a machine whose speed drifts slows both. The
-/// benchmark's time is ours; `peer_ms` the peer's, `ratio` the peer's time divided by ours.
+/// Runs our code and the peer's in turn, so that a machine whose speed drifts slows both. The
+/// benchmark's time is ours; `peer_ms` is the peer's, and `ratio` is the peer's time divided by
+/// ours.
 template <class Ours, class Peers>
 void run_beside_peer(benchmark::State& state, Ours&& ours, Peers&& peers) {
   double ours_ms = 0;

@@ -11,9 +11,9 @@
 namespace diminish {
 namespace {
 
-/// Draws a bundled recording's first frame by the compute rasteriser, the paper's geometry shader
-/// and the processor, in turn. The benchmark's time is the first's; the others' are counters, and
-/// their time divided by the first's. The label names the driver.
+/// Draws a bundled recording's first frame with the compute rasteriser, the paper's geometry shader
+/// and the CPU, in turn. The benchmark's time is the first one's; the others' are counters, also
+/// divided by the first one's. The label names the driver.
 void draw(benchmark::State& state, const char* name, bool whole_view) {
   const testing::FirstFrame first(name);
   const Rect region = whole_view ? first.whole_view() : first.result.reconstruction.region;
@@ -30,7 +30,8 @@ void draw(benchmark::State& state, const char* name, bool whole_view) {
   const auto milliseconds_of = [&](Reconstructor& reconstructor) {
     return milliseconds([&] { first.reconstruct(reconstructor, region, reconstruction); });
   };
-  for (const auto& variant : variants) milliseconds_of(*variant);  // memory grows to its size
+  for (const auto& variant : variants)
+    milliseconds_of(*variant);  // lets memory grow to its final size
   std::vector<double> times[3];
   std::vector<double> gpu_ms;
   for (auto _ : state) {

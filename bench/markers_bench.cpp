@@ -20,10 +20,10 @@ namespace fs = std::filesystem;
 
 struct Picture {
   Image<Bgr> image;
-  std::vector<Marker> truth;  ///< empty where it is not known
+  std::vector<Marker> truth;  ///< empty if unknown
 };
 
-/// What a detector found of the markers that are there.
+/// How many of the existing markers a detector found.
 struct Found {
   std::size_t wanted = 0, found = 0, wrong = 0;
   double squares = 0;
@@ -103,7 +103,7 @@ void beside_opencv(benchmark::State& state, const std::vector<Picture>& pictures
   }
 }
 
-/// The calendar's pictures, in turn: one camera's share of a frame. There is no truth here.
+/// The calendar's pictures, in turn: one camera's share of a frame. Without truth.
 void markers_of_a_frame(benchmark::State& state) {
   const fs::path folder = fs::path(testing::recordings_dir()) / "calendar";
   std::vector<Picture> pictures(2);
@@ -114,7 +114,7 @@ void markers_of_a_frame(benchmark::State& state) {
 BENCHMARK(markers_of_a_frame)->UseManualTime()->Unit(benchmark::kMillisecond);
 
 /// DIMINISH_MARKERS may name a folder of pictures WIDTH_aro_*.png and WIDTH_t36_*.png with the true
-/// corners beside them (a line a marker: id and four corners).
+/// corners beside them (one line per marker: id and four corners).
 void markers_with_truth(benchmark::State& state, const char* kind, const char* name, int id) {
   std::vector<Picture> pictures;
   if (const char* folder = std::getenv("DIMINISH_MARKERS")) {

@@ -8,9 +8,9 @@
 namespace diminish {
 namespace {
 
-/// Outlines and draws the objects of a bundled recording's first frame, in all its images, by the
-/// GPU and by the processor, in turn. The benchmark's time is the first's; the second's is a
-/// counter, and divided by the first's.
+/// Outlines and draws the objects of a bundled recording's first frame in all its images, on the
+/// GPU and on the CPU, in turn. The benchmark's time is the GPU's; the CPU's is a counter, also
+/// divided by the GPU's.
 void masks(benchmark::State& state, const char* name) {
   const testing::FirstFrame first(name);
   OccluderStage stages[2] = {{first.rig(), first.recording.scene},
@@ -24,7 +24,7 @@ void masks(benchmark::State& state, const char* name) {
     });
   };
   std::vector<double> times[2];
-  for (OccluderStage& stage : stages) milliseconds_of(stage);  // memory grows to its size
+  for (OccluderStage& stage : stages) milliseconds_of(stage);  // lets memory grow to its final size
   if (!stages[0].message().empty()) return state.SkipWithError(stages[0].message().c_str());
   for (auto _ : state) {
     for (int i = 0; i < 2; ++i) times[i].push_back(milliseconds_of(stages[i]));

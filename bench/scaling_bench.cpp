@@ -25,8 +25,8 @@ void scale(double factor, Intrinsics& intrinsics, Image<Bgr>& image) {
   intrinsics.cy = (intrinsics.cy + 0.5) * factor - 0.5;
 }
 
-/// Whole frames of a bundled recording with colour pictures of another size (the first argument,
-/// in percent) and with its RGB-D camera several times (the second).
+/// Whole frames of a bundled recording with colour pictures of another size (the first argument, in
+/// percent) and with its RGB-D camera repeated (the second).
 void scaling(benchmark::State& state) {
   Recording recording =
       load_recording(std::filesystem::path(testing::recordings_dir()) / "calendar");

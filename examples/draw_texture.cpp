@@ -1,4 +1,4 @@
-// The pictures as textures of one's own OpenGL: nothing is read back.
+// Pictures as textures in your own OpenGL context: nothing is read back.
 //   draw_texture RECORDING
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
@@ -46,7 +46,7 @@ int main(int argc, char** argv) try {
     if (picture.name == 0) continue;
     glWaitSync(static_cast<GLsync>(picture.ready), 0, GL_TIMEOUT_IGNORED);
     glNamedFramebufferTexture(frames[1], GL_COLOR_ATTACHMENT0, picture.name, 0);
-    // OpenGL's windows begin below.
+    // OpenGL's windows begin at the bottom.
     glBlitNamedFramebuffer(frames[1], frames[0], 0, 0, picture.width, picture.height, 0, height,
                            width, 0, GL_COLOR_BUFFER_BIT, GL_LINEAR);
     // eglSwapBuffers(display, window);

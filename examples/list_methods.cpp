@@ -1,4 +1,4 @@
-// Prints what can be chosen by name.
+// Prints the methods that can be chosen by name.
 
 #include <cstdio>
 

@@ -1,4 +1,4 @@
-// A recording in, pictures out: the library in one page.
+// A recording in, pictures out: the library on one page.
 //   remove_objects RECORDING
 #include <cstdio>
 #include <exception>

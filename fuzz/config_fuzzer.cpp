@@ -5,7 +5,7 @@
 #include "diminish/rig.h"
 #include "diminish/scene.h"
 
-/// Any bytes are a rig.yaml and a scene.yaml, or an Error.
+/// Any bytes are either a rig.yaml and a scene.yaml, or an Error.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace diminish;
   const std::string yaml(reinterpret_cast<const char*>(data), size);

@@ -6,7 +6,7 @@
 #include "diminish/error.h"
 #include "geometry/triangle_mesh.h"
 
-/// Any bytes are a mesh whose triangles have vertices, or an Error.
+/// Any bytes are either a mesh whose triangles have vertices, or an Error.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace diminish;
   std::istringstream stream(std::string(reinterpret_cast<const char*>(data), size));

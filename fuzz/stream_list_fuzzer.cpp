@@ -6,7 +6,7 @@
 #include "diminish/error.h"
 #include "source/stream_list.h"
 
-/// Any bytes are a list whose entries can be found again by their timestamps, or an Error.
+/// Any bytes are either a list whose entries can be found by their timestamps, or an Error.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace diminish;
   std::istringstream stream(std::string(reinterpret_cast<const char*>(data), size));

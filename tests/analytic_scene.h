@@ -17,8 +17,8 @@
 namespace diminish::testing {
 
 /// A wall (the plane z = 0) and a box in front of it, with smooth colours that are known at every
-/// point; seen by a colour camera and an RGB-D camera at known places. Every image is exact: each
-/// pixel is a ray through the lens model.
+/// point, seen by a colour camera and an RGB-D camera at known places. Every image is exact: one
+/// ray through the lens model per pixel.
 struct AnalyticScene {
   Eigen::Vector3d box_min{-0.15, -0.1, 0.2};
   Eigen::Vector3d box_max{0.15, 0.1, 0.4};
@@ -144,7 +144,7 @@ struct AnalyticFrame {
   }
 };
 
-/// Masks of the rig's sizes with nothing in them.
+/// Empty masks of the rig's sizes.
 inline OcclusionMasks empty_masks(const Rig& rig) {
   OcclusionMasks masks;
   masks.color.resize(rig.color.width, rig.color.height, 0);

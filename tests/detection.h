@@ -8,7 +8,7 @@
 
 namespace diminish {
 
-/// Everything that a detector looks at, to be filled by a test, and what it finds.
+/// The input of a detector, to be filled by a test, and its output.
 struct Detection {
   explicit Detection(const Rig& a_rig) : rig(a_rig) {
     const std::size_t count = rig.rgbd.size();

@@ -10,8 +10,8 @@
 
 namespace diminish::testing {
 
-/// A made-up reconstruction of a lit wall with bumps and holes, from two cameras with colours of
-/// their own, in parts blended, and a ragged object.
+/// A made-up reconstruction of a lit wall with bumps and holes, from two cameras with different
+/// colours, partly blended, and a ragged object.
 struct DiminishedWall : LitWall {
   DiminishedWall()
       : frame({}, {{-0.45, 0.3, 0.9}, {0.4, 0.2, 1}}), planes(rig.color), shadows(rig.color) {

@@ -9,8 +9,8 @@
 
 namespace diminish {
 
-/// The message of the Error that `call` throws. Fails the test if there is none, or if it is not
-/// one line.
+/// The message of the Error that `call` throws. Fails the test if there is no Error or its message
+/// has several lines.
 template <class Call>
 std::string error_of(Call&& call) {
   try {

@@ -10,7 +10,7 @@
 
 namespace diminish::testing {
 
-/// A bundled recording's first frame and what the pipeline makes of it.
+/// A bundled recording's first frame and its result.
 struct FirstFrame {
   explicit FirstFrame(const std::string& name)
       : recording(load_recording(std::filesystem::path(testing::recordings_dir()) / name)) {
@@ -31,7 +31,7 @@ struct FirstFrame {
     return region;
   }
 
-  /// By the pipeline's poses, with `depths` and `masks`.
+  /// Reconstructs with the pipeline's poses and these `depths` and `masks`.
   void reconstruct(Reconstructor& reconstructor, const TiledRegion& region,
                    Reconstruction& reconstruction) const {
     reconstructor.reconstruct(frame, depths, result.report.poses, masks, region, options,

@@ -9,7 +9,7 @@
 
 namespace diminish::testing {
 
-/// The wall under two lamps and the sky, the box in front being the object to remove.
+/// The wall under two lamps and the sky, with the box in front as the object to remove.
 struct LitWall {
   LitWall() {
     plane = {(color_from_world.rotation * Eigen::Vector3d::UnitZ()).cast<float>(), 0};
@@ -35,7 +35,7 @@ struct LitWall {
   double light_at(const Eigen::Vector3d& point) const {
     double light = 1;
     for (const auto& [place, share] : lamps) {
-      // A square metre of nine points.
+      // A square metre, sampled at nine points.
       for (const double u : {-0.4, 0.0, 0.4}) {
         for (const double v : {-0.4, 0.0, 0.4}) {
           const Eigen::Vector3d towards = place + Eigen::Vector3d(u, v, 0) - point;

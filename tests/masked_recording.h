@@ -7,7 +7,7 @@
 
 namespace diminish {
 
-/// A tiny recording that runs: cameras side by side, an object given by masks.
+/// A tiny recording that runs: cameras side by side, and an object given by masks.
 class MaskedRecording : public TinyRecording {
  public:
   MaskedRecording() {

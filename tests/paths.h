@@ -4,7 +4,7 @@
 
 namespace diminish::testing {
 
-/// Where what the tests use lies on this machine.
+/// Where the tests' files are on this machine.
 std::string recordings_dir();  ///< the bundled recordings
 std::string docs_dir();
 std::string source_test_data();  ///< src/source/test_data

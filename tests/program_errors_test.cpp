@@ -9,7 +9,7 @@
 namespace diminish {
 namespace {
 
-/// A way to spoil a recording, and what the program must say of it.
+/// A way to damage a recording, and the error that the program must report.
 struct Spoilt {
   const char* name;
   std::function<void(const MaskedRecording&)> spoil;

@@ -62,12 +62,12 @@ inline Target board_target(const Board& board, const RigidTransform& world_from_
   return {picture, (columns + 1) * board.square_m, (rows + 1) * board.square_m, world_from_target};
 }
 
-/// Renders targets before a wall by a ray for each of a pixel's samples.
+/// Renders targets in front of a wall, with one ray for each of a pixel's samples.
 class TargetRenderer {
  public:
   explicit TargetRenderer(const Intrinsics& intrinsics)
       : width_(intrinsics.width), height_(intrinsics.height) {
-    // Rays at pixel corners; between them they are linear to a millionth.
+    // Rays at pixel corners; between them rays are linear to a millionth.
     const Lens lens(intrinsics);
     corners_.resize(width_ + 1, height_ + 1);
     centres_.resize(width_, height_);
@@ -143,7 +143,7 @@ class TargetRenderer {
     const Target* target;
     RigidTransform target_from_camera;
 
-    /// The depth of the target along a ray, infinite where it is not, and its place there.
+    /// The depth of the target along a ray (infinite if it misses), and the place on it.
     std::pair<double, Eigen::Vector2d> hit(const Eigen::Vector2d& ray) const {
       const Eigen::Vector3d direction = target_from_camera.rotation * ray.homogeneous();
       const double z = -target_from_camera.translation.z() / direction.z();

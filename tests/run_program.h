@@ -15,7 +15,7 @@
 
 namespace diminish {
 
-/// The program as a user runs it, in a process of its own.
+/// The program as a user runs it, in its own process.
 class Program {
  public:
   struct Outcome {

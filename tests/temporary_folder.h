@@ -8,7 +8,7 @@
 
 namespace diminish {
 
-/// A folder of its own for each test, removed with this object.
+/// A new folder for each test, removed with this object.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -26,7 +26,7 @@ class TemporaryFolder {
 
   const std::filesystem::path& path() const { return path_; }
 
-  /// Writes a text file, with the folders above it.
+  /// Writes a text file and creates the folders above it.
   std::filesystem::path write(const std::filesystem::path& name, const std::string& text) const {
     const std::filesystem::path file = path_ / name;
     std::filesystem::create_directories(file.parent_path());

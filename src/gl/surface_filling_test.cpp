@@ -38,7 +38,7 @@ struct Task {
   Mask occlusion() const {
     return where([](std::uint8_t code) { return code != provenance::camera; });
   }
-  bool fill_on_processor(Image<Bgr>& filled) const {
+  bool fill_on_cpu(Image<Bgr>& filled) const {
     filled = picture;
     return Registry<Inpainter>::get("surfaces")()->inpaint({missing(), occlusion(), reconstruction},
                                                            {}, filled);
@@ -130,10 +130,10 @@ class Gpu {
 };
 
 /// All pixels; those to fill, and of them those that differ by more than two levels.
-void expect_same_as_processor(Gpu& gpu, const Task& task, const std::string& what) {
+void expect_same_as_cpu(Gpu& gpu, const Task& task, const std::string& what) {
   Task filled = task;
   Image<Bgr> expected;
-  const bool is_known = task.fill_on_processor(expected);
+  const bool is_known = task.fill_on_cpu(expected);
   gpu.fill(filled);
   std::size_t pixels = 0;
   std::size_t other = 0;
@@ -222,13 +222,13 @@ Task ragged_scene(int width, int height, const Rect& region, std::uint32_t seed)
 
 TEST(GlSurfaceFilling, FillsRaggedHolesOfSeveralPlanes) {
   Gpu gpu;
-  expect_same_as_processor(gpu, ragged_scene(320, 240, {0, 0, 320, 240}, 1), "whole region");
-  expect_same_as_processor(gpu, ragged_scene(331, 247, {13, 9, 290, 221}, 2), "part of it");
-  expect_same_as_processor(gpu, ragged_scene(95, 401, {0, 0, 95, 401}, 3), "narrow");
-  expect_same_as_processor(gpu, ragged_scene(9, 7, {0, 0, 9, 7}, 4), "tiny");
+  expect_same_as_cpu(gpu, ragged_scene(320, 240, {0, 0, 320, 240}, 1), "whole region");
+  expect_same_as_cpu(gpu, ragged_scene(331, 247, {13, 9, 290, 221}, 2), "part of it");
+  expect_same_as_cpu(gpu, ragged_scene(95, 401, {0, 0, 95, 401}, 3), "narrow");
+  expect_same_as_cpu(gpu, ragged_scene(9, 7, {0, 0, 9, 7}, 4), "tiny");
   Task without = ragged_scene(320, 240, {}, 5);
   without.reconstruction.surface = {};
-  expect_same_as_processor(gpu, without, "no surfaces");
+  expect_same_as_cpu(gpu, without, "no surfaces");
 }
 
 // A plane none of which is seen is filled from what has been filled around it.
@@ -239,16 +239,16 @@ TEST(GlSurfaceFilling, FillsWhatNothingIsKnownOfFromAround) {
   task.reconstruction.surface.fill({90, 50, 140, 140}, wall);
   task.reconstruction.surface.fill({120, 80, 60, 70}, floor_plane);
   task.reconstruction.surface.fill({150, 100, 40, 30}, floor_plane + 1);
-  expect_same_as_processor(gpu, task, "planes within a hole");
+  expect_same_as_cpu(gpu, task, "planes within a hole");
   // Afterwards there is none again.
-  expect_same_as_processor(gpu, ragged_scene(320, 240, {0, 0, 320, 240}, 7), "no rest");
+  expect_same_as_cpu(gpu, ragged_scene(320, 240, {0, 0, 320, 240}, 7), "no rest");
 }
 
 TEST(GlSurfaceFilling, SaysThatNothingIsKnown) {
   Gpu gpu;
   Task task = ragged_scene(64, 48, {0, 0, 64, 48}, 8);
   task.provenance.fill(provenance::inpainted);
-  expect_same_as_processor(gpu, task, "nothing known");
+  expect_same_as_cpu(gpu, task, "nothing known");
 }
 
 TEST(GlSurfaceFilling, GivesTheSameEveryTime) {
@@ -274,7 +274,7 @@ TEST_P(GlSurfaceFillingOnRecordings, FillsAsTheProcessorDoes) {
   DiminishedFrame result;
   for (int i = 0; i < 3 && source->next(frame); ++i) {
     pipeline.process(frame, result);
-    expect_same_as_processor(gpu, {result.picture, result.provenance, result.reconstruction},
+    expect_same_as_cpu(gpu, {result.picture, result.provenance, result.reconstruction},
                              frame.name);
   }
 }
