@@ -7,8 +7,8 @@
 
 namespace diminish {
 
-/// The rays (x, y, 1) of a camera's pixels, interpolated between those of every 32nd: to a few
-/// hundredths of a pixel, without the cost of undistorting each.
+/// The rays (x, y, 1) of a camera's pixels, interpolated between every 32nd pixel's: exact to a few
+/// hundredths of a pixel, without the cost of undistorting each one.
 class RayGrid {
  public:
   static constexpr int step = 32;  ///< pixels
@@ -23,10 +23,10 @@ class RayGrid {
     }
   }
 
-  /// The rays themselves, of pixels (column * step, row * step).
+  /// The exact rays of pixels (column * step, row * step).
   const Image<Eigen::Vector2f>& nodes() const { return rays_; }
 
-  /// At most `step` pixels of a row from (x, y) on, whose rays are first + i * slope.
+  /// Up to `step` pixels of a row from (x, y) on, whose rays are first + i * slope.
   struct Segment {
     int count;
     Eigen::Vector2f first, slope;

@@ -63,8 +63,8 @@ HWY_INLINE Vector InSeries(Vector a, Vector b) {
 HWY_INLINE Vector ConductanceFromCenter(Vector outer, Vector inside, Vector other_outer,
                                         Vector other_inside, Vector link, Vector spare) {
   const auto half_edge = [](Vector cell, Vector edge) HWY_ATTR {
-    // A coarse cell that has a gap inside must not come loose: a correction that is too large
-    // does harm, one that is too small is made up for in the next cycle.
+    // A coarse cell with a gap inside must not become detached. A correction that is too large does
+    // harm; one that is too small is made up for in the next cycle.
     const Vector least = hn::Max(edge, Set(0.25F));
     return hn::Mul(Set(2.F), hn::IfThenElse(hn::Eq(cell, Zero()), Set(1.F), least));
   };
@@ -101,14 +101,14 @@ HWY_INLINE Vector CoarseWeight(const EdgeRow& p, const EdgeRow& q, const Links& 
   return hn::IfThenElse(any_fixed, one_fixed, plain);
 }
 
-/// What becomes of a block's worth of coarse cells, not yet sorted by parity.
+/// Coarse cells of a block, not yet sorted by parity.
 struct CoarseCells {
   HWY_ALIGN float right[2 * lanes], down[2 * lanes], inverse[2 * lanes];
   HWY_ALIGN float right_side[channels][2 * lanes], x[channels][2 * lanes];
 };
 
-/// Where any of four cells is fixed, the coarse one is (McAdams, Sifakis & Teran 2010); how far
-/// away the value really was is kept in the weights.
+/// A coarse cell is fixed if any of its four cells is (McAdams, Sifakis & Teran 2010). The weights
+/// keep how far away the value really was.
 HWY_INLINE void CoarsenHalf(const MembraneLevel& fine, int y, int column, int offset,
                             CoarseCells& cells) {
   const std::ptrdiff_t pitch = fine.pitch;

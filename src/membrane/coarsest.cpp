@@ -77,7 +77,7 @@ void MembraneCoarsest::find_groups(const MembraneLevel& level) {
                         (places[k][0] + places[k][1]) % 2 == 0});
     }
   };
-  // Along the shorter side first: the matrix's band is as wide as that is long.
+  // Numbered along the shorter side first, because the matrix's band is as wide as that side.
   if (level.width <= level.height) {
     for (int y = 0; y < level.height; y += 2) {
       for (int x = 0; x < level.width; x += 2) visit(x, y);
@@ -142,7 +142,7 @@ void MembraneCoarsest::factorize() {
     }
     const auto length = static_cast<Eigen::Index>(-first);
     const double squares = Eigen::Map<const Eigen::VectorXd>(own - length, length).squaredNorm();
-    // What hangs on nothing gets no correction.
+    // A part that is attached to nothing gets no correction.
     const double rest = diagonal_[i] - squares;
     own[0] = rest > 1e-9 * diagonal_[i] && rest > 0 ? std::sqrt(rest) : 1e6;
   }
@@ -196,7 +196,7 @@ void MembraneCoarsest::correct(const MembraneLevel& level, const float* right_si
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     const float* const factor = row(i);
     Eigen::Array4f* const own = solution_.data() + i;
-    // Two sums: one would wait for itself.
+    // Two sums, because one would wait for itself.
     Eigen::Array4f even = *own;
     Eigen::Array4f odd = Eigen::Array4f::Zero();
     std::ptrdiff_t j = -std::min(i, row_size - 1);

@@ -163,7 +163,7 @@ HWY_INLINE void Interleave(Half a, Half b, Half& lower, Half& upper) {
 #endif
 }
 
-/// Replaces values or adds to them.
+/// Replaces values, or adds to them.
 template <bool add>
 HWY_INLINE void Put(Half step, float* target, Half& squares) {
   const Halves d;
@@ -241,7 +241,7 @@ HWY_INLINE double ProlongRows(const MembraneLevel& coarse, const float* coarse_v
   for (int y = rows.first; y < rows.last; ++y) {
     const RowsAround around(y);
     ForEachRun(fine, fine.stored, y, [&](Block kind, int first, int last) HWY_ATTR {
-      // Where there is no cell, an error is 0.
+      // An error is 0 where there is no cell.
       if (add && kind == Block::plain) {
         ProlongPlain<add>(coarse, coarse_values, y, first, last, fine, values, squares);
         return;

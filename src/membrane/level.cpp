@@ -8,11 +8,11 @@
 namespace diminish {
 namespace {
 
-/// Cells this near to irregular ones, or nearer, are not smooth.
+/// Cells within this distance of irregular ones are not smooth.
 constexpr int margin = 4;
 
-/// More than needed, so that the next frame's window, a little larger or smaller, is laid out in
-/// the same way, and only what changes has to be cleared.
+/// More than needed, so that the next frame's window, a little larger or smaller, has the same
+/// layout and only changes have to be cleared.
 int tiles_for(int cells, int tile) {
   constexpr int at_a_time = 4;
   const int needed = (cells + tile - 1) / tile;
@@ -176,7 +176,7 @@ void MembraneLevel::choose_tiles(const MembraneLevel* finer, bool may_be_smooth)
       });
     }
   }
-  // The rest is going to be overwritten.
+  // The rest will be overwritten.
   clear_old([this](int y, int column) {
     const auto spans = stored.row(y);
     const bool is_stored = std::any_of(spans.begin(), spans.end(), [&](Span span) {

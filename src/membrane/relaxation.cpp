@@ -10,8 +10,8 @@ HWY_BEFORE_NAMESPACE();
 namespace diminish::membrane::HWY_NAMESPACE {
 namespace {
 
-/// What is known of a sweep: it begins with values, as for x, whose plain blocks have no right
-/// side; or it goes on with an error; or the error is zero yet.
+/// How a sweep starts: with values, as for x, whose plain blocks have no right side; with an error;
+/// or with a zero error.
 enum class Start { x, error, zero };
 
 /// The blocks [first, last) of a row, all plain. has_neighbours: the cells beside them are not all
@@ -77,7 +77,7 @@ HWY_INLINE void RelaxParity(const MembraneLevel& level, const float* HWY_RESTRIC
   });
 }
 
-/// Black cells of a row: those that are relaxed second.
+/// Black cells of a row, which are relaxed second.
 template <Start start>
 HWY_INLINE void RelaxBlack(const MembraneLevel& level, const float* right_side, float* values,
                            int y) {

@@ -12,7 +12,7 @@ HWY_BEFORE_NAMESPACE();
 namespace diminish::membrane::HWY_NAMESPACE {
 namespace {
 
-/// What is left of the equations of some cells of one parity, all plain. Of x they have no sources.
+/// The residuals of some cells of one parity, all plain. For x they have no sources.
 HWY_INLINE Vector PlainResidual(const MembraneLevel& level, const float* right_side,
                                 const float* values, std::ptrdiff_t at, int parity) {
   Vector sum = Neighbours(level, values, at, parity).Total();
@@ -20,7 +20,7 @@ HWY_INLINE Vector PlainResidual(const MembraneLevel& level, const float* right_s
   return hn::NegMulAdd(Set(4.F), Load(values + at), sum);
 }
 
-/// Likewise of any cells.
+/// The same for any cells.
 HWY_INLINE void Residual(const MembraneLevel& level, const float* right_side, const float* values,
                          int y, int parity, int column, std::ptrdiff_t i, Vector* result) {
   const std::ptrdiff_t single = level.at(y, parity, column) + i;

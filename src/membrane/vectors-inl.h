@@ -1,4 +1,4 @@
-// Included once for each instruction set: what the membrane's kernels have in common.
+// Included once for each instruction set: helpers for the membrane's kernels.
 #if defined(DIMINISH_MEMBRANE_VECTORS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef DIMINISH_MEMBRANE_VECTORS_INL_H
 #undef DIMINISH_MEMBRANE_VECTORS_INL_H

@@ -14,14 +14,14 @@
 namespace diminish {
 namespace {
 
-/// A frame on its way, with the pipeline that works on it: everything that one thread needs.
+/// A frame in progress and the pipeline that works on it: everything that one thread needs.
 struct Slot {
   explicit Slot(Pipeline pipeline_) : pipeline(std::move(pipeline_)) {}
 
   Pipeline pipeline;
   FrameSet frame;
   DiminishedFrame result;
-  std::exception_ptr error;  ///< what kept the frame from being done
+  std::exception_ptr error;  ///< why the frame could not be done
 };
 
 }  // namespace
@@ -38,8 +38,8 @@ std::size_t run(FrameSource& source, const Rig& rig, const Scene& scene, const O
     free_slots.push(slots.back().get());
   }
 
-  // An error that left a filter would cancel the loops inside the other frames in work, half done.
-  // So it waits for its turn: the frames before it are delivered, then it is thrown.
+  // An exception from a filter would cancel the loops inside other frames in progress. So the error
+  // waits for its turn: the frames before it are delivered, then it is thrown.
   std::size_t frames_done = 0;
   std::exception_ptr first_error;
   std::atomic<bool> failed = false;
@@ -54,7 +54,7 @@ std::size_t run(FrameSource& source, const Rig& rig, const Scene& scene, const O
   const auto read = [&](tbb::flow_control& control) -> Slot* {
     Slot* slot = nullptr;
     const bool stopped = failed || (runner_options.stop && runner_options.stop->load());
-    // There are as many slots as frames in work, so that one is always free here.
+    // There are as many slots as frames in progress, so one is always free here.
     if (stopped || !free_slots.try_pop(slot)) {
       control.stop();
       return nullptr;

@@ -6,8 +6,8 @@
 
 namespace diminish {
 
-/// Finds every camera's pose in a frame: asks the rig's pose source, then adds what follows from
-/// its answer.
+/// Finds all cameras' poses in a frame: asks the rig's pose source, then adds what follows from its
+/// answer.
 class CameraPoses {
  public:
   /// Throws Error if the source is unknown or its settings are wrong.

@@ -12,10 +12,10 @@ using Eigen::Vector2d;
 
 constexpr int max_profile_samples = 64;
 constexpr std::size_t max_profiles = 64;
-constexpr float min_step_levels = 12;  ///< a weaker edge than this is not a marker's
-constexpr double min_support = 0.4;    ///< of a side's profiles, those that see its edge
+constexpr float min_step_levels = 12;  ///< a weaker edge is not a marker's
+constexpr double min_support = 0.4;    ///< share of a side's profiles that must see its edge
 constexpr double min_reach_px = 2.5;
-constexpr double near_px = 1;  ///< points that far apart are on the same edge
+constexpr double near_px = 1;  ///< points up to this far apart are on the same edge
 
 /// The green channel, bilinear; the four pixels must be inside.
 float sample(const Image<Bgr>& image, float x, float y) {
@@ -33,7 +33,7 @@ float sample(const Image<Bgr>& image, float x, float y) {
 }
 
 /// The place of the dark-to-light step on the profile through `center` along `outward`: the
-/// centroid of the brightness's rise around its steepest point.
+/// centroid of the rise in brightness around its steepest point.
 std::optional<Vector2d> find_step(const Image<Bgr>& image, const Vector2d& center,
                                   const Vector2d& outward, double reach_px, double step_px) {
   const auto inside = [&](const Vector2d& point) {
@@ -42,7 +42,7 @@ std::optional<Vector2d> find_step(const Image<Bgr>& image, const Vector2d& cente
   };
   int count = std::min(2 * static_cast<int>(reach_px / step_px), max_profile_samples);
   double half_length = 0.5 * count * step_px;
-  // At the picture's edge, less will have to do.
+  // Profiles are shorter at the picture's edge.
   while (!inside(center - half_length * outward) || !inside(center + half_length * outward)) {
     count /= 2;
     half_length = 0.5 * count * step_px;
@@ -61,7 +61,8 @@ std::optional<Vector2d> find_step(const Image<Bgr>& image, const Vector2d& cente
     previous = next;
     if (rise[static_cast<std::size_t>(i)] > rise[static_cast<std::size_t>(steepest)]) steepest = i;
   }
-  // The steepest point's neighbourhood must lie inside the profile, or the edge is elsewhere.
+  // The steepest point's neighbourhood must lie inside the profile. Otherwise the edge is somewhere
+  // else.
   const int window = static_cast<int>(2 / step_px);
   if (steepest < window || steepest >= count - window) return std::nullopt;
   float weight = 0;
@@ -93,8 +94,8 @@ class Points {
   std::size_t size_ = 0;
 };
 
-/// Of all lines through two of the points, the one that most others are near: leaves out what lies
-/// on another edge. Keeps the points near it.
+/// The line through two of the points that most others are near. Ignores points on another edge,
+/// and keeps those near the line.
 void keep_largest_line(Points& points, double near) {
   const Vector2d* best_a = nullptr;
   const Vector2d* best_b = nullptr;
@@ -118,8 +119,8 @@ void keep_largest_line(Points& points, double near) {
       [&](const Vector2d& point) { return std::abs(normal.dot(point - origin)) >= near; });
 }
 
-/// A line {x : normal . x = offset} fitted to points by total least squares, twice: the second time
-/// without the points that are far from the first line.
+/// Fits a line {x : normal . x = offset} by total least squares, twice: the second time without the
+/// points that are far from the first line.
 std::optional<Eigen::Hyperplane<double, 2>> fit_line(Points& points) {
   constexpr std::size_t min_points = 4;
   Eigen::Hyperplane<double, 2> line;
@@ -164,7 +165,7 @@ bool refine_corners(const Image<Bgr>& image, const Lens& lens, int modules,
     // Clockwise corners with y down: the outside is to the left of the direction of travel.
     const Vector2d outward = Vector2d(along.y(), -along.x()) / length;
     const double reach_px = std::clamp(0.8 * length / modules, 3.0, pass.reach_px);
-    // Rounded by blur, the corners themselves say nothing about the sides.
+    // Blur rounds corners, so they say nothing about the sides.
     const double end = std::clamp(3.0 / length, 0.06, 0.25);
     const int count = std::clamp(static_cast<int>(length), 8, pass.profiles);
     Points points;
@@ -183,7 +184,7 @@ bool refine_corners(const Image<Bgr>& image, const Lens& lens, int modules,
   std::array<Vector2d, 4> refined;
   for (std::size_t corner = 0; corner < 4; ++corner) {
     const auto meeting = lens.distort(sides[(corner + 3) % 4]->intersection(*sides[corner]));
-    // A corner that ran away is the neighbourhood's, not the marker's.
+    // A corner that moved too far belongs to something beside the marker.
     if (!meeting || !((*meeting - corners[corner]).norm() < 2 * pass.reach_px)) return false;
     refined[corner] = *meeting;
   }

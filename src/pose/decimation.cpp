@@ -14,7 +14,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 constexpr int step = 3 * decimation;
 
 #if HWY_TARGET != HWY_SCALAR
-/// The sums of neighbouring numbers, in half as many of twice the size.
+/// The sums of neighbouring numbers: half as many, twice as wide.
 template <class D, class Wide, class V>
 HWY_INLINE hn::Vec<Wide> AddPairs(D /*of the numbers*/, Wide wide, V numbers) {
   constexpr int bits = 8 * sizeof(hn::TFromD<D>);
@@ -23,7 +23,7 @@ HWY_INLINE hn::Vec<Wide> AddPairs(D /*of the numbers*/, Wide wide, V numbers) {
   return hn::Add(even, hn::ShiftRight<bits>(both));
 }
 
-/// DecimateRow's whole vectors; returns their number of pixels.
+/// The whole vectors of DecimateRow. Returns their number of pixels.
 HWY_INLINE int DecimateVectors(const std::uint8_t* upper, const std::uint8_t* lower, int count,
                                std::uint8_t* means) {
   const hn::ScalableTag<std::uint8_t> d;
@@ -47,7 +47,7 @@ HWY_INLINE int DecimateVectors(const std::uint8_t* upper, const std::uint8_t* lo
 }
 #endif
 
-/// The rounded means of the green channel (the others add little) of 4x2 pixels.
+/// The rounded means of 4x2 pixels' green channel (the other channels add little).
 void DecimateRow(const std::uint8_t* upper, const std::uint8_t* lower, int count,
                  std::uint8_t* means) {
   int x = 0;
@@ -78,7 +78,7 @@ HWY_EXPORT(DecimateRow);
 void decimate(const Image<Bgr>& image, Image<std::uint8_t>& small) {
   small.resize(image.width() / decimation, image.height() / decimation);
   for (int y = 0; y < small.height(); ++y) {
-    // Two of the four rows: half the memory, and noise is no worry here.
+    // Two of the four rows: half the memory, and noise does no harm here.
     HWY_DYNAMIC_DISPATCH(DecimateRow)
     (reinterpret_cast<const std::uint8_t*>(image.row(decimation * y + 1)),
      reinterpret_cast<const std::uint8_t*>(image.row(decimation * y + 2)), small.width(),

@@ -9,18 +9,18 @@
 
 namespace diminish {
 
-/// The depth at a place on a marker: as measured there, and as its pose says.
+/// The depth at a place on a marker: measured, and according to its pose.
 struct MarkerDepth {
   double measured_m, computed_m;
 };
 
-/// Over a grid of places on the marker. Empty when fewer than half of them were measured.
+/// Depths over a grid of places on the marker. Empty if fewer than half of them were measured.
 std::vector<MarkerDepth> marker_depths(const RigidTransform& depth_from_marker, double size_m,
                                        const Lens& depth_lens, const Image<std::uint16_t>& depth,
                                        double depth_unit_m);
 
-/// How far the measured depth is from a marker's plane: the median over `marker_depths`,
-/// metres. Nothing when there are none.
+/// The distance of the measured depth from a marker's plane: the median over `marker_depths`,
+/// metres. Nothing if there are none.
 std::optional<double> marker_depth_error_m(const RigidTransform& depth_from_marker, double size_m,
                                            const Lens& depth_lens,
                                            const Image<std::uint16_t>& depth, double depth_unit_m);

@@ -11,7 +11,8 @@ namespace diminish {
 /// The marker with this id; nullptr if it was not seen.
 const Marker* find_marker(const std::vector<Marker>& markers, int id);
 
-/// The size of every marker that the scene knows (the world marker, the objects'), by id, metres.
+/// The size in metres, by id, of every marker that the scene knows (the world marker and those of
+/// objects).
 std::map<int, double> known_marker_sizes(const Scene& scene);
 
 }  // namespace diminish

@@ -7,14 +7,14 @@
 namespace diminish {
 namespace {
 
-/// OpenCV's default share of the errors that a dictionary could correct which is corrected.
+/// The share of the errors that a dictionary could correct which is corrected; OpenCV's default.
 constexpr double correction_rate = 0.6;
-/// Of the border's cells, how many may be light.
+/// The share of the border's cells that may be light.
 constexpr double border_errors = 0.2;
 /// Between the mean of the light cells and that of the dark ones.
 constexpr float min_contrast = 20;
 
-/// image_from_unit: takes the unit square's corners (0,0), (1,0), (1,1), (0,1) to these four.
+/// image_from_unit: maps the unit square's corners (0,0), (1,0), (1,1), (0,1) to these four.
 Eigen::Matrix3d homography(const std::array<Eigen::Vector2d, 4>& p) {
   const Eigen::Vector2d d1 = p[1] - p[2];
   const Eigen::Vector2d d2 = p[3] - p[2];
@@ -53,7 +53,7 @@ std::optional<MarkerCode::Reading> MarkerCode::read(
   float most = 0;
   for (int row = 0; row < n; ++row) {
     for (int column = 0; column < n; ++column) {
-      // The cell's middle half, in 3x3 samples.
+      // Samples the cell's middle half at 3x3 points.
       int sum = 0;
       for (int sample = 0; sample < 9; ++sample) {
         const double u = (column + 0.5 + 0.2 * (sample % 3 - 1)) / n;
@@ -71,7 +71,7 @@ std::optional<MarkerCode::Reading> MarkerCode::read(
     }
   }
   if (most - least < min_contrast) return std::nullopt;
-  // Between the means of the dark and the light cells.
+  // Halfway between the means of the dark and the light cells.
   float limit = (least + most) / 2;
   for (int pass = 0; pass < 2; ++pass) {
     float dark = 0;
@@ -102,7 +102,7 @@ std::optional<MarkerCode::Reading> MarkerCode::read(
     Bits seen;
     for (int row = 0; row < bits_; ++row) {
       for (int column = 0; column < bits_; ++column) {
-        // The marker as seen from corner `turn` as its top left.
+        // The marker with corner `turn` as its top left.
         int r = row;
         int c = column;
         for (int i = 0; i < turn; ++i) {

@@ -16,15 +16,15 @@ class MarkerCode {
  public:
   explicit MarkerCode(const cv::aruco::Dictionary& dictionary);
 
-  /// Cells along a side, with the black border.
+  /// The number of cells along a side, including the black border.
   int modules() const { return bits_ + 2; }
 
   struct Reading {
     int id;
     int top_left;  ///< which of the corners is the marker's own top left
   };
-  /// The marker in a quadrilateral, clockwise, of the picture. Nothing if its cells do not
-  /// make a code of the dictionary, up to the errors that the dictionary can correct.
+  /// The marker in a quadrilateral (clockwise) of the picture. Nothing if its cells are not a code
+  /// of the dictionary, apart from errors that the dictionary can correct.
   std::optional<Reading> read(const Image<Bgr>& image,
                               const std::array<Eigen::Vector2d, 4>& corners) const;
 

@@ -10,7 +10,7 @@
 namespace diminish {
 namespace {
 
-/// Poses from the world marker, in every frame anew (the default).
+/// Poses from the world marker, found anew in every frame (the default).
 class MarkerSource : public PoseSource {
  public:
   MarkerSource(const Rig& rig, const Scene& scene)
@@ -24,7 +24,7 @@ class MarkerSource : public PoseSource {
       depth_lenses_.emplace_back(camera.depth);
     }
     other_marker_sizes_ = known_marker_sizes(scene);
-    other_marker_sizes_.erase(world_marker_.id);  // it agrees with itself whatever the pose
+    other_marker_sizes_.erase(world_marker_.id);  // it always agrees with itself
   }
 
   bool needs_markers() const override { return true; }
@@ -56,8 +56,8 @@ class MarkerSource : public PoseSource {
     return pose;
   }
 
-  /// The depth sensor's pose in the marker's frame, by the solution that the measured depth agrees
-  /// with.
+  /// The depth sensor's pose in the marker's frame, from the solution that agrees with the measured
+  /// depth.
   RigidTransform settle_by_depth(const MarkerPose& pose, double size_m, const FrameSet& frame,
                                  std::size_t k) const {
     const RigidTransform depth_from_color = rig_.rgbd[k].color_from_depth.inverse();
@@ -73,8 +73,8 @@ class MarkerSource : public PoseSource {
     return best_error && alternative_error && *alternative_error < *best_error ? alternative : best;
   }
 
-  /// The colour camera's solution under which the other markers, as RGB-D cameras locate them, are
-  /// where the colour camera sees them.
+  /// The colour camera's solution under which it sees the other markers where the RGB-D cameras
+  /// locate them.
   RigidTransform settle_by_shared_markers(const MarkerPose& pose, const FrameSet& frame,
                                           const Markers& markers, const Poses& poses) const {
     if (!pose.is_doubtful()) return pose.camera_from_marker;
