@@ -42,7 +42,8 @@ TEST(SettingUpDocs, NameEveryFinding) {
   const std::string text = read_text_file(docs / "setting-up.md", 1 << 20);
   const std::regex finding("setup\\.find\\([^;\"]*\"([a-z-]+)\"");
   std::size_t count = 0;
-  for (const auto& file : std::filesystem::directory_iterator(docs / ".." / "src" / "setup")) {
+  for (const auto& file :
+       std::filesystem::recursive_directory_iterator(docs / ".." / "src" / "setup")) {
     if (file.path().extension() != ".cpp") continue;
     const std::string code = read_text_file(file.path(), 1 << 20);
     for (std::sregex_iterator i(code.begin(), code.end(), finding), end; i != end; ++i) {
