@@ -16,7 +16,7 @@ constexpr Rect region{6, 3, 170, 83};
 const Intrinsics color{width, height, 150, 150, 91, 45, {}};
 constexpr float agreement_m = 0.03F;
 
-/// Cameras on a circle around the line of sight to the picture's middle, 1 m away from it: the
+/// Cameras on a circle around the line of sight to the picture's centre, 1 m away from it: the
 /// angle there is the same for all.
 struct Scene {
   std::vector<Layer> layers;
@@ -66,7 +66,7 @@ Reconstruction blend_plainly(Scene scene) {
   return result;
 }
 
-/// The same, but for the look-up of colours.
+/// The same, except for looking up colours.
 Reconstruction blend_in_vectors(const Scene& scene) {
   Reconstruction result = empty_reconstruction();
   std::vector<SurfaceBuffer> buffers(scene.layers.size());
@@ -142,7 +142,7 @@ TEST_P(BlendLayers, MixesInPartsLikeTheConfidenceBeyondTheThirds) {
   EXPECT_NEAR(result.second.share(91, 45), 255 * (0.4 - 0.2) / (0.8 + 0.4 - 2 * 0.2), 3);
 }
 
-// Two cameras that see a wall with 3 mm of noise and 40 levels apart; one of them half of it.
+// Two cameras see a wall with 3 mm of noise, 40 levels apart; one of them sees half of it.
 TEST_P(BlendLayers, ShowsNeitherSeamNorSpeckle) {
   Scene scene;
   scene.add_camera(1);
@@ -254,7 +254,7 @@ TEST(BlendLayers, VectorsDoWhatThePlainVersionDoes) {
       }
     }
     EXPECT_GT(mixtures, 1000);
-    // Where depths differ by just what counts as one surface, rounding decides.
+    // Where depths differ by just the limit for one surface, rounding decides.
     EXPECT_LE(differences, 10);
   }
 }

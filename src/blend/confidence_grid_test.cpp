@@ -48,7 +48,7 @@ TEST(ConfidenceGrid, IsTheResolutionOverTheAngleBetweenTheLinesOfSight) {
   }
 }
 
-// Nothing jumps: from a pixel to the next, and where the camera's surface ends.
+// Nothing jumps from pixel to pixel or where the camera's surface ends.
 TEST(ConfidenceGrid, FadesToNothingBeforeTheSurfaceEnds) {
   constexpr int last_column = 13;
   constexpr int edge = (last_column + 1) * ConfidenceGrid::cell_px;
@@ -71,7 +71,7 @@ TEST(ConfidenceGrid, FadesToNothingBeforeTheSurfaceEnds) {
       }
     }
   }
-  // The hole of one cell, too.
+  // Also at the hole of one cell.
   EXPECT_EQ(found(3 * ConfidenceGrid::cell_px + 3, 8 * ConfidenceGrid::cell_px + 4), 0);
 }
 

@@ -25,7 +25,7 @@ class MergeLayers : public ::testing::Test {
   Reconstruction reconstruction;
 };
 
-// Noise of a centimetre decides nowhere: the whole surface comes from the camera that sees more.
+// A centimetre of noise changes nothing: the whole surface comes from the camera that sees more.
 TEST_F(MergeLayers, DoesNotSpeckleWhereSurfacesAgree) {
   for (int y = 0; y < 4; ++y) {
     for (int x = 0; x < 10; ++x) {

@@ -86,7 +86,7 @@ TEST_F(Compositing, SaysWhereEachPixelComesFrom) {
   EXPECT_EQ(result.provenance(70, 30), provenance::inpainted);
 }
 
-// Whatever the object looks like, the result is the same.
+// The result does not depend on what the object looks like.
 TEST_F(Compositing, NeverShowsTheObject) {
   options.mask_margin_px = 0;  // as it is, so there is no room for a soft rim
   for (const std::string& inpainting : Registry<Inpainter>::names()) {
@@ -104,7 +104,7 @@ TEST_F(Compositing, NeverShowsTheObject) {
   }
 }
 
-// Only the holes' surroundings are looked at; the result is that of the whole picture.
+// Only the holes' surroundings are processed; the result equals that of the whole picture.
 TEST_F(Compositing, InpaintsAsOpenCvDoesOnTheWholePicture) {
   for (const auto& [name, method] :
        {std::pair("telea", cv::INPAINT_TELEA), std::pair("ns", cv::INPAINT_NS)}) {

@@ -78,7 +78,7 @@ TEST_F(HalfInShadow, OutsideTheMaskTheCamerasPictureStaysAndNoLineShows) {
       }
     }
   }
-  // From the lower rim upwards and from the left to the right it becomes lighter, little by little.
+  // It becomes gradually lighter from the lower rim upwards and from left to right.
   for (int i = 0; i < 20; ++i) {
     EXPECT_GE(result(50, 79 - i).r, result(50, 80 - i).r);
     EXPECT_LE(result(50, 79 - i).r, result(50, 80 - i).r + 8);

@@ -14,7 +14,7 @@ using testing::AnalyticScene;
 
 const Eigen::Vector3d eye(-0.45, 0.3, 0.9);
 
-/// Without what EdgeSnapping's own tests look at.
+/// Without EdgeSnapping, which has its own tests.
 Options without_snapping() {
   Options options;
   options.snap_edges = false;
@@ -109,7 +109,7 @@ TEST(DepthCleaner, LeavesASlantedWallAlone) {
   EXPECT_EQ(gone, 0);
 }
 
-// Noise shrinks, on a slanted wall too, and edges stay where they are.
+// Noise shrinks, also on a slanted wall, and edges stay where they are.
 TEST(DepthCleaner, SmoothsNoiseOnSurfaces) {
   AnalyticScene scene;
   AnalyticFrame frame(scene, {eye});

@@ -10,8 +10,8 @@ namespace {
 using testing::AnalyticFrame;
 using testing::AnalyticScene;
 
-/// A box before a wall, of plain colours. In its depth image there is a rim without depth around
-/// it, as flying pixels leave it.
+/// A box in front of a wall, both of one colour. Its depth image has a rim without depth around it,
+/// as flying pixels leave it.
 class SpoiltEdges : public ::testing::Test {
  protected:
   SpoiltEdges() : exact_(frame_.frame.rgbd[0].depth), with_rim_(exact_) {
@@ -52,7 +52,7 @@ class SpoiltEdges : public ::testing::Test {
     return depth;
   }
 
-  /// Pixels, of those whose place the colour sensor sees, that are more than 2 cm off.
+  /// The number of pixels visible to the colour sensor whose depth is off by more than 2 cm.
   int count_wrong(const Image<std::uint16_t>& depth) const {
     int wrong = 0;
     for (std::size_t i = 0; i < depth.size(); ++i) {

@@ -18,7 +18,7 @@ constexpr int width = VisibleBlocks::width;
 constexpr int height = VisibleBlocks::height;
 
 /// Where the depth pixels of a frame's first RGB-D camera lie in the picture; nothing where there
-/// is no depth, or it is behind the camera.
+/// is no depth or it is behind the camera.
 Image<std::optional<Eigen::Vector2d>> project(const Image<std::uint16_t>& depth, const Rig& rig,
                                               const RigidTransform& color_from_depth) {
   const RgbdCamera& camera = rig.rgbd[0];

@@ -77,7 +77,7 @@ TEST(OccluderStage, TheDepthMasksMarginCoversTheSameAngle) {
   }
 }
 
-/// A drawer that fails in every frame, as a GPU does.
+/// A drawer that fails in every frame like a GPU.
 class BrokenDrawer : public MaskDrawer {
  public:
   static inline int made = 0;

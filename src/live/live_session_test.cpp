@@ -21,7 +21,7 @@ using ::testing::HasSubstr;
 
 const std::filesystem::path recordings = testing::recordings_dir();
 
-/// Waits until `is_true`, at most a generous while: tests' machines may be slow.
+/// Waits until `is_true`, for a generous time, because test machines may be slow.
 template <class Condition>
 bool eventually(Condition&& is_true) {
   for (int i = 0; i < 3000; ++i) {
@@ -66,7 +66,7 @@ TEST_F(Live, ShowsWhatThePipelineMakesOfTheRecordingsFrames) {
     // Its camera may open later than the user's.
     if (!frame->input.rgbd[0].available()) continue;
     ++i;
-    // Which of the recording's frames it is, its picture tells.
+    // The picture tells which of the recording's frames it is.
     const auto same = std::find_if(recorded.begin(), recorded.end(), [&](const FrameSet& r) {
       return r.color == frame->input.color;
     });

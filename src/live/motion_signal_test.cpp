@@ -8,12 +8,12 @@
 namespace diminish {
 namespace {
 
-/// Somebody who waves: bursts of motion that do not repeat.
+/// Somebody waving: bursts of motion that do not repeat.
 double waving(double time_s) {
   return 3 + 2 * std::sin(2 * time_s) + std::sin(5.3 * time_s + 1) + 0.5 * std::sin(11.1 * time_s);
 }
 
-/// What a camera of another clock and frame rate sees of it, its own view of it, with noise.
+/// The motion as a camera with another clock, frame rate and view sees it, with noise.
 std::vector<Motion> seen(double offset_s, double rate, double gain, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> noise(0, 0.1);

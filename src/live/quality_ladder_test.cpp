@@ -7,7 +7,7 @@
 namespace diminish {
 namespace {
 
-/// A machine on which a frame takes `full_ms` as chosen, and each step saves a tenth of it.
+/// A machine on which a frame takes `full_ms` at level 0, and each step saves a tenth of it.
 double frame_ms(double full_ms, int level) {
   return full_ms * (1 - 0.1 * level);
 }
@@ -48,7 +48,7 @@ TEST(QualityLadder, ComesBackWhenThereIsTime) {
 }
 
 TEST(QualityLadder, DoesNotSwingBetweenTwoLevels) {
-  // As chosen it is too much; a level lower is so little that there seems to be time for more.
+  // Level 0 takes too long, and one level lower is so fast that there seems to be time for more.
   QualityLadder ladder;
   int changes = 0;
   int last = 0;

@@ -77,7 +77,7 @@ TEST_F(Runner, StopsAfterTheFramesInWorkAndReportsProgress) {
   EXPECT_EQ(progress, std::vector<std::size_t>{1});
 }
 
-// Whichever frame fails, those before it are delivered, and none after it.
+// Whichever frame fails, those before it are delivered and none after it.
 TEST_F(Runner, FramesBeforeAnErrorAreDelivered) {
   class FullDisk : public MemorySink {
     void write_images(const FrameSet& frame, const DiminishedFrame& result) override {

@@ -24,7 +24,8 @@ class PoseRefinementTest : public ::testing::Test {
   PoseRefinementTest()
       : frame({}, {Eigen::Vector3d(-0.45, 0.3, 0.9)}), masks(testing::empty_masks(frame.rig)) {}
 
-  /// Mean distance, in pixels, of what the RGB-D camera sees from where the colour camera sees it.
+  /// Mean distance in pixels between where the RGB-D camera and the colour camera see the same
+  /// point.
   double error_px(const Poses& poses) const {
     const Lens lens(frame.rig.color);
     const RigidTransform moved =
@@ -67,7 +68,7 @@ TEST_F(PoseRefinementTest, FindsBackToTheTruePose) {
             1e-9);
 }
 
-// Gain and offset are the cameras' business.
+// Gain and offset may differ between cameras.
 TEST_F(PoseRefinementTest, DoesNotMindAnotherExposure) {
   for (Bgr& pixel : frame.frame.rgbd[0].color) {
     pixel = {static_cast<std::uint8_t>(pixel.b / 2 + 30),
@@ -81,7 +82,7 @@ TEST_F(PoseRefinementTest, DoesNotMindAnotherExposure) {
   EXPECT_LT(error_px(poses), before / 4);
 }
 
-// What the object to remove shows must have no say.
+// The object to remove must have no influence.
 TEST_F(PoseRefinementTest, LooksOnlyOutsideTheMask) {
   masks.color.fill({60, 60, 120, 100}, 255);
   Poses poses = frame.poses;

@@ -82,7 +82,7 @@ TEST_F(PoseSources, AMarkerThatIsNotSeenIsSaidSoAndLeavesThePoseOpen) {
   EXPECT_EQ(poses.messages[0], "world marker 0 not visible in rgbd0");
 }
 
-// Corners that fit both planar solutions alike; the depth image knows which plane it is.
+// The corners fit both planar solutions equally well; the depth image tells which plane it is.
 TEST_F(PoseSources, DepthSettlesThePlanarAmbiguity) {
   const RigidTransform truth = rgbd_color_from_world();
   const auto exact = estimate_marker_pose(see(0, truth, 0.2, frame.rig.rgbd[0].color).corners, 0.2,

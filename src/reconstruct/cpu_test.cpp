@@ -11,8 +11,8 @@
 namespace diminish {
 namespace {
 
-/// The fast version draws the same pixels of the same cameras in the same colours, but for one
-/// level of rounding.
+/// The fast version draws the same pixels of the same cameras in the same colours, within one level
+/// of rounding.
 void expect_same(const Reconstruction& fast, const Reconstruction& plain) {
   ASSERT_EQ(fast.region, plain.region);
   std::size_t drawn = 0;

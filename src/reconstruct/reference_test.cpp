@@ -14,7 +14,7 @@ using testing::empty_masks;
 
 const Eigen::Vector3d rgbd_eye(-0.45, 0.3, 0.9);
 
-/// Every test is done with every backend.
+/// Every test runs with every backend.
 class AnyReconstructor : public ::testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Backends, AnyReconstructor,
                          ::testing::ValuesIn(Registry<Reconstructor>::names()),

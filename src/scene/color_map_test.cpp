@@ -75,7 +75,7 @@ TEST(ColorMap, AffineFindsGainsAndOffsets) {
 TEST(ColorMap, ChangesNothingWithoutPairsAndLittleForUnseenColorsWithFew) {
   EXPECT_LT(worst_difference(ColorMapFit().fit({}, ColorMapModel::field, bounds), ColorMap{}),
             1e-4F);
-  // Three grey surfaces at one place say nothing of colours, nor of the field.
+  // Three grey surfaces in one place say nothing about colours or the field.
   std::vector<ColorPair> pairs;
   for (const float level : {80.F, 100.F, 120.F}) {
     pairs.push_back(
@@ -253,7 +253,7 @@ TEST(MappedCorrection, ShowsWhatTheColorCameraWouldHaveSeen) {
   }
 }
 
-// What is wrong at the mask's rim alone (a shadow, a depth edge) must not reach the inside.
+// An error only at the mask's rim (a shadow, a depth edge) must not reach the inside.
 TEST(MappedCorrection, IsNotDrawnAlongByTheRim) {
   TwoLooks looks;
   for (int x = 100; x < 300; ++x) {

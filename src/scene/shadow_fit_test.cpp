@@ -79,7 +79,7 @@ TEST(ShadowFit, TakesAPatchOfAnotherColorForNoShadow) {
   }));
 }
 
-// Darker than anything that lets light from elsewhere in could be.
+// Darker than any light from elsewhere would allow.
 TEST(ShadowFit, TakesABlackPatchForNoShadow) {
   ShadowFit found;
   EXPECT_FALSE(fit(found, [](const Eigen::Vector2f& place, const auto& hidden) {

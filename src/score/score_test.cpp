@@ -137,7 +137,7 @@ TEST_F(ScoreTest, MeasuresMasksWithTheRunsMargin) {
   EXPECT_DOUBLE_EQ(*score().frames[0].mask_iou, 200.0 / (400 + 4 * 20));
 }
 
-// Removing something where there is nothing to remove is not free.
+// Removing something where there is nothing to remove has a cost.
 TEST_F(ScoreTest, AFalseRemovalCosts) {
   save("truth/mask/000000.png", cv::Mat(height, width, CV_8U, cv::Scalar(0)));
   EXPECT_DOUBLE_EQ(*score().frames[0].mask_iou, 0);

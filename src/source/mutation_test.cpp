@@ -19,7 +19,7 @@ namespace {
 
 const std::filesystem::path recording = testing::recordings_dir() + "/workbench";
 
-/// What people and disks do to files: characters changed, pieces deleted, doubled and moved.
+/// What people and disks do to files: change characters, and delete, duplicate and move parts.
 std::string mutate(std::string text, std::mt19937& random) {
   const auto below = [&](std::size_t end) { return random() % end; };
   const std::string characters = "0123456789.-+e:,[]{}#&*'\"\n\t /\\%\x7f\xff~xN";
@@ -46,8 +46,8 @@ std::string mutate(std::string text, std::mt19937& random) {
   return text;
 }
 
-/// Feeds seeded mutations of a file to its reader: it must read them, or throw Error. Some of
-/// both must happen, else the mutations say nothing.
+/// Feeds seeded mutations of a file to its reader. It must read them or throw Error. Both must
+/// happen, or else the mutations prove nothing.
 void expect_result_or_error(const std::string& file,
                             const std::function<void(const std::string&)>& read) {
   const std::string original = read_text_file(recording / file, 1 << 20);

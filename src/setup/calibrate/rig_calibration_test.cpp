@@ -60,7 +60,7 @@ class Bench {
   RigidTransform color_from_depth;  ///< the truth
 };
 
-/// A target held before the cameras, leaning by `lean` radians.
+/// A target held in front of the cameras, tilted by `lean` radians.
 RigidTransform held(int index, double lean) {
   const double direction = 2.4 * index;
   RigidTransform pose;
@@ -77,7 +77,7 @@ double distance_mm(const RigidTransform& a, const RigidTransform& b) {
   return 1000 * (a.translation - b.translation).norm();
 }
 
-/// A transform whose sensors are some millimetres and a degree elsewhere.
+/// A transform that is off by some millimetres and a degree.
 RigidTransform nudged(RigidTransform transform) {
   transform.rotation =
       Eigen::AngleAxisd(0.02, Eigen::Vector3d(-2, 1, 0.7).normalized()).toRotationMatrix() *
@@ -173,7 +173,7 @@ TEST(RigCalibration, FindsTheDepthSensorByABoardThatLeansInAllDirections) {
   EXPECT_LT(distance_mm(between.color_from_depth, bench.color_from_depth), 2);
 }
 
-// Boards that all face the camera say how far it is and how it leans: three of six.
+// Boards that all face the camera determine its distance and tilt: three of six degrees of freedom.
 TEST(RigCalibration, SaysWhatParallelPlanesDoNotDetermine) {
   const Bench bench;
   const Board board = parse_board("checkerboard:7x5:40");

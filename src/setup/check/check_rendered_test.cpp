@@ -12,7 +12,7 @@ namespace {
 constexpr double period_s = 1.0 / 30;
 constexpr int frame_count = 24;
 
-/// Two cameras, a world marker on a wall, and a marker that is waved before it.
+/// Two cameras, a world marker on a wall, and a marker that is waved in front of it.
 struct WavedMarker {
   WavedMarker() {
     rig.color = {480, 384, 424, 424, 241, 190, {-0.11, 0.09, 0.0006, -0.0004, 0}};
@@ -61,7 +61,7 @@ struct WavedMarker {
   std::vector<FrameSet> frames;  ///< images of the same moment
 };
 
-/// The frames as a recording pairs them if the RGB-D camera's clock shows `late` frames more.
+/// The frames as a recording pairs them if the RGB-D camera's clock is ahead by `late` frames.
 class PairedByStamps final : public FrameSource {
  public:
   PairedByStamps(const WavedMarker& waved, int late) : waved_(waved), late_(late) {}
@@ -129,7 +129,7 @@ class OneFrame final : public FrameSource {
 
 class SmallMarker : public ::testing::TestWithParam<double> {};
 
-// Both what the detector just finds, and what it does not find any more.
+// Sizes that the detector just finds, and sizes that it no longer finds.
 TEST_P(SmallMarker, IsSaid) {
   const double distance_m = GetParam();
   Rig rig;

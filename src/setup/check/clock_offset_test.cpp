@@ -36,7 +36,7 @@ TEST(ClockOffset, IsFoundToSomeMillisecondsWhateverTheBias) {
   }
 }
 
-// An even motion along a line could as well be a bias.
+// Uniform motion along a line could just as well be a constant error.
 TEST(ClockOffset, SaysThatItIsUncertainWhereNothingTellsIt) {
   const auto even = [](double offset_s, unsigned seed) {
     std::mt19937 random(seed);

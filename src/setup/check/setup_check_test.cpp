@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-/// A demo recording that can be spoilt: its small files are copied, its images linked.
+/// A demo recording that can be damaged: small files are copied, images linked.
 class Copy {
  public:
   explicit Copy(const std::string& name) {
@@ -104,7 +104,7 @@ void PrintTo(const Spoilt& spoilt, std::ostream* stream) {
 
 class SpoiltSetup : public ::testing::TestWithParam<Spoilt> {};
 
-// One thing is wrong at a time: that is said, and nothing else that is serious.
+// With one thing wrong at a time, the check reports it and nothing else that is serious.
 TEST_P(SpoiltSetup, IsFound) {
   const Copy copy(GetParam().recording);
   GetParam().spoil(copy);
@@ -217,7 +217,7 @@ INSTANTIATE_TEST_SUITE_P(
                "no-partner", "rgbd0"}),
     [](const auto& test) { return std::string(test.param.name); });
 
-// Cameras of one kind with fixed poses: only their places tell them apart.
+// Cameras of the same kind with fixed poses: only their poses tell them apart.
 TEST(CheckSetup, FindsSwappedCamerasWithFixedPoses) {
   const Copy copy("workbench");
   const std::string rig = (copy.path() / "rig.yaml").string();

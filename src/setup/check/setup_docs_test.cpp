@@ -10,7 +10,7 @@
 namespace diminish {
 namespace {
 
-// Every flag of the commands that set up is described.
+// The docs describe every flag of the set-up commands.
 TEST(CommandLineDocs, DescribeTheFlagsOfSettingUp) {
   const std::string docs =
       read_text_file(std::filesystem::path(testing::docs_dir()) / "command-line.md", 1 << 20);
