@@ -32,12 +32,28 @@ inline constexpr std::array<const char*, 6> error_causes{"mask",  "missing", "po
 /// Shares of the squared error, by cause; they sum to 1.
 using ErrorBudget = std::array<double, error_causes.size()>;
 
+/// What a viewer notices, inside the true mask (without one, the run's) grown by a square of 3
+/// pixels on each side, of the brightness after a Gaussian of 1 pixel.
+struct ViewerFigures {
+  /// The share of the truth's edges (Canny) that are there, within 2 pixels; the share of the
+  /// result's that are the truth's; and their harmonic mean.
+  double edge_recall = 0, edge_precision = 0, edge_f1 = 0;
+  /// The mean of how alike the gradients' magnitudes are (Xue et al. 2014, c = 170).
+  double gradient_similarity = 0;
+  double invented_share = 0;  ///< of the region
+  /// The gradients' mean magnitude over the truth's: 1 is right, 0.2 a smear. Absent where there
+  /// are no such pixels, or at most 50 invented ones.
+  std::optional<double> sharpness_seen, sharpness_invented;
+  std::optional<Quality> invented;
+};
+
 /// One frame against the truth. What cannot be known (no such pixels, no truth) is absent.
 struct FrameScore {
   std::string name;
   std::optional<Quality> inside;   ///< inside the true mask, grown by 3 pixels
   std::optional<Quality> valid;    ///< of these, pixels that an RGB-D camera saw
   std::optional<Quality> missing;  ///< of these, pixels that none saw
+  std::optional<ViewerFigures> viewer;
   std::optional<ErrorBudget> budget;
   std::optional<double> coverage;  ///< the share of the run's mask that an RGB-D camera saw
   /// Intersection over union of the run's mask and the true mask grown by the run's margin.
@@ -53,7 +69,8 @@ struct FrameScore {
 /// A run against its recording's truth.
 struct Score {
   std::vector<FrameScore> frames;
-  /// The mean over the frames that have the figure; `changed_outside` is the sum.
+  /// The mean over the frames that have the figure; `changed_outside` is the sum, the edges' F1
+  /// that of mean recall and precision.
   FrameScore mean;
   /// From the squared error over all frames' pixels inside the true mask.
   std::optional<double> psnr_pooled_db;

@@ -61,6 +61,18 @@ std::string plots(const std::vector<FrameScore>& frames) {
       {"SSIM inside", quality(&FrameScore::inside, &Quality::ssim)},
       {"PSNR of seen pixels, dB", quality(&FrameScore::valid, &Quality::psnr_db)},
       {"PSNR of invented pixels, dB", quality(&FrameScore::missing, &Quality::psnr_db)},
+      {"edges, F1",
+       [](const FrameScore& frame) {
+         return frame.viewer ? std::optional(frame.viewer->edge_f1) : std::nullopt;
+       }},
+      {"sharpness of seen pixels",
+       [](const FrameScore& frame) {
+         return frame.viewer ? frame.viewer->sharpness_seen : std::nullopt;
+       }},
+      {"sharpness of invented pixels",
+       [](const FrameScore& frame) {
+         return frame.viewer ? frame.viewer->sharpness_invented : std::nullopt;
+       }},
       {"coverage", [](const FrameScore& frame) { return frame.coverage; }},
       {"mask IoU", [](const FrameScore& frame) { return frame.mask_iou; }}};
   std::map<std::string, bool> poses;
@@ -124,6 +136,17 @@ std::string table_2(const nlohmann::json& summary) {
   return text + "</table>\n";
 }
 
+std::string sharpness_text(const ViewerFigures& viewer) {
+  std::string text;
+  if (viewer.sharpness_seen) {
+    text += fmt::format("; sharpness of seen pixels {:.2f}", *viewer.sharpness_seen);
+  }
+  if (viewer.sharpness_invented) {
+    text += fmt::format("; sharpness of invented pixels {:.2f}", *viewer.sharpness_invented);
+  }
+  return text;
+}
+
 std::string provenance_bar(const nlohmann::json& summary) {
   const auto& pixels = summary.at("pixels");
   const auto mask = pixels.at("mask").get<double>();
@@ -184,6 +207,12 @@ void write_report(const std::filesystem::path& recording, const std::filesystem:
     if (score.mean.inside) {
       page += fmt::format("<p>PSNR {:.2f} dB, SSIM {:.3f} inside the object's mask",
                           score.mean.inside->psnr_db, score.mean.inside->ssim);
+      if (const auto& viewer = score.mean.viewer) {
+        page += fmt::format("; edges: recall {:.3f}, precision {:.3f}, F1 {:.3f}",
+                            viewer->edge_recall, viewer->edge_precision, viewer->edge_f1);
+        page += sharpness_text(*viewer);
+        page += fmt::format("; gradients alike {:.3f}", viewer->gradient_similarity);
+      }
       if (score.flicker) page += fmt::format("; flicker {:.1f} grey levels", *score.flicker);
       page += fmt::format("; {} frames.</p>\n", score.frames.size());
     }

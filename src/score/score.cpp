@@ -11,6 +11,7 @@
 #include "score/image_quality.h"
 #include "score/run_folder.h"
 #include "score/score_frames.h"
+#include "score/viewer_figures.h"
 
 namespace diminish {
 namespace {
@@ -79,6 +80,11 @@ FrameScore mean_score(const std::vector<FrameScore>& frames) {
   mean.coverage = mean_of(frames, [](const FrameScore& frame) { return frame.coverage; });
   mean.mask_iou = mean_of(frames, [](const FrameScore& frame) { return frame.mask_iou; });
   mean.mask_recall = mean_of(frames, [](const FrameScore& frame) { return frame.mask_recall; });
+  std::vector<ViewerFigures> viewer;
+  for (const FrameScore& frame : frames) {
+    if (frame.viewer) viewer.push_back(*frame.viewer);
+  }
+  mean.viewer = mean_of(viewer);
   for (std::size_t i = 0; i < error_causes.size(); ++i) {
     const auto share = mean_of(frames, [&](const FrameScore& frame) {
       return frame.budget ? std::optional((*frame.budget)[i]) : std::nullopt;
@@ -170,6 +176,8 @@ Score score_frames(const std::filesystem::path& recording, const std::filesystem
       frame.inside = quality(result, truth, ssim, region);
       frame.valid = quality(result, truth, ssim, region & seen);
       frame.missing = quality(result, truth, ssim, region & mask & ~seen);
+      frame.viewer =
+          viewer_figures({result, truth, ssim, true_mask.empty() ? mask : true_mask, provenance});
       const ErrorCauses causes = find_error_causes({result, truth, region, mask, seen});
       frame.budget = causes.budget;
       visit({name, input, result, truth, mask, provenance, causes});

@@ -21,6 +21,30 @@ std::string row(const FrameScore& frame) {
                      frame.changed_outside ? std::to_string(*frame.changed_outside) : "-");
 }
 
+std::string line(const ViewerFigures& viewer) {
+  return fmt::format(
+      "Edges: recall {:.3f}, precision {:.3f}, F1 {:.3f}; gradients alike {:.3f}; sharpness of "
+      "seen pixels {}, of invented {}; invented: {:.3f} of all, {} dB / {}\n",
+      viewer.edge_recall, viewer.edge_precision, viewer.edge_f1, viewer.gradient_similarity,
+      cell(viewer.sharpness_seen, 3), cell(viewer.sharpness_invented, 3), viewer.invented_share,
+      cell(viewer.invented ? std::optional(viewer.invented->psnr_db) : std::nullopt, 3),
+      cell(viewer.invented ? std::optional(viewer.invented->ssim) : std::nullopt, 3));
+}
+
+nlohmann::ordered_json to_json(const ViewerFigures& viewer) {
+  nlohmann::ordered_json json = {{"edge_recall", viewer.edge_recall},
+                                 {"edge_precision", viewer.edge_precision},
+                                 {"edge_f1", viewer.edge_f1},
+                                 {"gradient_similarity", viewer.gradient_similarity},
+                                 {"invented_share", viewer.invented_share}};
+  if (viewer.sharpness_seen) json["sharpness_seen"] = *viewer.sharpness_seen;
+  if (viewer.sharpness_invented) json["sharpness_invented"] = *viewer.sharpness_invented;
+  if (viewer.invented) {
+    json["invented"] = {{"psnr_db", viewer.invented->psnr_db}, {"ssim", viewer.invented->ssim}};
+  }
+  return json;
+}
+
 nlohmann::ordered_json to_json(const FrameScore& frame) {
   nlohmann::ordered_json json;
   json["name"] = frame.name;
@@ -30,6 +54,7 @@ nlohmann::ordered_json to_json(const FrameScore& frame) {
   add_quality("inside", frame.inside);
   add_quality("valid", frame.valid);
   add_quality("missing", frame.missing);
+  if (frame.viewer) json["viewer"] = to_json(*frame.viewer);
   if (frame.budget) {
     for (std::size_t i = 0; i < error_causes.size(); ++i) {
       json["error_budget"][error_causes[i]] = (*frame.budget)[i];
@@ -56,6 +81,7 @@ std::string score_table(const Score& score) {
   text += row(score.mean);
   text += fmt::format("PSNR of all frames' error {} dB, flicker {} levels\n",
                       cell(score.psnr_pooled_db, 2), cell(score.flicker, 2));
+  if (score.mean.viewer) text += line(*score.mean.viewer);
   if (score.mean.budget) {
     text += "Squared error by cause:";
     for (std::size_t i = 0; i < error_causes.size(); ++i) {
