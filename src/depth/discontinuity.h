@@ -4,6 +4,9 @@
 
 namespace diminish::sdct {
 
+/// Points nearer to the camera than this are not drawn.
+inline constexpr float near_plane_m = 0.01F;
+
 /// The step-discontinuity constraint on the depths (in the depth sensor's frame).
 ///
 /// The paper's threshold is constant. Depth sensors' resolution and noise, and the steps along a

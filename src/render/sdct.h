@@ -26,9 +26,6 @@ inline constexpr int subpixels = 1 << subpixel_bits;
 /// coordinates fit 64 bits with room to spare.
 inline constexpr float max_coordinate_px = 32000.F;
 
-/// Points nearer to the camera than this are not drawn.
-inline constexpr float near_plane_m = 0.01F;
-
 /// Twice the signed area; positive if the colour camera sees the side that the depth sensor saw.
 inline std::int64_t doubled_area(std::int64_t x0, std::int64_t y0, std::int64_t x1, std::int64_t y1,
                                  std::int64_t x2, std::int64_t y2) {
