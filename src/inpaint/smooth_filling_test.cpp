@@ -52,7 +52,7 @@ TEST(SmoothFilling, FollowsAHarmonicFunction) {
       ++count;
     }
   }
-  EXPECT_LT(std::sqrt(squares / count), 2) << "levels";
+  EXPECT_LT(std::sqrt(squares / count), 0.3) << "levels";
 }
 
 TEST(SmoothFilling, AConstantStaysConstant) {

@@ -7,6 +7,7 @@
 #include "detect/color_blob/extremum_filters.h"
 #include "detect/color_blob/shrink_picture.h"
 #include "detect/color_blob/smooth_picture.h"
+#include "each_vector_target.h"
 
 namespace diminish {
 namespace {
@@ -28,27 +29,34 @@ void expect_same(const Image<Pixel>& image, const cv::Mat& expected) {
   EXPECT_EQ(cv::norm(as_mat(image), expected, cv::NORM_INF), 0);
 }
 
-TEST(ShrinkPicture, IsTheRoundedMean) {
-  const Image<Bgr> image = noise(101, 83);
-  std::vector<std::uint16_t> scratch;
-  Image<Bgr> small;
-  for (int scale = 1; scale <= 16; ++scale) {
-    SCOPED_TRACE(scale);
-    shrink_picture(image, scale, shrunk_bounds(image, scale), scratch, small);
-    ASSERT_EQ(small.bounds(), (Rect{0, 0, 101 / scale, 83 / scale}));
-    for (int y = 0; y < small.height(); ++y) {
-      for (int x = 0; x < small.width(); ++x) {
-        const cv::Rect cell(x * scale, y * scale, scale, scale);
-        const cv::Scalar sum = cv::sum(as_mat(image)(cell));
-        const auto mean = [&](int channel) {
-          return static_cast<int>(std::floor(sum[channel] / cell.area() + 0.5));
-        };
-        ASSERT_EQ(small(x, y).b, mean(0)) << x << ' ' << y;
-        ASSERT_EQ(small(x, y).g, mean(1)) << x << ' ' << y;
-        ASSERT_EQ(small(x, y).r, mean(2)) << x << ' ' << y;
-      }
+/// `small` against `cv::sum`.
+void expect_rounded_means(const Image<Bgr>& image, int scale, const Image<Bgr>& small) {
+  ASSERT_EQ(small.bounds(), (Rect{0, 0, image.width() / scale, image.height() / scale}));
+  for (int y = 0; y < small.height(); ++y) {
+    for (int x = 0; x < small.width(); ++x) {
+      const cv::Rect cell(x * scale, y * scale, scale, scale);
+      const cv::Scalar sum = cv::sum(as_mat(image)(cell));
+      const auto mean = [&](int channel) {
+        return static_cast<int>(std::floor(sum[channel] / cell.area() + 0.5));
+      };
+      ASSERT_EQ(small(x, y).b, mean(0)) << x << ' ' << y;
+      ASSERT_EQ(small(x, y).g, mean(1)) << x << ' ' << y;
+      ASSERT_EQ(small(x, y).r, mean(2)) << x << ' ' << y;
     }
   }
+}
+
+TEST(ShrinkPicture, IsTheRoundedMean) {
+  const Image<Bgr> image = noise(101, 83);
+  testing::on_each_vector_target([&] {
+    std::vector<std::uint16_t> scratch;
+    Image<Bgr> small;
+    for (int scale = 1; scale <= 16; ++scale) {
+      SCOPED_TRACE(scale);
+      shrink_picture(image, scale, shrunk_bounds(image, scale), scratch, small);
+      expect_rounded_means(image, scale, small);
+    }
+  });
 }
 
 TEST(ShrinkPicture, APictureThinnerThanTheScaleBecomesOnePixelWide) {
