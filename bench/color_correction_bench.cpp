@@ -81,7 +81,7 @@ void poisson_beside_seamless_clone(benchmark::State& state, Shape shape) {
   const cv::Point center(box.x + box.width / 2, box.y + box.height / 2);
   Image<Bgr> exact = cloning.camera;
   const auto correct = [&](ColorCorrector& method, Image<Bgr>& picture) {
-    method.correct(cloning.camera, cloning.occlusion, cloning.reconstruction, picture);
+    method.correct({cloning.camera, cloning.occlusion, cloning.reconstruction, {}}, picture);
   };
   run_beside_peer(
       state, [&] { correct(*corrector, cloning.picture); },

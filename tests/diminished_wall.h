@@ -61,7 +61,6 @@ struct DiminishedWall : LitWall {
   void make_reconstruction() {
     Reconstruction& made = expected.reconstruction;
     clear_outside(frame.rig.color, region, made);
-    made.samples = samples;
     SecondView& second = made.second;
     resize_second(true, frame.rig.color, second);
     second.color.fill({});
@@ -95,7 +94,7 @@ struct DiminishedWall : LitWall {
   CastShadows shadows;
   OcclusionMasks masks;
   DepthImages depths;
-  DiminishedFrame expected;  ///< its reconstruction
+  DiminishedFrame expected;  ///< its reconstruction, without surfaces
 };
 
 }  // namespace diminish::testing

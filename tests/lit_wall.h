@@ -61,8 +61,13 @@ struct LitWall {
   Reconstruction wall() const {
     Reconstruction result;
     result.region = rig.color.bounds();
-    result.surface.resize(rig.color.width, rig.color.height, surface_label::first_plane);
     result.depth_m.resize(rig.color.width, rig.color.height, 0.F);
+    return result;
+  }
+  Surfaces wall_surfaces() const {
+    Surfaces result;
+    result.region = rig.color.bounds();
+    result.label.resize(rig.color.width, rig.color.height, surface_label::first_plane);
     return result;
   }
 

@@ -18,7 +18,7 @@
 #include "preloaded_source.h"
 #include "sink/distribution.h"
 #include "sink/partial_file.h"
-#include "sink/run_statistics.h"
+#include "sink/time_table.h"
 
 namespace diminish {
 namespace {
@@ -32,7 +32,7 @@ double seconds_since(Clock::time_point start) {
 /// What was measured.
 struct Figures {
   std::size_t frames = 0, left_out = 0, measured = 0;
-  std::array<Distribution, stage_count + 1> times_ms;  ///< per stage, and last the whole frame
+  std::array<Distribution, time_row_count> times_ms;  ///< by row of the table of times
   double throughput_fps = 0;
   std::string device;                                         ///< the GPU; empty: the CPU
   std::vector<std::pair<std::string, double>> gpu_passes_ms;  ///< medians
@@ -94,22 +94,18 @@ void BenchCommand::measure_latency(const Recording& input, const std::vector<Fra
     pipeline.process(frame, result);  // lets memory grow to its final size
 
   constexpr std::size_t fewest_frames = 20;
-  std::array<std::vector<double>, stage_count + 1> times;
+  std::array<std::vector<double>, time_row_count> times;
   std::vector<double> bytes;
   std::vector<double> counts;
   const Clock::time_point start = Clock::now();
   for (std::size_t i = 0; i < fewest_frames || seconds_since(start) < seconds; ++i) {
     const Allocations before = allocations();
-    const Clock::time_point frame_start = Clock::now();
     pipeline.process(loaded[i % loaded.size()], result);
-    const double ms = 1000 * seconds_since(frame_start);
     const Allocations after = allocations();
     bytes.push_back(static_cast<double>(after.bytes - before.bytes));
     counts.push_back(static_cast<double>(after.count - before.count));
-    for (std::size_t stage = 0; stage < stage_count; ++stage) {
-      times[stage].push_back(result.report.milliseconds[stage]);
-    }
-    times[stage_count].push_back(ms);
+    const auto ms = times_of(result.report);
+    for (std::size_t row = 0; row < time_row_count; ++row) times[row].push_back(ms[row]);
   }
   figures.measured = bytes.size();
   for (std::size_t i = 0; i < times.size(); ++i) {
@@ -159,7 +155,7 @@ void BenchCommand::measure_backend(const Recording& input, const std::vector<Fra
 
 void BenchCommand::measure_throughput(const Recording& input, std::vector<FrameSet> loaded,
                                       Figures& figures) const {
-  const double frame_s = figures.times_ms[stage_count].average / 1000;
+  const double frame_s = figures.times_ms[whole_frame_row].average / 1000;
   const auto count = std::max<std::size_t>(
       20, static_cast<std::size_t>(seconds / std::max(frame_s, 1e-6) * threads));
   NoSink sink;
@@ -182,12 +178,13 @@ void BenchCommand::measure_throughput(const Recording& input, std::vector<FrameS
 void print(const Figures& figures, int threads) {
   fmt::print("{:<20}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>16}\n", "Operation, ms", "avg", "min", "max",
              "p50", "p95", "p99", "paper");
-  for (const PaperRow& row : paper_table()) {
-    const Distribution& d = figures.times_ms[row.stage];
-    fmt::print("{:<20}{:>9.2f}{:>9.2f}{:>9.2f}{:>9.2f}{:>9.2f}{:>9.2f}{:>16}\n", row.operation,
+  for (std::size_t i = 0; i < time_row_count; ++i) {
+    const TimeRow& row = time_rows()[i];
+    const Distribution& d = figures.times_ms[i];
+    fmt::print("{:<20}{:>9.2f}{:>9.2f}{:>9.2f}{:>9.2f}{:>9.2f}{:>9.2f}{:>16}\n", row.title,
                d.average, d.least, d.most, d.p50, d.p95, d.p99, row.paper_ms);
   }
-  const Distribution& total = figures.times_ms[stage_count];
+  const Distribution& total = figures.times_ms[whole_frame_row];
   fmt::print("{} frames, measured {} times; {} skipped without a colour image\n", figures.frames,
              figures.measured, figures.left_out);
   fmt::print("One at a time: p50 {:.2f}, p95 {:.2f}, p99 {:.2f} ms; {:.1f} frames/s\n", total.p50,
@@ -229,7 +226,7 @@ std::string cpu_name() {
 }
 
 void write_json(const BenchCommand& command, const Figures& figures) {
-  const Distribution& total = figures.times_ms[stage_count];
+  const Distribution& total = figures.times_ms[whole_frame_row];
   nlohmann::ordered_json json;
   json["recording"] = command.recording.string();
   json["frames"] = figures.frames;
@@ -238,8 +235,8 @@ void write_json(const BenchCommand& command, const Figures& figures) {
   json["latency_ms"] = to_json(total);
   json["latency_fps"] = 1000 / total.average;
   json["throughput_fps"] = figures.throughput_fps;
-  for (std::size_t stage = 0; stage < stage_count; ++stage) {
-    json["stages"][stage_names[stage]] = to_json(figures.times_ms[stage]);
+  for (std::size_t row = 0; row < time_row_count; ++row) {
+    json["stages"][time_rows()[row].key] = to_json(figures.times_ms[row]);
   }
   if (figures.frame_ms > 0) {
     json["backend"] = {{"device", figures.device},

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -11,6 +10,8 @@
 #include "diminish/occlusion_masks.h"
 #include "diminish/poses.h"
 #include "diminish/reconstruction.h"
+#include "diminish/stage.h"
+#include "diminish/surfaces.h"
 
 namespace diminish {
 
@@ -22,15 +23,6 @@ inline constexpr std::uint8_t inpainted = 254;
 inline constexpr std::uint8_t unknown = 255;  ///< part of the object, and nothing to show there
 }  // namespace provenance
 
-/// The parts of a frame's work, as in the paper's Table 2.
-enum class Stage { poses, detection, reconstruction, compositing, color_correction, inpainting };
-inline constexpr std::size_t stage_count = 6;
-inline constexpr std::array<const char*, stage_count> stage_names = {
-    "poses", "detection", "reconstruction", "compositing", "color_correction", "inpainting"};
-
-/// Milliseconds per stage, indexed by Stage.
-using StageTimes = std::array<double, stage_count>;
-
 /// What happened in a frame.
 struct FrameReport {
   Markers markers;
@@ -40,8 +32,9 @@ struct FrameReport {
   std::size_t valid_pixels = 0;    ///< of these, seen by an RGB-D camera
   std::size_t missing_pixels = 0;  ///< of these, not seen by any
   StageTimes milliseconds{};
-  DrawingReport drawing;  ///< a part of the reconstruction
-  /// The frame's colour image could not be read: there is no picture.
+  double frame_ms = 0;  ///< from the frame's coming to its result
+  DrawingReport drawing;
+  /// The frame's colour image could not be read: there is no picture, and all images are empty.
   bool skipped = false;
   /// Images that could not be used (see FrameSet::faults).
   std::vector<std::string> faults;
@@ -58,6 +51,7 @@ struct DiminishedFrame {
   Mask mask;
   Image<std::uint8_t> provenance;
   Reconstruction reconstruction;
+  Surfaces surfaces;
   FrameReport report;
 };
 

@@ -123,6 +123,9 @@ Rect bounding_box(const Mask& mask);
 /// The same of the mask's part inside `part`, which must not reach beyond the mask.
 Rect bounding_box(const Mask& mask, const Rect& part);
 
+/// The number of pixels inside `part` that are `value`.
+std::size_t count_equal(const Image<std::uint8_t>& image, std::uint8_t value, const Rect& part);
+
 /// The number of non-zero pixels of `mask` inside `part`.
 std::size_t count_nonzero(const Mask& mask, const Rect& part);
 

@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "diminish/frame_set.h"
@@ -24,7 +25,30 @@ using DepthImages = std::vector<Image<std::uint16_t>>;
 class Reconstructor {
  public:
   static constexpr const char* kind = "reconstruction backend";
-  using Factory = std::function<std::unique_ptr<Reconstructor>(const Rig& rig)>;
+
+  /// When the option `backend` means it by "auto".
+  enum class Suited {
+    when_named,     ///< never
+    always,         ///< where nothing better is there; it also draws where another one fails
+    with_hardware,  ///< first of all
+  };
+  /// How to make one.
+  class Factory {
+   public:
+    using Make = std::function<std::unique_ptr<Reconstructor>(const Rig& rig)>;
+    /// suited: asked where it matters, which may take a while.
+    Factory(Make make, std::function<Suited()> suited)
+        : make_(std::move(make)), suited_(std::move(suited)) {}
+    template <class AnyMake>
+    Factory(AnyMake make) : Factory(std::move(make), [] { return Suited::when_named; }) {}
+
+    std::unique_ptr<Reconstructor> operator()(const Rig& rig) const { return make_(rig); }
+    Suited suited() const { return suited_(); }
+
+   private:
+    Make make_;
+    std::function<Suited()> suited_;
+  };
 
   virtual ~Reconstructor() = default;
 
@@ -35,10 +59,13 @@ class Reconstructor {
                            const OcclusionMasks& masks, const TiledRegion& region,
                            const Options& options, Reconstruction& reconstruction) = 0;
 
-  /// The GPU that draws, by its driver's name; empty where the processor does.
+  /// The name of the MaskDrawer that goes with it.
+  virtual std::string mask_drawer() const { return "cpu"; }
+
+  /// The GPU that draws, by its driver's name; empty where the CPU does.
   virtual const std::string& device() const {
-    static const std::string processor;
-    return processor;
+    static const std::string cpu;
+    return cpu;
   }
   /// What the GPU did in the last frame, pass by pass.
   virtual const std::vector<GpuPass>& gpu_passes() const {

@@ -1,22 +1,24 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "composite/texture_output.h"
+#include "diminish/color_corrector.h"
 #include "diminish/diminished_frame.h"
+#include "diminish/inpainter.h"
 #include "diminish/reconstructor.h"
 #include "scene/background_planes.h"
 #include "scene/cast_shadows.h"
-#include "scene/color_map.h"
 
 namespace diminish {
 
-/// How far a backend takes a frame; the rest is the processor's.
-enum class Reach {
-  reconstruction,  ///< no further
-  seen,            ///< to the colours of all pixels that a camera sees; they wait for inpainting
-  picture,         ///< to the end
+/// What the methods that the options name say of themselves.
+struct FrameMethods {
+  ColorCorrector::Declaration color;
+  Inpainter::Declaration inpainting;
+  std::string mode;  ///< the view mode's name
 };
 
 /// A frame when only its pixels are left to do: its images, and what follows from thin samples of
@@ -30,25 +32,26 @@ struct FrameInputs {
   /// Holds it, and at least a pixel more on each side that is not the picture's.
   const TiledRegion& region;
   const Options& options;
+  const FrameMethods& methods;
   const std::vector<BackgroundPlane>* planes;  ///< null: not looked for
   std::span<const CastShadows::Shadow> shadows;
-  const std::vector<ColorMap>& color_maps;  ///< by Reconstruction::source
-  bool wants_reconstruction;                ///< in the result
-  TextureOutput* texture = nullptr;         ///< where the picture goes; null: to the result
+  ColorMapsBySource color_maps;
+  bool wants_reconstruction;         ///< in the result
+  TextureOutput* texture = nullptr;  ///< where the picture goes; null: to the result
 };
 
-/// A backend that does not give the reconstruction away where it can go on with it.
+/// A backend that does stages after the drawing, too, where it need not give away what it has drawn.
 class ComposingReconstructor : public Reconstructor {
  public:
-  /// How far `compose` goes.
-  virtual Reach reach(const Options& options) const = 0;
+  /// Whether it does this stage of a frame with these methods. It is asked in the stages' order,
+  /// from the one after the drawing on, until it says no.
+  virtual bool takes_over(Stage stage, const FrameMethods& methods) const = 0;
 
-  /// Does what Reconstructor::reconstruct and the Compositor do, as far as `reach`: fills picture,
-  /// mask, provenance and pixel counts. The reconstruction (with surface and light) is filled where
-  /// it is wanted or someone has to go on with it; else it has a region, and its images are empty.
-  /// So are picture and provenance where `reach` is the picture and that goes to a texture.
-  /// Throws Error where the GPU fails.
-  virtual void compose(const FrameInputs& inputs, DiminishedFrame& result) = 0;
+  /// Draws, and does the stages after that up to `last`: fills what they fill. The reconstruction
+  /// and the surfaces are filled where they are wanted, or somebody has to go on with them; else
+  /// they have a region, and their images are empty. So are picture and provenance where `last` is
+  /// the last of all and the picture goes to a texture. Throws Error where the GPU fails.
+  virtual void compose(const FrameInputs& inputs, Stage last, DiminishedFrame& result) = 0;
 };
 
 }  // namespace diminish

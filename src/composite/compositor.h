@@ -1,10 +1,5 @@
 #pragma once
 
-#include <map>
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "composite/color_smoothing.h"
 #include "composite/shadow_lifting.h"
 #include "composite/soft_rim.h"
@@ -16,48 +11,41 @@
 
 namespace diminish {
 
-/// Puts the reconstruction where the objects are (Meerits & Saito 2015, section 3.4).
+/// Puts the reconstruction where the objects are (Meerits & Saito 2015, section 3.4). One call a
+/// stage, in this order, on a result whose reconstruction and surfaces are there.
 class Compositor {
  public:
-  /// What can be done before the scene is drawn; to be called before `composite` with the same
-  /// frame.
-  void prepare(const Image<Bgr>& camera, const Mask& occlusion, const Options& options,
-               const std::vector<SceneSample>& samples);
+  /// What every stage looks at.
+  struct Inputs {
+    const Image<Bgr>& camera;  ///< the colour camera's image
+    const Mask& occlusion;     ///< of the objects to remove
+    Rect objects;              ///< its bounding box
+    const Options& options;
+  };
 
-  /// result.reconstruction has been drawn. Fills picture, mask, provenance, the pixel counts and
-  /// the times of the stages. Outside the mask the picture is `camera`, bit for bit; inside, pixels
-  /// that were reconstructed are colour-corrected, and the others are inpainted.
-  /// objects: the mask's bounding box.
-  void composite(const Image<Bgr>& camera, const Mask& occlusion, const Rect& objects,
-                 const Options& options, DiminishedFrame& result);
+  /// Stage::compositing. Fills picture, mask, provenance and the pixel counts: the picture is the
+  /// camera's, and the mask's pixels are those that were seen and those to be inpainted.
+  static void sort(const Inputs& inputs, DiminishedFrame& result);
 
-  /// The rest, where all that `composite` does before inpainting is done: a GPU has filled picture,
-  /// mask, provenance and pixel counts.
-  void complete(const Image<Bgr>& camera, const Mask& occlusion, const Rect& objects,
-                const Options& options, DiminishedFrame& result);
+  /// Stage::colors. Pixels that were seen get their corrected colour, without the objects' shadows.
+  void correct_colors(const Inputs& inputs, ColorMapsBySource maps, ColorCorrector& corrector,
+                      DiminishedFrame& result) const;
 
-  /// Whether the reconstruction's `surface` is used.
-  bool uses_surfaces(const Options& options);
+  /// Stage::inpainting. Fills the other pixels of the mask, and marks those as unknown that cannot
+  /// be filled. They are filled from pixels as they were seen: that is 0.1 dB better than from
+  /// smoothed ones.
+  void inpaint(const Inputs& inputs, Inpainter& inpainter, DiminishedFrame& result);
+
+  /// Stage::finish. Takes out noise, gives the camera back what is outside the mask, bit for bit,
+  /// softens the rim, and shows it all as `mode` does.
+  void finish(const Inputs& inputs, const ViewMode& mode, DiminishedFrame& result);
 
  private:
-  void show(const Image<Bgr>& camera, const Mask& occlusion, const Options& options,
-            DiminishedFrame& result);
-  void correct_colors(const Image<Bgr>& camera, const Mask& occlusion, const std::string& name,
-                      DiminishedFrame& result);
-  bool inpaint(const Holes& holes, const Options& options, DiminishedFrame& result);
-
-  ColorCorrector& corrector(const std::string& name);
-  Inpainter& inpainter(const std::string& name);
-  const ViewMode& view_mode(const std::string& name);
-
-  std::map<std::string, std::unique_ptr<ColorCorrector>> correctors_;
-  std::map<std::string, std::unique_ptr<Inpainter>> inpainters_;
-  std::map<std::string, std::unique_ptr<ViewMode>> view_modes_;
   ShadowLifting shadow_lifting_;
   ColorSmoothing color_smoothing_;
   SoftRim soft_rim_;
-  Mask missing_;
-  Rect objects_;  ///< the mask's bounding box
+  Mask missing_;        ///< nothing is set outside `missing_part_`
+  Rect missing_part_;
 };
 
 }  // namespace diminish

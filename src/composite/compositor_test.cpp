@@ -5,6 +5,7 @@
 #include <opencv2/photo.hpp>
 #include <random>
 
+#include "compose.h"
 #include "core/mat.h"
 
 namespace diminish {
@@ -41,7 +42,7 @@ class Compositing : public ::testing::Test {
   OcclusionMasks masks;
   DiminishedFrame result;
   Options options;
-  Compositor compositor;
+  testing::Composing composing;
 };
 
 TEST_F(Compositing, LeavesEverythingOutsideTheMaskAlone) {
@@ -49,7 +50,7 @@ TEST_F(Compositing, LeavesEverythingOutsideTheMaskAlone) {
     for (const std::string& inpainting : Registry<Inpainter>::names()) {
       options.color_correct = correction;
       options.inpaint = inpainting;
-      compositor.composite(camera, masks.color, bounding_box(masks.color), options, result);
+      composing.compose(camera, masks.color, options, {}, result);
       for (int y = 0; y < 90; ++y) {
         for (int x = 0; x < 120; ++x) {
           if (!masked(x, y)) {
@@ -65,7 +66,7 @@ TEST_F(Compositing, SaysWhereEachPixelComesFrom) {
   options.mask_margin_px = 0;  // as it is, so there is no room for a soft rim
   options.color_correct = "none";
   options.inpaint = "none";
-  compositor.composite(camera, masks.color, bounding_box(masks.color), options, result);
+  composing.compose(camera, masks.color, options, {}, result);
   for (int y = 0; y < 90; ++y) {
     for (int x = 0; x < 120; ++x) {
       const std::uint8_t expected = !masked(x, y) ? provenance::camera
@@ -82,7 +83,7 @@ TEST_F(Compositing, SaysWhereEachPixelComesFrom) {
   EXPECT_EQ(result.report.missing_pixels, 25U * 40U);
   options.inpaint = "harmonic";
   result.report = {};
-  compositor.composite(camera, masks.color, bounding_box(masks.color), options, result);
+  composing.compose(camera, masks.color, options, {}, result);
   EXPECT_EQ(result.provenance(70, 30), provenance::inpainted);
 }
 
@@ -91,7 +92,7 @@ TEST_F(Compositing, NeverShowsTheObject) {
   options.mask_margin_px = 0;  // as it is, so there is no room for a soft rim
   for (const std::string& inpainting : Registry<Inpainter>::names()) {
     options.inpaint = inpainting;
-    compositor.composite(camera, masks.color, bounding_box(masks.color), options, result);
+    composing.compose(camera, masks.color, options, {}, result);
     const Image<Bgr> before = result.picture;
     std::mt19937 random(2);
     for (int y = 0; y < 90; ++y) {
@@ -99,7 +100,7 @@ TEST_F(Compositing, NeverShowsTheObject) {
         if (masked(x, y)) camera(x, y) = {static_cast<std::uint8_t>(random()), 0, 255};
       }
     }
-    compositor.composite(camera, masks.color, bounding_box(masks.color), options, result);
+    composing.compose(camera, masks.color, options, {}, result);
     EXPECT_EQ(result.picture, before) << inpainting;
   }
 }
@@ -131,7 +132,7 @@ TEST_F(Compositing, APictureOfWhichNothingIsKnownStaysUnknown) {
   masks.color.fill(255);
   result.reconstruction.source.fill(0);
   result.reconstruction.color.fill({});
-  compositor.composite(camera, masks.color, bounding_box(masks.color), options, result);
+  composing.compose(camera, masks.color, options, {}, result);
   for (const std::uint8_t value : result.provenance) ASSERT_EQ(value, provenance::unknown);
   for (const Bgr& pixel : result.picture) ASSERT_EQ(pixel, Bgr{});
 }

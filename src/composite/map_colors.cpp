@@ -115,7 +115,7 @@ namespace {
 HWY_EXPORT(MapRow);
 
 /// Allows any `row.count`.
-void map_row(const std::vector<ColorMap>& maps, MappedRow row) {
+void map_row(ColorMapsBySource maps, MappedRow row) {
   constexpr int block = 16;
   const int rest = row.count % block;
   row.count -= rest;
@@ -145,7 +145,7 @@ void map_row(const std::vector<ColorMap>& maps, MappedRow row) {
 
 }  // namespace
 
-void map_colors(const std::vector<ColorMap>& maps, const Reconstruction& reconstruction,
+void map_colors(ColorMapsBySource maps, const Reconstruction& reconstruction,
                 const Mask& occlusion, int y, const float* correction, Image<Bgr>& picture) {
   const Rect& region = reconstruction.region;
   MappedRow row{reconstruction.color.row(y) + region.x,

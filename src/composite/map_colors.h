@@ -11,8 +11,8 @@ namespace diminish {
 /// Writes row y of `picture` wherever an object is to be removed and the reconstruction has a
 /// colour: that colour, mapped, plus `correction`. Where a second camera sees the same surface,
 /// mixes in that camera's colour, mapped by its own map.
-/// maps: by Reconstruction::source. correction: from SoftMembrane::row.
-void map_colors(const std::vector<ColorMap>& maps, const Reconstruction& reconstruction,
+/// correction: from SoftMembrane::row.
+void map_colors(ColorMapsBySource maps, const Reconstruction& reconstruction,
                 const Mask& occlusion, int y, const float* correction, Image<Bgr>& picture);
 
 }  // namespace diminish

@@ -6,8 +6,10 @@ namespace {
 /// Keeps the reconstruction's colours.
 class NoCorrection : public ColorCorrector {
  public:
-  void correct(const Image<Bgr>&, const Mask& occlusion, const Reconstruction& reconstruction,
-               Image<Bgr>& picture) override {
+  Declaration declaration() const override { return {.rule = Declaration::Rule::maps}; }
+
+  void correct(const ColorInputs& inputs, Image<Bgr>& picture) override {
+    const auto& [camera, occlusion, reconstruction, maps] = inputs;
     const Rect& region = reconstruction.region;
     for (int y = region.y; y < region.bottom(); ++y) {
       for (int x = region.x; x < region.right(); ++x) {

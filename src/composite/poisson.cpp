@@ -35,8 +35,10 @@ class PoissonCorrection : public ColorCorrector {
  public:
   explicit PoissonCorrection(std::unique_ptr<MembraneSolver> solver) : solver_(std::move(solver)) {}
 
-  void correct(const Image<Bgr>& camera, const Mask& occlusion,
-               const Reconstruction& reconstruction, Image<Bgr>& picture) override {
+  Declaration declaration() const override { return {.simpler = "affine"}; }
+
+  void correct(const ColorInputs& inputs, Image<Bgr>& picture) override {
+    const auto& [camera, occlusion, reconstruction, maps] = inputs;
     const Rect objects = bounding_box(occlusion, reconstruction.region);
     const Rect region = intersect(grow(objects, 1), reconstruction.region);
     if (region.empty()) return;

@@ -20,8 +20,10 @@ Channels channels(const Bgra& color) {
 /// by LaplaceSolver.
 class PoissonReference : public ColorCorrector {
  public:
-  void correct(const Image<Bgr>& camera, const Mask& occlusion,
-               const Reconstruction& reconstruction, Image<Bgr>& picture) override {
+  Declaration declaration() const override { return {.simpler = "affine"}; }
+
+  void correct(const ColorInputs& inputs, Image<Bgr>& picture) override {
+    const auto& [camera, occlusion, reconstruction, maps] = inputs;
     const Rect& region = reconstruction.region;
     const auto valid = [&](int x, int y) {
       return region.contains(x, y) && occlusion(x, y) != 0 && reconstruction.color(x, y).a != 0;

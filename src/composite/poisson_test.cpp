@@ -42,7 +42,7 @@ struct Problem {
   }
   Image<Bgr> solve(const char* method = "poisson") const {
     Image<Bgr> picture = camera;
-    Registry<ColorCorrector>::get(method)()->correct(camera, occlusion, reconstruction, picture);
+    Registry<ColorCorrector>::get(method)()->correct({camera, occlusion, reconstruction, {}}, picture);
     return picture;
   }
 
@@ -286,7 +286,7 @@ TEST(PoissonCorrection, RemembersNoOtherFrame) {
       }
     }
     Image<Bgr> picture = problem.camera;
-    used->correct(problem.camera, problem.occlusion, problem.reconstruction, picture);
+    used->correct({problem.camera, problem.occlusion, problem.reconstruction, {}}, picture);
     ASSERT_EQ(picture, problem.solve()) << round;
   }
 }
@@ -389,9 +389,9 @@ TEST(PoissonCorrection, AnObjectUsedTwiceForgetsTheFirstFrame) {
   Problem small(60, 50, 14);
   fill(small.occlusion, {5, 5, 40, 30});
   Image<Bgr> picture = large.camera;
-  corrector->correct(large.camera, large.occlusion, large.reconstruction, picture);
+  corrector->correct({large.camera, large.occlusion, large.reconstruction, {}}, picture);
   picture = small.camera;
-  corrector->correct(small.camera, small.occlusion, small.reconstruction, picture);
+  corrector->correct({small.camera, small.occlusion, small.reconstruction, {}}, picture);
   EXPECT_EQ(picture, small.solve());
 }
 

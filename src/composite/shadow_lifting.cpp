@@ -95,11 +95,11 @@ void for_each_within(const std::uint8_t* distances, int begin, int end, const Vi
 }
 
 /// The rows of the region that have shadows.
-Rect shaded_part(const Reconstruction& reconstruction) {
-  const Rect& region = reconstruction.region;
+Rect shaded_part(const Surfaces& surfaces) {
+  const Rect& region = surfaces.region;
   const auto is_shaded = [&](int y) {
     bool is_any = false;
-    for_each_shaded(reconstruction.light.row(y) + region.x, region.width,
+    for_each_shaded(surfaces.light.row(y) + region.x, region.width,
                     [&](int, int) { is_any = true; });
     return is_any;
   };
@@ -132,11 +132,11 @@ void measure_in_row(const std::uint8_t* mask, int width, std::uint8_t* distances
 
 }  // namespace
 
-void ShadowLifting::lift(const Reconstruction& reconstruction, Image<Bgr>& picture) const {
-  const Rect& region = reconstruction.region;
+void ShadowLifting::lift(const Surfaces& surfaces, Image<Bgr>& picture) const {
+  const Rect& region = surfaces.region;
   for_rows(region.height, [&](Rows rows) {
     for (int y = region.y + rows.first; y < region.y + rows.last; ++y) {
-      const Bgr* const light = reconstruction.light.row(y) + region.x;
+      const Bgr* const light = surfaces.light.row(y) + region.x;
       const auto* const lights = reinterpret_cast<const std::uint8_t*>(light);
       auto* const levels = reinterpret_cast<std::uint8_t*>(picture.row(y) + region.x);
       for_each_shaded(light, region.width, [&](int first, int last) {
@@ -147,12 +147,12 @@ void ShadowLifting::lift(const Reconstruction& reconstruction, Image<Bgr>& pictu
 }
 
 void ShadowLifting::restore_outside(const Image<Bgr>& camera, const Mask& occlusion,
-                                    const Reconstruction& reconstruction, Image<Bgr>& picture) {
-  const Rect part = shaded_part(reconstruction);
+                                    const Surfaces& surfaces, Image<Bgr>& picture) {
+  const Rect part = shaded_part(surfaces);
   measure_distances(occlusion, part);
   for_rows(part.height, [&](Rows rows) {
     for (int y = part.y + rows.first; y < part.y + rows.last; ++y) {
-      const Bgr* light = reconstruction.light.row(y);
+      const Bgr* light = surfaces.light.row(y);
       const std::uint8_t* distances = distances_.row(y - part.y) - part.x;
       Bgr* colors = picture.row(y);
       for_each_within(distances, part.x, part.right(), [&](int x) {

@@ -3,22 +3,22 @@
 #include <vector>
 
 #include "diminish/image.h"
-#include "diminish/reconstruction.h"
+#include "diminish/surfaces.h"
 
 namespace diminish {
 
-/// Removes the shadows that the objects to remove cast (Reconstruction::light).
+/// Removes the shadows that the objects to remove cast (Surfaces::light).
 class ShadowLifting {
  public:
   /// Over this distance inside the mask's rim the shadow returns.
   static constexpr int fading_px = 12;
 
   /// Lifts the shadows in all of the region, inside and outside the mask.
-  void lift(const Reconstruction& reconstruction, Image<Bgr>& picture) const;
+  void lift(const Surfaces& surfaces, Image<Bgr>& picture) const;
   /// Restores the camera's picture outside the mask. The shadow returns over the last pixels before
   /// the mask's rim, so that no line shows where it continues outside.
-  void restore_outside(const Image<Bgr>& camera, const Mask& occlusion,
-                       const Reconstruction& reconstruction, Image<Bgr>& picture);
+  void restore_outside(const Image<Bgr>& camera, const Mask& occlusion, const Surfaces& surfaces,
+                       Image<Bgr>& picture);
 
  private:
   void measure_distances(const Mask& occlusion, const Rect& part);

@@ -12,14 +12,14 @@ namespace {
 class HalfInShadow : public ::testing::Test {
  protected:
   HalfInShadow() {
-    reconstruction.region = Rect{10, 10, 80, 80};
-    reconstruction.light.resize(100, 100, {255, 255, 255});
-    reconstruction.light.fill({10, 50, 80, 40}, {128, 128, 128});
+    surfaces.region = Rect{10, 10, 80, 80};
+    surfaces.light.resize(100, 100, {255, 255, 255});
+    surfaces.light.fill({10, 50, 80, 40}, {128, 128, 128});
     occlusion.fill({20, 20, 60, 60}, 255);
     picture.fill({0, 50, 100, 50}, {50, 60, 70});
   }
 
-  Reconstruction reconstruction;
+  Surfaces surfaces;
   Mask occlusion{100, 100, 0};
   Image<Bgr> picture{100, 100, {100, 120, 140}};
   ShadowLifting lifting;
@@ -27,7 +27,7 @@ class HalfInShadow : public ::testing::Test {
 
 TEST_F(HalfInShadow, ShadowsAreLifted) {
   Image<Bgr> lit = picture;
-  lifting.lift(reconstruction, lit);
+  lifting.lift(surfaces, lit);
   for (int y = 10; y < 90; ++y) {
     for (int x = 10; x < 90; ++x) {
       ASSERT_LE(std::abs(lit(x, y).g - 120), 1) << x << ' ' << y;
@@ -39,26 +39,26 @@ TEST_F(HalfInShadow, ShadowsAreLifted) {
 TEST(ShadowLifting, DividesByTheLightAndRounds) {
   // All levels by all lights, and a row whose length fits no vector.
   const Rect all{0, 0, 256 + 3, 256};
-  Reconstruction reconstruction;
-  reconstruction.region = all;
-  reconstruction.light.resize(all.width, all.height, {});
+  Surfaces surfaces;
+  surfaces.region = all;
+  surfaces.light.resize(all.width, all.height, {});
   Image<Bgr> picture(all.width, all.height);
   for (int y = 0; y < all.height; ++y) {
     for (int x = 0; x < all.width; ++x) {
       const auto level = static_cast<std::uint8_t>(x);
       const auto light = static_cast<std::uint8_t>(y);
       picture(x, y) = {level, light, level};
-      reconstruction.light(x, y) = {light, level, 255};
+      surfaces.light(x, y) = {light, level, 255};
     }
   }
   const Image<Bgr> before = picture;
-  ShadowLifting().lift(reconstruction, picture);
+  ShadowLifting().lift(surfaces, picture);
   const auto lit = [](int level, int light) {
     return std::min(255, (level * 255 + light / 2) / std::max(light, 1));
   };
   for (int y = 0; y < all.height; ++y) {
     for (int x = 0; x < all.width; ++x) {
-      const Bgr& light = reconstruction.light(x, y);
+      const Bgr& light = surfaces.light(x, y);
       ASSERT_EQ(picture(x, y).b, lit(before(x, y).b, light.b)) << x << ' ' << y;
       ASSERT_EQ(picture(x, y).g, lit(before(x, y).g, light.g)) << x << ' ' << y;
       ASSERT_EQ(picture(x, y).r, before(x, y).r) << x << ' ' << y;
@@ -69,8 +69,8 @@ TEST(ShadowLifting, DividesByTheLightAndRounds) {
 TEST_F(HalfInShadow, OutsideTheMaskTheCamerasPictureStaysAndNoLineShows) {
   const Image<Bgr> camera = picture;
   Image<Bgr> result = picture;
-  lifting.lift(reconstruction, result);
-  lifting.restore_outside(camera, occlusion, reconstruction, result);
+  lifting.lift(surfaces, result);
+  lifting.restore_outside(camera, occlusion, surfaces, result);
   for (int y = 0; y < 100; ++y) {
     for (int x = 0; x < 100; ++x) {
       if (occlusion(x, y) == 0) {
@@ -88,11 +88,11 @@ TEST_F(HalfInShadow, OutsideTheMaskTheCamerasPictureStaysAndNoLineShows) {
 }
 
 TEST_F(HalfInShadow, WithoutShadowNothingChanges) {
-  reconstruction.light.fill({255, 255, 255});
+  surfaces.light.fill({255, 255, 255});
   Image<Bgr> result = picture;
-  lifting.lift(reconstruction, result);
+  lifting.lift(surfaces, result);
   EXPECT_EQ(result, picture);
-  lifting.restore_outside(Image<Bgr>(100, 100), occlusion, reconstruction, result);
+  lifting.restore_outside(Image<Bgr>(100, 100), occlusion, surfaces, result);
   EXPECT_EQ(result, picture);
 }
 

@@ -101,11 +101,19 @@ class ComputeRasterizer : public Rasterizer {
   BufferTexture position_texture_, place_texture_, triangle_texture_;
 };
 
-const bool registered = Registry<Reconstructor>::add("gl", [](const Rig& rig) {
+std::unique_ptr<Reconstructor> make(const Rig& rig) {
   return std::make_unique<GlReconstructor>(rig, [](const Rig& r, const FrameUpload& upload) {
     return std::make_unique<ComputeRasterizer>(r, upload);
   });
-});
+}
+
+Reconstructor::Suited suited() {
+  static const bool is_hardware_there = has_hardware_driver();
+  using Suited = Reconstructor::Suited;
+  return is_hardware_there ? Suited::with_hardware : Suited::when_named;
+}
+
+const bool registered = Registry<Reconstructor>::add("gl", {make, suited});
 
 }  // namespace
 }  // namespace diminish::gl

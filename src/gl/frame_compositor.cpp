@@ -7,7 +7,6 @@
 #include "gl/composition_rules.h"
 #include "membrane/soft_membrane.h"
 #include "reconstruct/clear_outside.h"
-#include "scene/color_maps.h"
 
 namespace diminish::gl {
 namespace {
@@ -20,6 +19,9 @@ Program pass(std::vector<std::string> files, const char* define = "") {
 std::string mode_file(const std::string& mode) {
   return "mode_" + mode + ".glsl";
 }
+
+/// Shows the background, and nothing else.
+constexpr const char* plain_mode = "mode_remove.glsl";
 
 constexpr std::size_t cells_of_a_shadow =
     std::size_t{CastShadows::grid_cells} * CastShadows::grid_cells;
@@ -45,20 +47,28 @@ void pack_picture(const Image<Bgr>& camera, const Mask& mask, const Rect& region
 
 }  // namespace
 
-Reach FrameCompositor::reach(const Options& options) {
-  const bool maps_colors =
-      options.color_correct == "none" || find_mapped_method(options.color_correct) != nullptr;
-  if (!maps_colors) return Reach::reconstruction;
-  const bool inpaints = options.inpaint == "surfaces" || options.inpaint == "none";
-  return inpaints && has_shader_file(mode_file(options.mode)) ? Reach::picture : Reach::seen;
+bool FrameCompositor::takes_over(Stage stage, const FrameMethods& methods) {
+  using ColorRule = ColorCorrector::Declaration::Rule;
+  using FillingRule = Inpainter::Declaration::Rule;
+  switch (stage) {
+    case Stage::compositing:
+    case Stage::colors:
+      return methods.color.rule != ColorRule::own;
+    case Stage::inpainting:
+    case Stage::finish:
+      return methods.inpainting.rule != FillingRule::own &&
+             has_shader_file(mode_file(methods.mode));
+    default:
+      return false;
+  }
 }
 
-bool FrameCompositor::gives_reconstruction(const FrameInputs& inputs) {
-  return inputs.wants_reconstruction || reach(inputs.options) != Reach::picture;
+bool FrameCompositor::gives_reconstruction(const FrameInputs& inputs, Stage last) {
+  return inputs.wants_reconstruction || last != Stage::finish;
 }
 
-bool FrameCompositor::gives_picture(const FrameInputs& inputs) {
-  return !inputs.texture || reach(inputs.options) != Reach::picture;
+bool FrameCompositor::gives_picture(const FrameInputs& inputs, Stage last) {
+  return !inputs.texture || last != Stage::finish;
 }
 
 std::size_t FrameCompositor::most_added_bytes(const Rig& rig) {
@@ -104,7 +114,8 @@ FrameCompositor::FrameCompositor(const Rig& rig)
   wait_until_done();
 }
 
-void FrameCompositor::pack(const FrameInputs& inputs, FrameUpload& upload) {
+void FrameCompositor::pack(const FrameInputs& inputs, Stage last, FrameUpload& upload) {
+  last_ = last;
   const Options& options = inputs.options;
   region_ = inputs.region;
   std::size_t begin = 0;
@@ -125,9 +136,10 @@ void FrameCompositor::pack(const FrameInputs& inputs, FrameUpload& upload) {
     block_.shadows[block_.shadow_count++] = ShadowBlock(shadow);
   }
 
-  const MappedMethod* const method = find_mapped_method(options.color_correct);
-  block_.mixes_second = method && upload.blends() ? 1 : 0;
-  const bool has_membrane = method && method->with_membrane;
+  using ColorRule = ColorCorrector::Declaration::Rule;
+  const ColorCorrector::Declaration& color = inputs.methods.color;
+  block_.mixes_second = color.maps != ColorMapModel::none && upload.blends() ? 1 : 0;
+  const bool has_membrane = color.rule == ColorRule::maps_and_membrane;
   block_.node_columns = has_membrane ? region_.width / SoftMembrane::cell + 2 : 0;
   block_.node_rows = has_membrane ? region_.height / SoftMembrane::cell + 2 : 0;
   for (int k = 0; k < upload.cameras(); ++k) {
@@ -135,8 +147,10 @@ void FrameCompositor::pack(const FrameInputs& inputs, FrameUpload& upload) {
     block_.maps[k] = ColorMapBlock(inputs.color_maps[source], source);
   }
 
-  const bool to_the_end = reach(options) == Reach::picture;
-  const bool leaves_unknown = to_the_end && options.inpaint == "none";
+  using FillingRule = Inpainter::Declaration::Rule;
+  const bool to_the_end = last == Stage::finish;
+  const bool leaves_unknown =
+      to_the_end && inputs.methods.inpainting.rule == FillingRule::leaves_unknown;
   block_.missing_code = leaves_unknown ? provenance::unknown : provenance::inpainted;
   const int rim_px = to_the_end ? soft_rim_width_px(options, !inputs.shadows.empty()) : 0;
   block_.rim_px = static_cast<std::uint32_t>(rim_px);
@@ -175,13 +189,13 @@ void FrameCompositor::run(const FrameInputs& inputs, const FrameUpload& upload,
   });
   correct_colors(timer);
   if (!inputs.shadows.empty()) timer.measure("lift", [&] { run_pass(lift_); });
-  const bool to_the_end = reach(inputs.options) == Reach::picture;
+  const bool to_the_end = last_ == Stage::finish;
   if (to_the_end) finish(inputs, upload, reconstruction, timer);
-  const Program& show_mode = show(to_the_end ? inputs.options.mode : "remove");
+  const Program& show_mode = show(to_the_end ? mode_file(inputs.methods.mode) : plain_mode);
   timer.measure("show", [&] { run_pass(show_mode); });
   timer.measure("download", [&] {
     download_.begin({picture_, counts_, surface_, reconstruction}, region_,
-                    {gives_picture(inputs), gives_reconstruction(inputs)}, upload);
+                    {gives_picture(inputs, last_), gives_reconstruction(inputs, last_)}, upload);
   });
 }
 
@@ -204,7 +218,7 @@ void FrameCompositor::correct_colors(PassTimer& timer) const {
 /// What comes after the pixels that cameras see.
 void FrameCompositor::finish(const FrameInputs& inputs, const FrameUpload& upload,
                              const ResultBuffers& reconstruction, PassTimer& timer) {
-  if (inputs.options.inpaint == "surfaces") {
+  if (inputs.methods.inpainting.rule == Inpainter::Declaration::Rule::by_surface) {
     const Rect window = intersect(grow(inputs.objects, 1), region_);
     filling_.fill({picture_, state_, surface_}, region_, region_, window, timer);
     bind(upload, reconstruction);
@@ -232,10 +246,10 @@ void FrameCompositor::finish(const FrameInputs& inputs, const FrameUpload& uploa
   }
 }
 
-const Program& FrameCompositor::show(const std::string& mode) {
-  const auto found = shows_.find(mode);
+const Program& FrameCompositor::show(const std::string& file) {
+  const auto found = shows_.find(file);
   if (found != shows_.end()) return found->second;
-  return shows_.emplace(mode, pass({mode_file(mode), "show.comp"})).first->second;
+  return shows_.emplace(file, pass({file, "show.comp"})).first->second;
 }
 
 }  // namespace diminish::gl

@@ -20,19 +20,20 @@ namespace diminish::gl {
 /// Made, used (but for what is said) and deleted while the context is current.
 class FrameCompositor {
  public:
-  /// What can stay on the GPU. Everything that is processor-only is so by this rule.
-  static Reach reach(const Options& options);
+  /// ComposingReconstructor::takes_over. Everything that only the CPU does is so by this rule.
+  static bool takes_over(Stage stage, const FrameMethods& methods);
   /// Whether the reconstruction is filled, too.
-  static bool gives_reconstruction(const FrameInputs& inputs);
+  static bool gives_reconstruction(const FrameInputs& inputs, Stage last);
   /// Whether picture and provenance are.
-  static bool gives_picture(const FrameInputs& inputs);
+  static bool gives_picture(const FrameInputs& inputs, Stage last);
   /// What `pack` adds to an upload at most.
   static std::size_t most_added_bytes(const Rig& rig);
 
   explicit FrameCompositor(const Rig& rig);
 
-  /// Adds the frame to the upload, which has packed it; needs no context.
-  void pack(const FrameInputs& inputs, FrameUpload& upload);
+  /// Adds the frame to the upload, which has packed it; needs no context. last: the stage up to
+  /// which the frame is done here.
+  void pack(const FrameInputs& inputs, Stage last, FrameUpload& upload);
   /// After the upload was sent. reconstruction: of the region, in the upload's order of cameras.
   /// What was asked for is on its way to the processor afterwards.
   void run(const FrameInputs& inputs, const FrameUpload& upload,
@@ -51,15 +52,16 @@ class FrameCompositor {
   void correct_colors(PassTimer& timer) const;
   void finish(const FrameInputs& inputs, const FrameUpload& upload,
               const ResultBuffers& reconstruction, PassTimer& timer);
-  const Program& show(const std::string& mode);
+  const Program& show(const std::string& file);
 
   CompositionBlock block_{};
+  Stage last_ = Stage::drawing;
   std::size_t block_begin_ = 0;
   Rect region_;
 
   Program label_, light_, sort_, membrane_sums_, membrane_solve_, map_colors_, mix_second_, lift_,
       smooth_guide_, smooth_colors_, row_distances_, restore_, rim_;
-  std::map<std::string, Program> shows_;  ///< by view mode
+  std::map<std::string, Program> shows_;  ///< by the view mode's file
   SurfaceFilling filling_;
   Buffer picture_, values_, state_, surface_, distances_, counts_, nodes_;
   Buffer ray_nodes_;

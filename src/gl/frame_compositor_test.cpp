@@ -5,7 +5,7 @@
 
 #include <optional>
 
-#include "composite/compositor.h"
+#include "compose.h"
 #include "diminish/view_mode.h"
 #include "diminished_wall.h"
 #include "gl/context.h"
@@ -19,16 +19,19 @@ class Composition : public ::testing::Test, protected testing::DiminishedWall {
  protected:
   /// By the stages of the processor.
   void compose_by_processor(bool with_shadows) {
-    Reconstruction& made = expected.reconstruction;
-    planes.label(made);
+    const Reconstruction& made = expected.reconstruction;
+    planes.label(made, expected.surfaces);
     if (with_shadows) {
-      shadows.shade(made);
+      shadows.shade(made, expected.surfaces);
     } else {
-      made.light.resize(0, 0);
+      expected.surfaces.light.resize(0, 0);
     }
-    compositor.prepare(frame.frame.color, masks.color, options, made.samples);
-    compositor.composite(frame.frame.color, masks.color, bounding_box(masks.color), options,
-                         expected);
+    composing.compose(frame.frame.color, masks.color, options, samples, expected);
+  }
+
+  FrameMethods methods() const {
+    return {Registry<ColorCorrector>::get(options.color_correct)()->declaration(),
+            Registry<Inpainter>::get(options.inpaint)()->declaration(), options.mode};
   }
 
   template <class Pixel, class PixelAt>
@@ -45,16 +48,21 @@ class Composition : public ::testing::Test, protected testing::DiminishedWall {
   }
 
   void compose_on_gpu(bool with_shadows) {
-    if (const MappedMethod* method = find_mapped_method(options.color_correct)) {
-      maps.fit(frame.frame.color, masks.color, samples, method->model);
-    } else {
-      maps.clear();
-    }
+    const FrameMethods declared = methods();
+    maps.fit(frame.frame.color, masks.color, samples, declared.color.maps);
     const auto cast = with_shadows ? shadows.shadows() : std::span<const CastShadows::Shadow>();
-    const FrameInputs inputs{
-        frame.frame, depths,  frame.poses,      masks, bounding_box(masks.color),
-        region,      options, &planes.planes(), cast,  maps.by_source(),
-        true};
+    const FrameInputs inputs{frame.frame,
+                             depths,
+                             frame.poses,
+                             masks,
+                             bounding_box(masks.color),
+                             region,
+                             options,
+                             declared,
+                             &planes.planes(),
+                             cast,
+                             maps.by_source(),
+                             true};
     const Image<Bgr>& camera = frame.frame.color;
     result.picture = camera;
     result.provenance.resize(camera.width(), camera.height(), provenance::camera);
@@ -67,7 +75,7 @@ class Composition : public ::testing::Test, protected testing::DiminishedWall {
       upload.emplace(frame.rig, gl::FrameCompositor::most_added_bytes(frame.rig));
     }
     upload->pack(frame.frame, depths, frame.poses, masks, region, options);
-    on_gpu->pack(inputs, *upload);
+    on_gpu->pack(inputs, Stage::finish, *upload);
     upload->send();
     gl::ResultBuffers reconstruction;
     const Reconstruction& made = expected.reconstruction;
@@ -120,7 +128,7 @@ class Composition : public ::testing::Test, protected testing::DiminishedWall {
   static constexpr std::size_t most_others = 100;
   Options options;
   ColorMaps maps;
-  Compositor compositor;
+  testing::Composing composing;
   DiminishedFrame result;
   gl::Context context;
   std::optional<gl::FrameUpload> upload;
@@ -133,6 +141,8 @@ TEST_F(Composition, LabelsAndLightAreTheProcessors) {
   compose_on_gpu(true);
   const Reconstruction& a = expected.reconstruction;
   const Reconstruction& b = result.reconstruction;
+  const Surfaces& on_cpu = expected.surfaces;
+  const Surfaces& on_gpu = result.surfaces;
   EXPECT_EQ(a.color, b.color);
   EXPECT_EQ(a.depth_m, b.depth_m);
   EXPECT_EQ(a.source, b.source);
@@ -144,13 +154,13 @@ TEST_F(Composition, LabelsAndLightAreTheProcessors) {
   std::size_t shaded = 0;
   for (int y = region.y; y < region.bottom(); ++y) {
     for (int x = region.x; x < region.right(); ++x) {
-      other_labels += a.surface(x, y) != b.surface(x, y) ? 1U : 0U;
-      ++by_label[a.surface(x, y)];
-      shaded += a.light(x, y) != Bgr{255, 255, 255} ? 1U : 0U;
+      other_labels += on_cpu.label(x, y) != on_gpu.label(x, y) ? 1U : 0U;
+      ++by_label[on_cpu.label(x, y)];
+      shaded += on_cpu.light(x, y) != Bgr{255, 255, 255} ? 1U : 0U;
     }
   }
   EXPECT_LE(other_labels, 5U);
-  EXPECT_LE(other_colors(a.light, b.light), 10U);
+  EXPECT_LE(other_colors(on_cpu.light, on_gpu.light), 10U);
   EXPECT_GT(by_label[surface_label::first_plane], 10000U);
   EXPECT_GT(by_label[surface_label::foreground], 1000U);
   EXPECT_GT(shaded, 1000U);
@@ -166,7 +176,7 @@ TEST_F(Composition, ColorsAreTheProcessors) {
       resize_second(false, rig.color, expected.reconstruction.second);
     for (const char* method : {"none", "affine", "field", "affine_membrane", "field_membrane"}) {
       options.color_correct = method;
-      ASSERT_EQ(gl::FrameCompositor::reach(options), Reach::picture);
+      ASSERT_TRUE(gl::FrameCompositor::takes_over(Stage::colors, methods()));
       for (const bool with_shadows : {false, true}) {
         compose_by_processor(with_shadows);
         compose_on_gpu(with_shadows);
@@ -215,25 +225,29 @@ TEST_F(Composition, ViewModesAreTheProcessors) {
   masks.color.fill({90, 236, 40, 20}, 255);
   for (const std::string& mode : Registry<ViewMode>::names()) {
     options.mode = mode;
-    ASSERT_EQ(gl::FrameCompositor::reach(options), Reach::picture) << mode;
+    ASSERT_TRUE(gl::FrameCompositor::takes_over(Stage::finish, methods())) << mode;
     compose_by_processor(true);
     compose_on_gpu(true);
     expect_same(mode);
   }
 }
 
-// What the GPU does not do is left to the processor.
-TEST(FrameCompositor, SaysHowFarItGoes) {
-  Options options;
-  options.inpaint = "harmonic";
-  EXPECT_EQ(gl::FrameCompositor::reach(options), Reach::seen);
-  options.color_correct = "poisson";
-  EXPECT_EQ(gl::FrameCompositor::reach(options), Reach::reconstruction);
-  options.color_correct = "none";
-  options.inpaint = "none";
-  EXPECT_EQ(gl::FrameCompositor::reach(options), Reach::picture);
-  options.mode = "another";
-  EXPECT_EQ(gl::FrameCompositor::reach(options), Reach::seen);
+// What the GPU does not do is left to the CPU, stage by stage.
+TEST(FrameCompositor, SaysWhatItTakesOver) {
+  const auto takes = [](Stage stage, const char* correction, const char* inpainting,
+                        const char* mode) {
+    return gl::FrameCompositor::takes_over(
+        stage, {Registry<ColorCorrector>::get(correction)()->declaration(),
+                Registry<Inpainter>::get(inpainting)()->declaration(), mode});
+  };
+  EXPECT_FALSE(takes(Stage::depth, "none", "none", "remove"));
+  EXPECT_TRUE(takes(Stage::compositing, "field_membrane", "harmonic", "remove"));
+  EXPECT_TRUE(takes(Stage::colors, "field_membrane", "harmonic", "remove"));
+  EXPECT_FALSE(takes(Stage::inpainting, "field_membrane", "harmonic", "remove"));
+  EXPECT_FALSE(takes(Stage::compositing, "poisson", "harmonic", "remove"));
+  EXPECT_TRUE(takes(Stage::inpainting, "none", "none", "remove"));
+  EXPECT_TRUE(takes(Stage::finish, "affine", "surfaces", "xray"));
+  EXPECT_FALSE(takes(Stage::finish, "affine", "surfaces", "another"));
 }
 
 }  // namespace

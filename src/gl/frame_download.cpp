@@ -65,7 +65,7 @@ void FrameDownload::read(const FrameInputs& inputs, const FrameUpload& upload,
     unpack(reinterpret_cast<const ResultPixel*>(from + at.result),
            reinterpret_cast<const SecondPixel*>(from + at.second), upload, result.reconstruction);
   }
-  read_surface(inputs, result.reconstruction);
+  read_surfaces(inputs, result.surfaces);
 }
 
 void FrameDownload::read_picture(DiminishedFrame& result) const {
@@ -84,20 +84,20 @@ void FrameDownload::read_picture(DiminishedFrame& result) const {
   });
 }
 
-void FrameDownload::read_surface(const FrameInputs& inputs, Reconstruction& reconstruction) const {
+void FrameDownload::read_surfaces(const FrameInputs& inputs, Surfaces& surfaces) const {
   const Rect size = wanted_.reconstruction ? inputs.frame.color.bounds() : Rect{};
   const Rect planes = inputs.planes ? size : Rect{};
   const Rect shaded = inputs.shadows.empty() ? Rect{} : size;
-  reconstruction.surface.resize(planes.width, planes.height);
-  reconstruction.light.resize(shaded.width, shaded.height);
+  surfaces.label.resize(planes.width, planes.height);
+  surfaces.light.resize(shaded.width, shaded.height);
   if (planes.empty()) return;
   const auto* word =
       reinterpret_cast<const std::uint32_t*>(downloaded_.data() + Layout(region_).surface);
   for (int y = region_.y; y < region_.bottom(); ++y) {
     for (int x = region_.x; x < region_.right(); ++x, ++word) {
-      reconstruction.surface(x, y) = static_cast<std::uint8_t>(*word);
+      surfaces.label(x, y) = static_cast<std::uint8_t>(*word);
       if (shaded.empty()) continue;
-      reconstruction.light(x, y) = {static_cast<std::uint8_t>(*word >> 8),
+      surfaces.light(x, y) = {static_cast<std::uint8_t>(*word >> 8),
                                     static_cast<std::uint8_t>(*word >> 16),
                                     static_cast<std::uint8_t>(*word >> 24)};
     }

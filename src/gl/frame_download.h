@@ -20,7 +20,7 @@ class FrameDownload {
   struct Source {
     const Buffer& picture;  ///< colour, and provenance in the highest byte
     const Buffer& counts;
-    const Buffer& surface;  ///< Reconstruction::surface, and ::light above it
+    const Buffer& surface;  ///< Surfaces::label, and ::light above it
     const ResultBuffers& reconstruction;
   };
   /// What to download besides the counts.
@@ -42,7 +42,7 @@ class FrameDownload {
 
  private:
   void read_picture(DiminishedFrame& result) const;
-  void read_surface(const FrameInputs& inputs, Reconstruction& reconstruction) const;
+  void read_surfaces(const FrameInputs& inputs, Surfaces& surfaces) const;
 
   Rect region_;
   Wanted wanted_{};

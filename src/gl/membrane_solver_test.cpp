@@ -69,15 +69,15 @@ TEST_P(GlMembrane, SolvesWhatThePlainVersionsSolve) {
     }
     Image<Bgr> a = frame.color;
     Image<Bgr> b = frame.color;
-    on_gpu->correct(frame.color, result.mask, result.reconstruction, a);
-    plain->correct(frame.color, result.mask, result.reconstruction, b);
+    on_gpu->correct({frame.color, result.mask, result.reconstruction, {}}, a);
+    plain->correct({frame.color, result.mask, result.reconstruction, {}}, b);
     const Difference corrected = compare(a, b, seen);
     EXPECT_GT(corrected.pixels, 1000U);
     EXPECT_LE(corrected.other * 1000, corrected.pixels) << "at most " << corrected.most;
 
     Image<Bgr> c = result.picture;
     Image<Bgr> d = result.picture;
-    const Holes holes{missing, result.mask, result.reconstruction};
+    const Holes holes{missing, result.mask, result.surfaces};
     EXPECT_TRUE(filling_on_gpu->inpaint(holes, options, c));
     EXPECT_TRUE(plain_filling->inpaint(holes, options, d));
     const Difference filled = compare(c, d, missing);

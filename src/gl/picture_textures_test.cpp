@@ -66,7 +66,7 @@ class Application {
 };
 
 constexpr const char* by_processor =
-    "the picture was made by the processor, and uploaded to its texture";
+    "the picture was made by the CPU, and uploaded to its texture";
 
 Options on_gpu() {
   Options options;
@@ -240,7 +240,7 @@ TEST_F(Textures, MayBeWantedByOneApplicationAfterTheOther) {
     pipeline.process(scene.frame, result);
     EXPECT_EQ(other.shown(pipeline.texture()), expected.picture);
     EXPECT_EQ(result.reconstruction.color, expected.reconstruction.color);
-    EXPECT_EQ(result.reconstruction.surface, expected.reconstruction.surface);
+    EXPECT_EQ(result.surfaces.label, expected.surfaces.label);
   }
   // Its context is gone; the textures are not.
   pipeline.process(scene.frame, result);

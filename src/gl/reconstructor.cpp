@@ -20,10 +20,12 @@ std::vector<std::string> files(const Rasterizer& rasterizer, const char* last) {
 }
 
 /// Gives the reconstruction its region, and as much memory as will be filled.
-void begin(const Rig& rig, const FrameInputs& inputs, Reconstruction& reconstruction) {
-  reconstruction.surface.resize(0, 0);
-  reconstruction.light.resize(0, 0);
-  if (FrameCompositor::gives_reconstruction(inputs)) {
+void begin(const Rig& rig, const FrameInputs& inputs, Stage last, DiminishedFrame& result) {
+  Reconstruction& reconstruction = result.reconstruction;
+  result.surfaces.region = inputs.region;
+  result.surfaces.label.resize(0, 0);
+  result.surfaces.light.resize(0, 0);
+  if (FrameCompositor::gives_reconstruction(inputs, last)) {
     return clear_outside(rig.color, inputs.region, reconstruction);
   }
   reconstruction.region = inputs.region;
@@ -146,19 +148,24 @@ void GlReconstructor::reconstruct(const FrameSet& frame, const DepthImages& dept
          reinterpret_cast<const SecondPixel*>(from + second_at), r.upload, reconstruction);
 }
 
-Reach GlReconstructor::reach(const Options& options) const {
-  return FrameCompositor::reach(options);
+bool GlReconstructor::takes_over(Stage stage, const FrameMethods& methods) const {
+  return FrameCompositor::takes_over(stage, methods);
 }
 
-void GlReconstructor::compose(const FrameInputs& inputs, DiminishedFrame& result) {
+std::string GlReconstructor::mask_drawer() const {
+  // A software driver would only take longer.
+  return context_.driver().software ? Reconstructor::mask_drawer() : "gl";
+}
+
+void GlReconstructor::compose(const FrameInputs& inputs, Stage last, DiminishedFrame& result) {
   passes_.clear();
-  auto* const textures = FrameCompositor::gives_picture(inputs)
+  auto* const textures = FrameCompositor::gives_picture(inputs, last)
                              ? nullptr
                              : &dynamic_cast<PictureTextures&>(*inputs.texture);
   if (textures) share_with(textures->context());
   Resources& r = *resources_;
   const TiledRegion& region = inputs.region;
-  begin(rig_, inputs, result.reconstruction);
+  begin(rig_, inputs, last, result);
   if (region.empty()) {
     resize_second(false, rig_.color, result.reconstruction.second);
     show_camera(inputs, textures, result);
@@ -171,10 +178,10 @@ void GlReconstructor::compose(const FrameInputs& inputs, DiminishedFrame& result
     context_.check("making the compositor's programs and buffers");
   }
   r.upload.pack(inputs.frame, inputs.depths, inputs.poses, inputs.masks, region, inputs.options);
-  resize_second(r.upload.blends() && FrameCompositor::gives_reconstruction(inputs), rig_.color,
+  resize_second(r.upload.blends() && FrameCompositor::gives_reconstruction(inputs, last), rig_.color,
                 result.reconstruction.second);
   prepare_blending();
-  r.compositor->pack(inputs, r.upload);
+  r.compositor->pack(inputs, last, r.upload);
   {
     const Current current(context_);
     draw(region);

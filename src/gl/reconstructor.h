@@ -50,8 +50,9 @@ class GlReconstructor : public ComposingReconstructor {
   void reconstruct(const FrameSet& frame, const DepthImages& depths, const Poses& poses,
                    const OcclusionMasks& masks, const TiledRegion& region, const Options& options,
                    Reconstruction& reconstruction) override;
-  Reach reach(const Options& options) const override;
-  void compose(const FrameInputs& inputs, DiminishedFrame& result) override;
+  bool takes_over(Stage stage, const FrameMethods& methods) const override;
+  void compose(const FrameInputs& inputs, Stage last, DiminishedFrame& result) override;
+  std::string mask_drawer() const override;
   const std::string& device() const override { return device_; }
   const std::vector<GpuPass>& gpu_passes() const override { return passes_; }
 

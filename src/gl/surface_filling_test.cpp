@@ -23,7 +23,7 @@ namespace {
 struct Task {
   Image<Bgr> picture;
   Image<std::uint8_t> provenance;
-  Reconstruction reconstruction;
+  Surfaces surfaces;
 
   Mask where(auto condition) const {
     Mask mask(picture.width(), picture.height(), 0);
@@ -40,7 +40,7 @@ struct Task {
   }
   bool fill_on_cpu(Image<Bgr>& filled) const {
     filled = picture;
-    return Registry<Inpainter>::get("surfaces")()->inpaint({missing(), occlusion(), reconstruction},
+    return Registry<Inpainter>::get("surfaces")()->inpaint({missing(), occlusion(), surfaces},
                                                            {}, filled);
   }
 };
@@ -60,8 +60,8 @@ class Gpu {
     const gl::Current current(context_);
     Resources& r = *resources_;
     const Rect whole = task.picture.bounds();
-    const bool has_surfaces = !task.reconstruction.surface.empty();
-    const Rect region = has_surfaces ? task.reconstruction.region : Rect{};
+    const bool has_surfaces = !task.surfaces.label.empty();
+    const Rect region = has_surfaces ? task.surfaces.region : Rect{};
     const Rect window = intersect(grow(bounding_box(task.occlusion()), 1), whole);
     std::vector<std::uint32_t> values;
     for (const Bgr& color : task.picture) {
@@ -72,7 +72,7 @@ class Gpu {
     upload(values, r.provenance);
     values.assign(1, 0);
     for (int y = region.y; y < region.bottom(); ++y) {
-      const std::uint8_t* row = task.reconstruction.surface.row(y);
+      const std::uint8_t* row = task.surfaces.label.row(y);
       values.insert(values.end() - 1, row + region.x, row + region.right());
     }
     upload(values, r.surface);
@@ -175,9 +175,9 @@ Task ragged_scene(int width, int height, const Rect& region, std::uint32_t seed)
   Task task;
   task.picture.resize(width, height);
   task.provenance.resize(width, height, provenance::camera);
-  Reconstruction& reconstruction = task.reconstruction;
-  reconstruction.region = region;
-  reconstruction.surface.resize(width, height, surface_label::unknown);
+  Surfaces& surfaces = task.surfaces;
+  surfaces.region = region;
+  surfaces.label.resize(width, height, surface_label::unknown);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       const bool is_wall = y < height / 2 + x / 8;
@@ -189,8 +189,8 @@ Task ragged_scene(int width, int height, const Rect& region, std::uint32_t seed)
       task.picture(x, y) = is_box    ? Bgr{level(200), level(30), level(30)}
                            : is_wall ? Bgr{level(90 + shade), level(120), level(140)}
                                      : Bgr{level(40), level(90 - shade / 2), level(160)};
-      reconstruction.surface(x, y) = is_box ? surface_label::foreground : is_wall ? wall : table;
-      if (noise.below(200) == 0) reconstruction.surface(x, y) = surface_label::unknown;
+      surfaces.label(x, y) = is_box ? surface_label::foreground : is_wall ? wall : table;
+      if (noise.below(200) == 0) surfaces.label(x, y) = surface_label::unknown;
     }
   }
   // Discs of all sizes, many of which meet.
@@ -211,8 +211,8 @@ Task ragged_scene(int width, int height, const Rect& region, std::uint32_t seed)
         }
         task.provenance(x, y) = is_seen ? provenance::first_rgbd : provenance::inpainted;
         // Planes go on behind what is in front of them.
-        if (reconstruction.surface(x, y) == surface_label::foreground && !is_seen) {
-          reconstruction.surface(x, y) = y < height / 2 + x / 8 ? wall : table;
+        if (surfaces.label(x, y) == surface_label::foreground && !is_seen) {
+          surfaces.label(x, y) = y < height / 2 + x / 8 ? wall : table;
         }
       }
     }
@@ -227,7 +227,7 @@ TEST(GlSurfaceFilling, FillsRaggedHolesOfSeveralPlanes) {
   expect_same_as_cpu(gpu, ragged_scene(95, 401, {0, 0, 95, 401}, 3), "narrow");
   expect_same_as_cpu(gpu, ragged_scene(9, 7, {0, 0, 9, 7}, 4), "tiny");
   Task without = ragged_scene(320, 240, {}, 5);
-  without.reconstruction.surface = {};
+  without.surfaces.label = {};
   expect_same_as_cpu(gpu, without, "no surfaces");
 }
 
@@ -236,9 +236,9 @@ TEST(GlSurfaceFilling, FillsWhatNothingIsKnownOfFromAround) {
   Gpu gpu;
   Task task = ragged_scene(320, 240, {0, 0, 320, 240}, 6);
   task.provenance.fill({100, 60, 120, 120}, provenance::inpainted);
-  task.reconstruction.surface.fill({90, 50, 140, 140}, wall);
-  task.reconstruction.surface.fill({120, 80, 60, 70}, floor_plane);
-  task.reconstruction.surface.fill({150, 100, 40, 30}, floor_plane + 1);
+  task.surfaces.label.fill({90, 50, 140, 140}, wall);
+  task.surfaces.label.fill({120, 80, 60, 70}, floor_plane);
+  task.surfaces.label.fill({150, 100, 40, 30}, floor_plane + 1);
   expect_same_as_cpu(gpu, task, "planes within a hole");
   // Afterwards there is none again.
   expect_same_as_cpu(gpu, ragged_scene(320, 240, {0, 0, 320, 240}, 7), "no rest");
@@ -274,7 +274,7 @@ TEST_P(GlSurfaceFillingOnRecordings, FillsAsTheProcessorDoes) {
   DiminishedFrame result;
   for (int i = 0; i < 3 && source->next(frame); ++i) {
     pipeline.process(frame, result);
-    expect_same_as_cpu(gpu, {result.picture, result.provenance, result.reconstruction},
+    expect_same_as_cpu(gpu, {result.picture, result.provenance, result.surfaces},
                              frame.name);
   }
 }

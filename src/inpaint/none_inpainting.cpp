@@ -6,6 +6,8 @@ namespace {
 /// Leaves unknown pixels black.
 class NoInpainting : public Inpainter {
  public:
+  Declaration declaration() const override { return {.rule = Declaration::Rule::leaves_unknown}; }
+
   bool inpaint(const Holes& holes, const Options&, Image<Bgr>& picture) override {
     const Mask& missing = holes.missing;
     for (int y = 0; y < missing.height(); ++y) {

@@ -11,6 +11,8 @@ class OpenCvInpainting : public Inpainter {
  public:
   explicit OpenCvInpainting(int method) : method_(method) {}
 
+  Declaration declaration() const override { return {.simpler = "harmonic"}; }
+
   bool inpaint(const Holes& holes, const Options& options, Image<Bgr>& picture) override {
     const Mask& missing = holes.missing;
     const Rect box = bounding_box(missing);

@@ -4,9 +4,9 @@
 
 namespace diminish {
 
-void PlaneColors::collect(const Mask& occlusion, const Reconstruction& reconstruction,
+void PlaneColors::collect(const Mask& occlusion, const Surfaces& surfaces,
                           const Image<Bgr>& picture) {
-  region_ = intersect(reconstruction.region, reconstruction.surface.bounds());
+  region_ = intersect(surfaces.region, surfaces.label.bounds());
   columns_ = (region_.width + cell - 1) / cell;
   rows_ = (region_.height + cell - 1) / cell;
   find_objects(occlusion);
@@ -17,7 +17,7 @@ void PlaneColors::collect(const Mask& occlusion, const Reconstruction& reconstru
   std::for_each(cell_row(0), cell_row(1), clear);
   for (int row = 0; row < rows_; ++row) {
     std::for_each(cell_row(row + 1), cell_row(row + 2), clear);
-    add_row(row, reconstruction, picture);
+    add_row(row, surfaces.label, picture);
     const Cell* above = cell_row(row);
     Cell* own = cell_row(row + 1);
     for (int plane = 0; plane < planes; ++plane) {
@@ -54,16 +54,16 @@ void PlaneColors::find_objects(const Mask& occlusion) {
 }
 
 /// The colours of a row of cells, each in the entry to its lower right.
-void PlaneColors::add_row(int row, const Reconstruction& reconstruction,
+void PlaneColors::add_row(int row, const Image<std::uint8_t>& labels,
                           const Image<Bgr>& picture) {
   Cell* own = cell_row(row + 1) + 1;
   const std::uint8_t* near = near_object_.row(row);
   const int end = std::min((row + 1) * cell, region_.height);
   for (int y = row * cell; y < end; y += step) {
-    const std::uint8_t* surface = reconstruction.surface.row(region_.y + y) + region_.x;
+    const std::uint8_t* label = labels.row(region_.y + y) + region_.x;
     const Bgr* colors = picture.row(region_.y + y) + region_.x;
     for (int x = 0; x < region_.width; x += step) {
-      const int plane = surface[x] - surface_label::first_plane;
+      const int plane = label[x] - surface_label::first_plane;
       if (plane < 0 || plane >= planes || near[x / cell] != 0) continue;
       own[x / cell].sums[plane] += Sum(colors[x].b, colors[x].g, colors[x].r, 1);
     }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "diminish/image.h"
-#include "diminish/reconstruction.h"
+#include "diminish/surfaces.h"
 
 namespace diminish {
 
@@ -22,10 +22,9 @@ class PlaneColors {
   static constexpr int fewest = 24 / (step * step);  ///< fewest pixels for a mean
 
   /// occlusion: the objects' mask in `picture`.
-  void collect(const Mask& occlusion, const Reconstruction& reconstruction,
-               const Image<Bgr>& picture);
+  void collect(const Mask& occlusion, const Surfaces& surfaces, const Image<Bgr>& picture);
   /// The mean colour of a plane around a pixel. False where too little of it is seen or the pixel
-  /// is outside the reconstruction's region. Cost: four lookups (summed-area table, Crow 1984).
+  /// is outside the surfaces' region. Cost: four lookups (summed-area table, Crow 1984).
   bool around(int x, int y, std::uint8_t label, Eigen::Array3f& mean) const;
 
  private:
@@ -35,7 +34,7 @@ class PlaneColors {
     Sum sums[planes];
   };
   void find_objects(const Mask& occlusion);
-  void add_row(int row, const Reconstruction& reconstruction, const Image<Bgr>& picture);
+  void add_row(int row, const Image<std::uint8_t>& labels, const Image<Bgr>& picture);
   Cell* cell_row(int row) {
     return table_.data() + static_cast<std::ptrdiff_t>(row) * (columns_ + 1);
   }

@@ -32,13 +32,15 @@ constexpr Code outside = open | label_bits;
 /// is left is filled from all pixels around.
 class SurfaceInpainting : public Inpainter {
  public:
-  bool uses_surfaces() const override { return true; }
+  Declaration declaration() const override {
+    return {.uses_surfaces = true, .rule = Declaration::Rule::by_surface, .simpler = "harmonic"};
+  }
 
   bool inpaint(const Holes& holes, const Options&, Image<Bgr>& picture) override {
     window_ = grow(bounding_box(holes.missing), 1);
     if (window_.empty()) return true;
     oneapi::tbb::parallel_invoke(
-        [&] { plane_colors_.collect(holes.occlusion, holes.reconstruction, picture); },
+        [&] { plane_colors_.collect(holes.occlusion, holes.surfaces, picture); },
         [&] {
           collect_states(holes);
           find_holes();
@@ -61,10 +63,10 @@ class SurfaceInpainting : public Inpainter {
 
   void collect_states(const Holes& holes) {
     states_.resize(window_.width, window_.height);
-    const Reconstruction& reconstruction = holes.reconstruction;
+    const Surfaces& surfaces = holes.surfaces;
     const Rect seen = intersect(window_, holes.missing.bounds());
     const Rect drawn =
-        intersect(intersect(reconstruction.region, reconstruction.surface.bounds()), seen);
+        intersect(intersect(surfaces.region, surfaces.label.bounds()), seen);
     for (int y = window_.y; y < window_.bottom(); ++y) {
       state::Code* const states = state_row(y);
       std::fill(states + window_.x, states + window_.right(), state::outside);
@@ -72,10 +74,10 @@ class SurfaceInpainting : public Inpainter {
       const std::uint8_t* const missing = holes.missing.row(y);
       for (int x = seen.x; x < seen.right(); ++x) states[x] = missing[x] & state::open;
       if (y < drawn.y || y >= drawn.bottom()) continue;
-      const std::uint8_t* const surface = reconstruction.surface.row(y);
+      const std::uint8_t* const labels = surfaces.label.row(y);
       for (int x = drawn.x; x < drawn.right(); ++x) {
-        const bool is_filled_alone = surface[x] < label_count;
-        const state::Code label = surface[x] & state::label_bits;
+        const bool is_filled_alone = labels[x] < label_count;
+        const state::Code label = labels[x] & state::label_bits;
         states[x] |= states[x] == 0 || is_filled_alone ? label : surface_label::unknown;
       }
     }

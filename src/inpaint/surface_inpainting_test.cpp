@@ -17,16 +17,16 @@ struct Room {
   Image<Bgr> picture{200, 160};
   Mask occlusion{200, 160, 0};
   Mask missing{200, 160, 0};
-  Reconstruction reconstruction;
+  Surfaces surfaces;
 
   Room() {
-    reconstruction.region = picture.bounds();
-    reconstruction.surface.resize(200, 160);
+    surfaces.region = picture.bounds();
+    surfaces.label.resize(200, 160);
     for (int y = 0; y < 160; ++y) {
       for (int x = 0; x < 200; ++x) {
         const bool box = x < 70 && y > 30;
         picture(x, y) = box ? box_color : y < 90 ? wall_color : table_color;
-        reconstruction.surface(x, y) = box ? surface_label::foreground : y < 90 ? wall : table;
+        surfaces.label(x, y) = box ? surface_label::foreground : y < 90 ? wall : table;
       }
     }
     remove({60, 20, 100, 110});
@@ -38,13 +38,13 @@ struct Room {
         if (x < 70 && y > 30) continue;  // the box's part is seen by an RGB-D camera
         missing(x, y) = 255;
         picture(x, y) = {0, 255, 0};
-        reconstruction.surface(x, y) = y < 90 ? wall : table;
+        surfaces.label(x, y) = y < 90 ? wall : table;
       }
     }
   }
   Image<Bgr> fill(const char* method = "surfaces") const {
     Image<Bgr> filled = picture;
-    EXPECT_TRUE(Registry<Inpainter>::get(method)()->inpaint({missing, occlusion, reconstruction},
+    EXPECT_TRUE(Registry<Inpainter>::get(method)()->inpaint({missing, occlusion, surfaces},
                                                             {}, filled));
     return filled;
   }
@@ -92,7 +92,7 @@ TEST(SurfaceInpainting, AHoleInTheForegroundIsFilledFromAround) {
     for (int x = 20; x < 40; ++x) {
       room.missing(x, y) = 255;
       room.picture(x, y) = {0, 255, 0};
-      room.reconstruction.surface(x, y) = wall;
+      room.surfaces.label(x, y) = wall;
     }
   }
   EXPECT_EQ(room.fill()(30, 70), box_color);
@@ -107,7 +107,7 @@ TEST(SurfaceInpainting, AHoleInTheForegroundAloneChangesNothingElse) {
   room.occlusion.fill(hole, 255);
   room.missing.fill(hole, 255);
   room.picture.fill(hole, {0, 255, 0});
-  room.reconstruction.surface.fill(hole, wall);
+  room.surfaces.label.fill(hole, wall);
   const Image<Bgr> filled = room.fill();
   for (int y = 0; y < 160; ++y) {
     for (int x = 0; x < 200; ++x) {
@@ -119,7 +119,7 @@ TEST(SurfaceInpainting, AHoleInTheForegroundAloneChangesNothingElse) {
 // Without planes it is nearly the harmonic filling.
 TEST(SurfaceInpainting, ResemblesHarmonicWithoutPlanes) {
   Room room;
-  room.reconstruction.surface = {};
+  room.surfaces.label = {};
   const Image<Bgr> ours = room.fill();
   const Image<Bgr> harmonic = room.fill("harmonic");
   double squares = 0;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "diminish/reconstruction.h"
+#include "diminish/surfaces.h"
 #include "inpaint/plane_colors.h"
 
 namespace diminish::surface_rules {

@@ -44,10 +44,6 @@ void check_cameras(const Rig& rig, const std::vector<LiveCamera>& cameras) {
   }
 }
 
-double sum(const StageTimes& times) {
-  return std::accumulate(times.begin(), times.end(), 0.0);
-}
-
 }  // namespace
 
 struct LiveSession::Implementation {
@@ -171,7 +167,7 @@ struct LiveSession::Implementation {
       latencies_ms.add(frame->latency_ms);
       publish_times_s.add(frame->published_s);
       const int level = ladder.level();
-      const double frame_ms = sum(frame->result.report.milliseconds);
+      const double frame_ms = frame->result.report.frame_ms;
       if (ladder.next_level(frame_ms, live_options.budget_ms) != level) options_changed = true;
       failure.clear();
     }
@@ -257,7 +253,7 @@ LiveStatus LiveSession::Implementation::status() const {
   const FrameReport& report = latest->result.report;
   status.frames = latest->number;
   status.stage_ms = report.milliseconds;
-  status.frame_ms = sum(report.milliseconds);
+  status.frame_ms = report.frame_ms;
   for (const auto& pose : report.poses.color_from_depth) status.posed.push_back(pose.has_value());
   status.markers.push_back(report.markers.color.size());
   for (const auto& markers : report.markers.rgbd) status.markers.push_back(markers.size());

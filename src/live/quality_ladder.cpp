@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <string>
+
+#include "diminish/color_corrector.h"
+#include "diminish/inpainter.h"
 
 namespace diminish {
 namespace {
@@ -11,6 +15,13 @@ constexpr int least_patience = 30;
 constexpr int most_patience = 960;
 /// Below this share of the budget there is time to spare.
 constexpr double well_below = 0.75;
+
+/// What a method declares to be simpler than itself; else the method.
+template <class Method>
+std::string simpler(const std::string& name) {
+  const char* const other = Registry<Method>::get(name)()->declaration().simpler;
+  return other ? other : name;
+}
 
 struct Step {
   const char* description;
@@ -26,14 +37,10 @@ constexpr std::array<Step, 7> steps = {{
      }},
     {"depth edges stay where they are", [](Options& o) { o.snap_edges = false; }},
     {"shadows not lifted", [](Options& o) { o.lift_shadows = false; }},
-    {"invented pixels filled smoothly",
-     [](Options& o) {
-       if (o.inpaint != "none") o.inpaint = "harmonic";
-     }},
-    {"one colour map, no membrane",
-     [](Options& o) {
-       if (o.color_correct != "none") o.color_correct = "affine";
-     }},
+    {"invented pixels filled by a simpler method",
+     [](Options& o) { o.inpaint = simpler<Inpainter>(o.inpaint); }},
+    {"colours corrected by a simpler method",
+     [](Options& o) { o.color_correct = simpler<ColorCorrector>(o.color_correct); }},
     {"poses not refined", [](Options& o) { o.refine_poses = false; }},
     {"depth not cleaned",
      [](Options& o) {

@@ -1,43 +1,44 @@
 #include "pipeline/backend.h"
 
-#include <chrono>
+#include <algorithm>
 
 #include "diminish/error.h"
-#ifdef DIMINISH_HAS_GL
-#include "gl/context.h"
-#endif
+#include "pipeline/stage_timer.h"
 
 namespace diminish {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using Suited = Reconstructor::Suited;
 
-constexpr const char* on_processor = "cpu";
-
-double milliseconds_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+/// The registered backend that suits best, up to `most`.
+std::string best_suited(Suited most) {
+  std::string best;
+  Suited best_suited = Suited::when_named;
+  for (const std::string& name : Registry<Reconstructor>::names()) {
+    const Suited suited = Registry<Reconstructor>::get(name).suited();
+    if (suited <= best_suited || suited > most) continue;
+    best = name;
+    best_suited = suited;
+  }
+  return best;
 }
 
-bool gpu_is_there() {
-#ifdef DIMINISH_HAS_GL
-  static const bool is_there = gl::has_hardware_driver();
-  return is_there;
-#else
-  return false;
-#endif
+/// The last stage that a backend takes over.
+Stage last_stage(const ComposingReconstructor& backend, const FrameMethods& methods) {
+  auto last = static_cast<std::size_t>(Stage::drawing);
+  while (last + 1 < stage_count && backend.takes_over(static_cast<Stage>(last + 1), methods)) {
+    ++last;
+  }
+  return static_cast<Stage>(last);
 }
 
 }  // namespace
 
 void Backend::choose(const std::string& name) {
-  const std::string meant = name != "auto" ? name : gpu_is_there() ? "gl" : on_processor;
+  const std::string meant = name == "auto" ? best_suited(Suited::with_hardware) : name;
   if (meant == name_) return;
   chosen_ = Registry<Reconstructor>::get(meant)(rig_);
   name_ = meant;
-}
-
-std::string Backend::mask_drawer() const {
-  return name_.starts_with("gl") && gpu_is_there() ? "gl" : on_processor;
 }
 
 Reconstructor& Backend::chosen() {
@@ -45,65 +46,38 @@ Reconstructor& Backend::chosen() {
   return *chosen_;
 }
 
-Reconstructor& Backend::processor() {
-  if (!processor_) processor_ = Registry<Reconstructor>::get(on_processor)(rig_);
-  return *processor_;
-}
-
-/// The next frame begins anew.
-void Backend::give_up(const Error& error, Reconstruction& reconstruction) {
-  chosen_.reset();
-  // In whatever state it is: the next to draw begins anew.
-  reconstruction.color.resize(0, 0);
-  message_ = std::string(error.what()) + "; drawn by the processor instead";
-}
-
-Reach Backend::reach(const Options& options) {
+void Backend::draw(const FrameInputs& inputs, DiminishedFrame& result) {
+  const ScopedTimer timer(result.report.drawing.milliseconds);
   try {
-    const auto* composing = dynamic_cast<const ComposingReconstructor*>(&chosen());
-    if (composing) return composing->reach(options);
-  } catch (const Error&) {
-    // Drawing will fail in the same way, and say so.
-  }
-  return Reach::reconstruction;
-}
-
-Reach Backend::compose(const FrameInputs& inputs, DiminishedFrame& result) {
-  const Clock::time_point start = Clock::now();
-  DrawingReport& report = result.report.drawing;
-  try {
-    auto& composing = dynamic_cast<ComposingReconstructor&>(chosen());
-    composing.compose(inputs, result);
-    report.device = composing.device();
-    report.passes = composing.gpu_passes();
-    report.milliseconds = milliseconds_since(start);
-    return composing.reach(inputs.options);
+    draw_by_chosen(inputs, result);
   } catch (const Error& error) {
-    give_up(error, result.reconstruction);
-    return Reach::reconstruction;
+    if (Registry<Reconstructor>::get(name_).suited() == Suited::always) throw;
+    // The next frame begins anew, and so does this one: what was drawn may be in any state.
+    chosen_.reset();
+    last_ = Stage::drawing;
+    result.reconstruction.color.resize(0, 0);
+    message_ = std::string(error.what()) + "; drawn by the CPU instead";
+    if (!fallback_) fallback_ = Registry<Reconstructor>::get(best_suited(Suited::always))(rig_);
+    reconstruct(*fallback_, inputs, result);
   }
 }
 
-void Backend::reconstruct(const FrameSet& frame, const DepthImages& depths, const Poses& poses,
-                          const OcclusionMasks& masks, const TiledRegion& region,
-                          const Options& options, Reconstruction& reconstruction,
-                          DrawingReport& report) {
-  const Clock::time_point start = Clock::now();
-  const auto draw_by = [&](Reconstructor& reconstructor) {
-    reconstructor.reconstruct(frame, depths, poses, masks, region, options, reconstruction);
-    report.device = reconstructor.device();
-    report.passes = reconstructor.gpu_passes();
-  };
-  if (message_.empty()) {
-    try {
-      draw_by(chosen());
-    } catch (const Error& error) {
-      if (name_ == on_processor) throw;
-      give_up(error, reconstruction);
-    }
-  }
-  if (!message_.empty()) draw_by(processor());
-  report.milliseconds = milliseconds_since(start);
+void Backend::draw_by_chosen(const FrameInputs& inputs, DiminishedFrame& result) {
+  Reconstructor& backend = chosen();
+  auto* const composing = dynamic_cast<ComposingReconstructor*>(&backend);
+  if (composing) last_ = last_stage(*composing, inputs.methods);
+  if (last_ == Stage::drawing) return reconstruct(backend, inputs, result);
+  composing->compose(inputs, last_, result);
+  result.report.drawing.device = backend.device();
+  result.report.drawing.passes = backend.gpu_passes();
+}
+
+void Backend::reconstruct(Reconstructor& reconstructor, const FrameInputs& inputs,
+                          DiminishedFrame& result) {
+  reconstructor.reconstruct(inputs.frame, inputs.depths, inputs.poses, inputs.masks, inputs.region,
+                            inputs.options, result.reconstruction);
+  result.report.drawing.device = reconstructor.device();
+  result.report.drawing.passes = reconstructor.gpu_passes();
 }
 
 }  // namespace diminish

@@ -55,8 +55,8 @@ class Helpless : public ComposingReconstructor {
   static inline int made = 0;
 
   Helpless() { ++made; }
-  Reach reach(const Options&) const override { return Reach::picture; }
-  void compose(const FrameInputs&, DiminishedFrame& result) override {
+  bool takes_over(Stage, const FrameMethods&) const override { return true; }
+  void compose(const FrameInputs&, Stage, DiminishedFrame& result) override {
     result.picture.resize(1, 1, {1, 2, 3});
     result.report.mask_pixels = 77;
     fail(result.reconstruction);
@@ -91,7 +91,7 @@ void expect_the_processors_frames(const std::string& backend, const std::vector<
     if (failures[i]) {
       EXPECT_THAT(
           result.report.messages,
-          ::testing::Contains("the driver lost the context; drawn by the processor instead"));
+          ::testing::Contains("the driver lost the context; drawn by the CPU instead"));
     }
   }
 }
@@ -125,11 +125,18 @@ TEST(Backend, AutoIsTheGpuOnlyWhereHardwareDraws) {
 #endif
   Backend backend(scene.rig);
   backend.choose("auto");
-  Reconstruction reconstruction;
-  DrawingReport report;
-  backend.reconstruct(scene.frame, testing::depths_of(scene.frame), scene.poses,
-                      testing::empty_masks(scene.rig), scene.rig.color.bounds(), {}, reconstruction,
-                      report);
+  const TiledRegion region = scene.rig.color.bounds();
+  const DepthImages depths = testing::depths_of(scene.frame);
+  const OcclusionMasks masks = testing::empty_masks(scene.rig);
+  const Options options;
+  const FrameMethods methods{{}, {.rule = Inpainter::Declaration::Rule::by_surface}, "remove"};
+  DiminishedFrame result;
+  backend.begin_frame();
+  backend.draw({scene.frame, depths, scene.poses, masks, {}, region, options, methods, nullptr, {},
+                {}, true},
+               result);
+  const DrawingReport& report = result.report.drawing;
+  EXPECT_FALSE(backend.has_done(Stage::compositing)) << "the correction has its own rule";
   EXPECT_EQ(backend.message(), "");
   EXPECT_EQ(!report.device.empty(), has_hardware);
   EXPECT_EQ(!report.passes.empty(), has_hardware);
@@ -256,8 +263,8 @@ TEST_P(WholeFrames, DoNotNeedTheReconstructionWhereNobodyLooksAtIt) {
   pipeline.want_reconstruction(true);
   pipeline.process(frame, result);
   EXPECT_EQ(result.reconstruction.color, expected.reconstruction.color);
-  EXPECT_EQ(result.reconstruction.surface, expected.reconstruction.surface);
-  EXPECT_EQ(result.reconstruction.light, expected.reconstruction.light);
+  EXPECT_EQ(result.surfaces.label, expected.surfaces.label);
+  EXPECT_EQ(result.surfaces.light, expected.surfaces.light);
 }
 
 TEST(WholeFrame, WithoutObjectsOrRgbdCamerasIsTheGpusToo) {

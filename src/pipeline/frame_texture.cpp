@@ -26,7 +26,7 @@ void FrameTexture::finish_frame(bool drawn, DiminishedFrame& result) {
       messages.push_back(std::string(error.what()) + "; the picture is no texture");
       return;
     }
-    messages.emplace_back("the picture was made by the processor, and uploaded to its texture");
+    messages.emplace_back("the picture was made by the CPU, and uploaded to its texture");
   }
   texture_ = output_->latest();
 }

@@ -228,10 +228,17 @@ TEST_F(PipelineOnAnalyticScene, NothingOfAFrameInfluencesTheNext) {
 }
 
 TEST_F(PipelineOnAnalyticScene, AFrameWithoutColorImageIsSkipped) {
+  Pipeline pipeline(rig, scene, {});
+  pipeline.process(frame, result);
+  ASSERT_FALSE(result.picture.empty());
   frame.color = {};
   frame.faults = {"color/000000.jpg: cannot be decoded"};
-  Pipeline(rig, scene, {}).process(frame, result);
+  pipeline.process(frame, result);
   EXPECT_TRUE(result.report.skipped);
+  EXPECT_TRUE(result.picture.empty());
+  EXPECT_TRUE(result.provenance.empty());
+  EXPECT_TRUE(result.reconstruction.color.empty());
+  EXPECT_TRUE(result.report.occluders.empty());
   EXPECT_EQ(result.report.faults, frame.faults);
 }
 

@@ -232,12 +232,12 @@ PoseRefinement::Equations PoseRefinement::add_up() const {
   return sums;
 }
 
-bool PoseRefinement::refine(const FrameSet& frame, const Mask& occlusion,
-                            Reconstruction& reconstruction, Poses& poses) {
-  const std::vector<SceneSample>& samples = reconstruction.samples;
+std::optional<RigidTransform> PoseRefinement::refine(const FrameSet& frame, const Mask& occlusion,
+                                                     const SceneSamples& scene) {
+  const std::vector<SceneSample>& samples = scene.surfaces;
   const int smallest_side = 8 * shrinkage_;
-  if (std::min(frame.color.width(), frame.color.height()) < smallest_side) return false;
-  if (samples.size() < fewest_points) return false;
+  if (std::min(frame.color.width(), frame.color.height()) < smallest_side) return std::nullopt;
+  if (samples.size() < fewest_points) return std::nullopt;
   small_.begin(frame.color, occlusion, shrinkage_);
   collect(frame, samples);
   std::fill(lines_.begin(), lines_.end(), Line{});
@@ -252,7 +252,7 @@ bool PoseRefinement::refine(const FrameSet& frame, const Mask& occlusion,
   float scale = 0;
   for (int iteration = 0;; ++iteration) {
     const std::size_t seen = linearise(correction);
-    if (seen < fewest_points) return false;
+    if (seen < fewest_points) return std::nullopt;
     if (iteration == 0) {
       for (Points& points : points_) points.weight = points.is_seen;
     } else {
@@ -282,24 +282,23 @@ bool PoseRefinement::refine(const FrameSet& frame, const Mask& occlusion,
   if (!(cost < first_cost) ||
       total.head<3>().norm() > largest_deviations * translation_deviation_m ||
       total.tail<3>().norm() > largest_deviations * rotation_deviation) {
-    return false;
+    return std::nullopt;
   }
-  apply(correction, reconstruction, poses);
-  return true;
+  return correction;
 }
 
-void PoseRefinement::apply(const RigidTransform& correction, Reconstruction& reconstruction,
-                           Poses& poses) const {
+void PoseRefinement::apply(const RigidTransform& correction, Poses& poses,
+                           SceneSamples& samples) const {
   for (auto& pose : poses.color_from_depth) {
     if (pose) pose = correction * *pose;
   }
   if (poses.color_from_world) poses.color_from_world = correction * *poses.color_from_world;
   const Eigen::Matrix3f rotation = correction.rotation.cast<float>();
   const Eigen::Vector3f translation = correction.translation.cast<float>();
-  for (Eigen::Vector3f& point_m : reconstruction.object_points_m) {
+  for (Eigen::Vector3f& point_m : samples.object_points_m) {
     point_m = rotation * point_m + translation;
   }
-  for (SceneSample& sample : reconstruction.samples) {
+  for (SceneSample& sample : samples.surfaces) {
     const Eigen::Vector3f p = rotation * sample.point_m + translation;
     sample.point_m = p;
     if (!(p.z() > 0) ||

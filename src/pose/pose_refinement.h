@@ -3,13 +3,14 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "diminish/frame_set.h"
 #include "diminish/intrinsics.h"
 #include "diminish/occlusion_masks.h"
 #include "diminish/poses.h"
-#include "diminish/reconstruction.h"
+#include "diminish/scene_samples.h"
 #include "geometry/projection.h"
 #include "pose/shrunk_picture.h"
 
@@ -26,11 +27,14 @@ class PoseRefinement {
  public:
   explicit PoseRefinement(const Intrinsics& color);
 
-  /// Moves the reconstruction's samples and object points, and the poses. Returns whether the
-  /// correction was taken: it must explain the picture better, and be small. Cost: about 0.2 us a
+  /// Returns how the colour camera's frame moves: color_from_measured_color. Nothing where no
+  /// correction is taken: it must explain the picture better, and be small. Cost: about 0.2 us a
   /// sample that the colour camera sees.
-  bool refine(const FrameSet& frame, const Mask& occlusion, Reconstruction& reconstruction,
-              Poses& poses);
+  std::optional<RigidTransform> refine(const FrameSet& frame, const Mask& occlusion,
+                                       const SceneSamples& scene);
+
+  /// Takes poses and samples to the corrected frame.
+  void apply(const RigidTransform& correction, Poses& poses, SceneSamples& samples) const;
 
  private:
   using Twist = Eigen::Matrix<float, 6, 1>;
@@ -69,7 +73,6 @@ class PoseRefinement {
   float find_scale();
   void weigh(float scale);
   Equations add_up() const;
-  void apply(const RigidTransform& correction, Reconstruction& reconstruction, Poses& poses) const;
 
   Intrinsics color_;
   Projection projection_;

@@ -44,9 +44,12 @@ class PoseRefinementTest : public ::testing::Test {
     return sum / count;
   }
   bool refine(Poses& poses) {
-    Reconstruction reconstruction;
-    SceneSampler(frame.rig).sample(frame.frame, poses, masks, reconstruction);
-    return PoseRefinement(frame.rig.color).refine(frame.frame, masks.color, reconstruction, poses);
+    SceneSamples samples;
+    SceneSampler(frame.rig).sample(frame.frame, poses, masks, samples);
+    PoseRefinement refinement(frame.rig.color);
+    const auto correction = refinement.refine(frame.frame, masks.color, samples);
+    if (correction) refinement.apply(*correction, poses, samples);
+    return correction.has_value();
   }
 
   AnalyticFrame frame;

@@ -262,8 +262,12 @@ class VectorizedReconstructor : public Reconstructor {
   Thread threads_[2];
 };
 
+std::unique_ptr<Reconstructor> make(const Rig& rig) {
+  return std::make_unique<VectorizedReconstructor>(rig);
+}
+
 const bool registered = Registry<Reconstructor>::add(
-    "cpu", [](const Rig& rig) { return std::make_unique<VectorizedReconstructor>(rig); });
+    "cpu", {make, [] { return Reconstructor::Suited::always; }});
 
 }  // namespace
 }  // namespace diminish

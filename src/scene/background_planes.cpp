@@ -86,19 +86,21 @@ void BackgroundPlanes::find(const Rect& objects, const std::vector<SceneSample>&
   while (planes_.size() < most_planes && next_plane(plane)) planes_.push_back(plane);
 }
 
-void BackgroundPlanes::label(Reconstruction& reconstruction) const {
-  Image<std::uint8_t>& surface = reconstruction.surface;
-  surface.resize(reconstruction.source.width(), reconstruction.source.height());
+void BackgroundPlanes::label(const Reconstruction& reconstruction, Surfaces& surfaces) const {
   const TiledRegion& region = reconstruction.region;
+  const Image<float>& depth_m = reconstruction.depth_m;
+  Image<std::uint8_t>& label = surfaces.label;
+  surfaces.region = region;
+  label.resize(depth_m.width(), depth_m.height());
   for_rows(region.height, [&](Rows rows) {
     for (int y = region.y + rows.first; y < region.y + rows.last; ++y) {
       int begin = region.x;
       region.for_each_gap(y, [&](int first, int last) {
-        label_run(begin, first, y, reconstruction);
-        std::fill(surface.row(y) + first, surface.row(y) + last, surface_label::unknown);
+        label_run(begin, first, y, depth_m, label);
+        std::fill(label.row(y) + first, label.row(y) + last, surface_label::unknown);
         begin = last;
       });
-      label_run(begin, region.right(), y, reconstruction);
+      label_run(begin, region.right(), y, depth_m, label);
     }
   });
 }
@@ -150,7 +152,8 @@ bool BackgroundPlanes::next_plane(BackgroundPlane& plane) {
   return plane.distance_m < 0;
 }
 
-void BackgroundPlanes::label_run(int first, int last, int y, Reconstruction& reconstruction) const {
+void BackgroundPlanes::label_run(int first, int last, int y, const Image<float>& depth_m,
+                                 Image<std::uint8_t>& label) const {
   std::array<surface_rows::InverseDepth, most_planes> planes;
   for (int x = first; x < last;) {
     const RayGrid::Segment rays = rays_.segment(x, y, last);
@@ -159,9 +162,9 @@ void BackgroundPlanes::label_run(int first, int last, int y, Reconstruction& rec
       planes[k] = {planes_[k].inverse_depth(rays.first.x(), rays.first.y()),
                    planes_[k].normal.head<2>().dot(rays.slope) / planes_[k].distance_m};
     }
-    surface_rows::label(reconstruction.depth_m.row(y) + x, rays.count, planes.data(),
+    surface_rows::label(depth_m.row(y) + x, rays.count, planes.data(),
                         static_cast<int>(planes_.size()), tolerance,
-                        reconstruction.surface.row(y) + x);
+                        label.row(y) + x);
     x += rays.count;
   }
 }

@@ -7,6 +7,8 @@
 #include "diminish/image.h"
 #include "diminish/intrinsics.h"
 #include "diminish/reconstruction.h"
+#include "diminish/scene_samples.h"
+#include "diminish/surfaces.h"
 #include "geometry/ray_grid.h"
 
 namespace diminish {
@@ -81,8 +83,8 @@ class BackgroundPlanes {
 
   /// Finds the planes. objects: their box in the colour camera's picture. Deterministic.
   void find(const Rect& objects, const std::vector<SceneSample>& samples);
-  /// Fills `reconstruction.surface`.
-  void label(Reconstruction& reconstruction) const;
+  /// Fills `surfaces.label` in the reconstruction's region.
+  void label(const Reconstruction& reconstruction, Surfaces& surfaces) const;
 
   const std::vector<BackgroundPlane>& planes() const { return planes_; }
 
@@ -90,7 +92,8 @@ class BackgroundPlanes {
   void choose_points(const Rect& objects, const std::vector<SceneSample>& samples);
   bool next_plane(BackgroundPlane& plane);
   /// Columns [first, last) of row y.
-  void label_run(int first, int last, int y, Reconstruction& reconstruction) const;
+  void label_run(int first, int last, int y, const Image<float>& depth_m,
+                 Image<std::uint8_t>& label) const;
 
   RayGrid rays_;
   PlanePoints points_, rest_, some_, some_of_rest_;

@@ -17,12 +17,14 @@ class OnAnalyticScene : public ::testing::Test {
  protected:
   OnAnalyticScene() : frame(scene, {eye}) {
     SceneSampler(frame.rig).sample(frame.frame, frame.poses, testing::empty_masks(frame.rig),
-                                   reconstruction);
+                                   thin);
   }
   AnalyticScene scene;
   AnalyticFrame frame;
+  SceneSamples thin;
   Reconstruction reconstruction;
-  const std::vector<SceneSample>& samples = reconstruction.samples;
+  Surfaces surfaces;
+  const std::vector<SceneSample>& samples = thin.surfaces;
 };
 
 // Points, pixels and colours against the ray caster.
@@ -72,10 +74,10 @@ TEST_F(OnAnalyticScene, FindsTheWallAndLabelsWhatLiesOnIt) {
         reconstruction.depth_m(x, y) =
             measured ? static_cast<float>((color_from_world * hit.point).z()) : 0.F;
       });
-  planes.label(reconstruction);
+  planes.label(reconstruction, surfaces);
   int wrong = 0;
   for (std::size_t i = 0; i < expected.size(); ++i) {
-    wrong += reconstruction.surface.data()[i] != expected.data()[i] ? 1 : 0;
+    wrong += surfaces.label.data()[i] != expected.data()[i] ? 1 : 0;
   }
   EXPECT_LT(wrong, 320 * 256 / 500);
 }
@@ -87,8 +89,8 @@ TEST_F(OnAnalyticScene, WithoutSamplesThereAreNoPlanes) {
   reconstruction.region = Rect{0, 0, 40, 30};
   reconstruction.source.resize(320, 256, 0);
   reconstruction.depth_m.resize(320, 256, 0.F);
-  planes.label(reconstruction);
-  EXPECT_EQ(reconstruction.surface(10, 10), surface_label::unknown);
+  planes.label(reconstruction, surfaces);
+  EXPECT_EQ(surfaces.label(10, 10), surface_label::unknown);
 }
 
 }  // namespace

@@ -259,14 +259,13 @@ Rect CastShadows::bounds() const {
   return intersect(grow(box, margin_px), lens_.intrinsics().bounds());
 }
 
-void CastShadows::shade(Reconstruction& reconstruction) {
-  Image<Bgr>& light = reconstruction.light;
-  light.resize(reconstruction.surface.width(), reconstruction.surface.height());
-  const Rect& region = reconstruction.region;
+void CastShadows::shade(const Reconstruction& reconstruction, Surfaces& surfaces) {
+  surfaces.light.resize(surfaces.label.width(), surfaces.label.height());
+  const Rect& region = surfaces.region;
   find_nodes(region);
   for_rows(region.height, [&](Rows rows) {
     for (int y = region.y + rows.first; y < region.y + rows.last; ++y) {
-      shade_row(y, reconstruction);
+      shade_row(y, reconstruction.depth_m, surfaces);
     }
   });
 }
@@ -323,9 +322,9 @@ Eigen::Array3f CastShadows::dark_at(const Shadow& cast, const Eigen::Vector2f& r
          ((1 - v) * ((1 - u) * upper[0] + u * upper[1]) + v * ((1 - u) * lower[0] + u * lower[1]));
 }
 
-void CastShadows::shade_row(int y, Reconstruction& reconstruction) const {
-  const Rect& region = reconstruction.region;
-  Bgr* const light = reconstruction.light.row(y);
+void CastShadows::shade_row(int y, const Image<float>& depth_m, Surfaces& surfaces) const {
+  const Rect& region = surfaces.region;
+  Bgr* const light = surfaces.light.row(y);
   std::fill_n(light + region.x, region.width, Bgr{255, 255, 255});
   const int row = y / node_rows_px - nodes_box_.y;
   const float below = static_cast<float>(y % node_rows_px) / node_rows_px;
@@ -347,8 +346,8 @@ void CastShadows::shade_row(int y, Reconstruction& reconstruction) const {
       shading.slope = (right - left) / node_px;
       shading.first = left + static_cast<float>(x - begin) * shading.slope;
     }
-    surface_rows::shade({shadings.data(), shadow_count_}, reconstruction.depth_m.row(y) + x,
-                        reconstruction.surface.row(y) + x, count, light + x);
+    surface_rows::shade({shadings.data(), shadow_count_}, depth_m.row(y) + x,
+                        surfaces.label.row(y) + x, count, light + x);
   }
 }
 

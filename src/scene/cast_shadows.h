@@ -9,6 +9,8 @@
 #include "diminish/image.h"
 #include "diminish/intrinsics.h"
 #include "diminish/reconstruction.h"
+#include "diminish/scene_samples.h"
+#include "diminish/surfaces.h"
 #include "geometry/ray_grid.h"
 #include "scene/background_planes.h"
 #include "scene/shadow_fit.h"
@@ -34,7 +36,7 @@ class CastShadows {
   /// The light on a plane, in cells around the ground's origin. Cell centres are at whole numbers.
   struct Shadow {
     Ground ground;
-    std::uint8_t label = 0;       ///< the plane's, as in Reconstruction::surface
+    std::uint8_t label = 0;       ///< the plane's, as in Surfaces::label
     Image<Eigen::Array3f> light;  ///< the share that is left, by cell
   };
   static constexpr float cell_m = 0.02F;
@@ -61,8 +63,8 @@ class CastShadows {
   std::span<const Shadow> shadows() const { return {shadows_.data(), shadow_count_}; }
   /// The box of the shadows in the colour camera's picture.
   Rect bounds() const;
-  /// Fills `reconstruction.light`. Shadows end where something stands on their plane.
-  void shade(Reconstruction& reconstruction);
+  /// Fills `surfaces.light`; the labels are there. Shadows end where something stands on their plane.
+  void shade(const Reconstruction& reconstruction, Surfaces& surfaces);
 
  private:
   static constexpr std::size_t bits_a_word = 64;
@@ -92,7 +94,7 @@ class CastShadows {
   void draw_light(Image<Eigen::Array3f>& light);
   static Eigen::Array3f dark_at(const Shadow& cast, const Eigen::Vector2f& ray);
   void find_nodes(const Rect& region);
-  void shade_row(int y, Reconstruction& reconstruction) const;
+  void shade_row(int y, const Image<float>& depth_m, Surfaces& surfaces) const;
 
   Lens lens_;
   RayGrid rays_;

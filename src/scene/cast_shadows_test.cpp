@@ -14,7 +14,8 @@ TEST_F(Lamps, ShadowsAreThoseOfTheRayCaster) {
   shadows.find({plane}, samples, box_points);
   ASSERT_TRUE(shadows.any());
   Reconstruction reconstruction = wall();
-  shadows.shade(reconstruction);
+  Surfaces surfaces = wall_surfaces();
+  shadows.shade(reconstruction, surfaces);
   testing::AnalyticScene empty = scene;
   empty.has_box = false;
   double error = 0;
@@ -24,7 +25,7 @@ TEST_F(Lamps, ShadowsAreThoseOfTheRayCaster) {
   empty.render(Lens(rig.color), color_from_world,
                [&](int x, int y, const testing::AnalyticScene::Hit& hit) {
                  const double truth = light_at(hit.point);
-                 error += std::abs(reconstruction.light(x, y).g / 255.0 - truth);
+                 error += std::abs(surfaces.light(x, y).g / 255.0 - truth);
                  error_without += 1 - truth;
                  ++count;
                  if (truth < 0.9) {
@@ -40,6 +41,7 @@ TEST_F(Lamps, WhatStandsOnThePlaneKeepsItsLight) {
   CastShadows shadows(rig.color);
   shadows.find({plane}, samples, box_points);
   Reconstruction reconstruction = wall();
+  Surfaces surfaces = wall_surfaces();
   const Lens lens(rig.color);
   for (int y = 0; y < rig.color.height; ++y) {
     for (int x = 0; x < rig.color.width; ++x) {
@@ -47,8 +49,8 @@ TEST_F(Lamps, WhatStandsOnThePlaneKeepsItsLight) {
       reconstruction.depth_m(x, y) = 1 / plane.inverse_depth(ray.x(), ray.y()) - 0.06F;
     }
   }
-  shadows.shade(reconstruction);
-  for (const Bgr& light : reconstruction.light) ASSERT_EQ(light, (Bgr{255, 255, 255}));
+  shadows.shade(reconstruction, surfaces);
+  for (const Bgr& light : surfaces.light) ASSERT_EQ(light, (Bgr{255, 255, 255}));
 }
 
 TEST_F(Lamps, WithoutLampsOrObjectThereIsNone) {

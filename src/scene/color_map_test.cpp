@@ -6,6 +6,7 @@
 
 #include "composite/map_colors.h"
 #include "diminish/color_corrector.h"
+#include "scene/color_maps.h"
 
 namespace diminish {
 namespace {
@@ -186,6 +187,7 @@ struct TwoLooks {
   Image<Bgr> camera{400, 300};
   Mask occlusion{400, 300, 0};
   Reconstruction reconstruction;
+  std::vector<SceneSample> samples;
 
   static Bgr color(int x, int y) {
     return {static_cast<std::uint8_t>(90 + 40 * ((x / 40) % 3)),
@@ -217,15 +219,16 @@ struct TwoLooks {
         sample.color = seen;
         sample.source = 1;
         sample.even = true;
-        reconstruction.samples.push_back(sample);
+        samples.push_back(sample);
       }
     }
   }
   Image<Bgr> corrected(const char* method) const {
     Image<Bgr> picture = camera;
     const auto corrector = Registry<ColorCorrector>::get(method)();
-    corrector->prepare(camera, occlusion, reconstruction.samples);
-    corrector->correct(camera, occlusion, reconstruction, picture);
+    ColorMaps maps;
+    maps.fit(camera, occlusion, samples, corrector->declaration().maps);
+    corrector->correct({camera, occlusion, reconstruction, maps.by_source()}, picture);
     return picture;
   }
   /// Levels, inside the mask.

@@ -42,19 +42,10 @@ void add_pair(const Image<Bgr>& camera, const Mask& occlusion, const SceneSample
 
 }  // namespace
 
-const MappedMethod* find_mapped_method(std::string_view name) {
-  const auto found = std::find_if(mapped_methods.begin(), mapped_methods.end(),
-                                  [&](const MappedMethod& method) { return method.name == name; });
-  return found == mapped_methods.end() ? nullptr : &*found;
-}
-
-void ColorMaps::clear() {
-  std::fill(maps_.begin(), maps_.end(), ColorMap{});
-}
-
 void ColorMaps::fit(const Image<Bgr>& camera, const Mask& occlusion,
                     const std::vector<SceneSample>& samples, ColorMapModel model) {
-  clear();
+  std::fill(maps_.begin(), maps_.end(), ColorMap{});
+  if (model == ColorMapModel::none) return;
   sources_.clear();
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (i == 0 || samples[i].source != samples[i - 1].source) sources_.push_back({i, i});

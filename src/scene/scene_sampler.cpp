@@ -44,7 +44,7 @@ SceneSampler::SceneSampler(const Rig& rig) {
 }
 
 void SceneSampler::sample(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks,
-                          Reconstruction& reconstruction) {
+                          SceneSamples& samples) {
   constexpr std::size_t halves = std::tuple_size_v<decltype(Camera::halves)>;
   oneapi::tbb::parallel_for(std::size_t{0}, halves * by_camera_.size(), [&](std::size_t i) {
     const std::size_t k = i / halves;
@@ -61,13 +61,13 @@ void SceneSampler::sample(const FrameSet& frame, const Poses& poses, const Occlu
     const int middle = rgbd.depth.height() / 2;
     sample_rows(view, i % halves == 0 ? Rows{0, middle} : Rows{middle, rgbd.depth.height()}, half);
   });
-  std::vector<SceneSample>& samples = reconstruction.samples;
-  std::vector<Eigen::Vector3f>& points = reconstruction.object_points_m;
-  samples.clear();
+  std::vector<SceneSample>& surfaces = samples.surfaces;
+  std::vector<Eigen::Vector3f>& points = samples.object_points_m;
+  surfaces.clear();
   points.clear();
   for (const Camera& camera : by_camera_) {
     for (const Half& half : camera.halves) {
-      samples.insert(samples.end(), half.samples.begin(), half.samples.end());
+      surfaces.insert(surfaces.end(), half.samples.begin(), half.samples.end());
       points.insert(points.end(), half.object_points_m.begin(), half.object_points_m.end());
     }
   }

@@ -8,21 +8,21 @@
 #include "diminish/frame_set.h"
 #include "diminish/occlusion_masks.h"
 #include "diminish/poses.h"
-#include "diminish/reconstruction.h"
+#include "diminish/scene_samples.h"
 #include "diminish/rig.h"
 #include "render/depth_mesh.h"
 
 namespace diminish {
 
-/// Takes Reconstruction::samples from the RGB-D images: those depth pixels of a regular grid that
-/// lie on surfaces.
+/// Takes samples of the scene from the RGB-D images: those depth pixels of a regular grid that lie
+/// on surfaces.
 class SceneSampler {
  public:
   explicit SceneSampler(const Rig& rig);
 
-  /// masks: already grown. `samples` is sorted by `source`. Cost: about 0.1 us per sample.
+  /// masks: already grown. Cost: about 0.1 us per sample.
   void sample(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks,
-              Reconstruction& reconstruction);
+              SceneSamples& samples);
 
  private:
   /// Samples from some rows of a depth image.

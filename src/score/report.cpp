@@ -14,7 +14,7 @@
 #include "score/html.h"
 #include "score/run_folder.h"
 #include "sink/partial_file.h"
-#include "sink/run_statistics.h"
+#include "sink/time_table.h"
 
 namespace diminish {
 namespace {
@@ -117,9 +117,10 @@ std::vector<std::optional<double>> numbers_in(const std::vector<CsvRow>& rows,
 std::string time_plots(const std::filesystem::path& file) {
   const std::vector<CsvRow> rows = load_csv(file);
   std::string text = "<div class=plots>\n";
-  for (const char* stage : stage_names) {
-    const auto values = numbers_in(rows, std::string(stage) + "_ms", file);
-    text += html::plot(std::string(stage) + ", ms", values);
+  for (const TimeRow& row : time_rows()) {
+    if (row.paper_ms[0] != '\0' && &row != &time_rows()[whole_frame_row]) continue;
+    const auto values = numbers_in(rows, std::string(row.key) + "_ms", file);
+    text += html::plot(std::string(row.title) + ", ms", values);
   }
   return text + "</div>\n";
 }
@@ -127,9 +128,9 @@ std::string time_plots(const std::filesystem::path& file) {
 std::string table_2(const nlohmann::json& summary) {
   std::string text = "<table><tr><th>Operation, ms<th>avg<th>min<th>max<th>paper</tr>\n";
   const auto& times = summary.at("milliseconds");
-  for (const PaperRow& row : paper_table()) {
-    const auto& time = times.at(row.stage < stage_count ? stage_names[row.stage] : "total");
-    text += fmt::format("<tr><td>{}<td>{:.2f}<td>{:.2f}<td>{:.2f}<td>{}</tr>\n", row.operation,
+  for (const TimeRow& row : time_rows()) {
+    const auto& time = times.at(row.key);
+    text += fmt::format("<tr><td>{}<td>{:.2f}<td>{:.2f}<td>{:.2f}<td>{}</tr>\n", row.title,
                         time.at("avg").get<double>(), time.at("min").get<double>(),
                         time.at("max").get<double>(), row.paper_ms);
   }

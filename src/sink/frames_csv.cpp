@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "diminish/error.h"
+#include "sink/time_table.h"
 
 namespace diminish {
 namespace {
@@ -75,7 +76,7 @@ FramesCsv::FramesCsv(const std::filesystem::path& file, const Rig& rig)
     header += pose_columns("color_from_" + camera.name + "_depth");
   }
   header += ",occluders,mask_pixels,valid_pixels,missing_pixels";
-  for (const char* stage : stage_names) header += fmt::format(",{}_ms", stage);
+  for (const TimeRow& row : time_rows()) header += fmt::format(",{}_ms", row.key);
   header += ",messages,faults\n";
   stream_ << header << std::flush;
   if (!stream_) throw Error(file_.string() + ": cannot be written");
@@ -98,7 +99,7 @@ void FramesCsv::append(const DiminishedFrame& frame) {
   row += fmt::format(",{},{},{},{}",
                      known ? found_occluders(report.occluders, cameras_) : in_quotes(""),
                      report.mask_pixels, report.valid_pixels, report.missing_pixels);
-  for (const double ms : report.milliseconds) row += fmt::format(",{:.3f}", ms);
+  for (const double ms : times_of(report)) row += fmt::format(",{:.3f}", ms);
   row += fmt::format(",{},{}\n", joined(report.messages), joined(report.faults));
   // One write per row, so that an interrupted run leaves whole rows.
   stream_ << row << std::flush;

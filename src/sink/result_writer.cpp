@@ -105,10 +105,10 @@ void ResultWriter::write_summary(bool interrupted, const std::string& video_prob
   summary["pixels"] = {{"mask", statistics_.mask_pixels()},
                        {"valid", statistics_.valid_pixels()},
                        {"missing", statistics_.missing_pixels()}};
-  for (std::size_t stage = 0; stage <= stage_count; ++stage) {
-    const RunStatistics::Times& times = statistics_.times()[stage];
-    summary["milliseconds"][stage < stage_count ? stage_names[stage] : "total"] = {
-        {"avg", statistics_.average_ms(stage)}, {"min", times.min_ms}, {"max", times.max_ms}};
+  for (std::size_t row = 0; row < time_row_count; ++row) {
+    const RunStatistics::Times& times = statistics_.times()[row];
+    summary["milliseconds"][time_rows()[row].key] = {
+        {"avg", statistics_.average_ms(row)}, {"min", times.min_ms}, {"max", times.max_ms}};
   }
   summary["messages"] = statistics_.messages();
   if (!video_problem.empty()) summary["video"] = video_problem;

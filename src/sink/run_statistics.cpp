@@ -3,24 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
 
 namespace diminish {
-namespace {
-
-// The paper measures poses and detection together.
-constexpr PaperRow rows[] = {
-    {"Camera poses", 0, "8.2"},        {"Object detection", 1, "(with poses)"},
-    {"Reconstruction", 2, "12.8"},     {"Compositing", 3, "1.1"},
-    {"Colour correction", 4, "13256"}, {"Inpainting", 5, "1871"},
-    {"Total", stage_count, "15149"}};
-
-}  // namespace
-
-std::span<const PaperRow> paper_table() {
-  return rows;
-}
-
 void RunStatistics::add(const FrameReport& report) {
   if (!report.faults.empty() || report.skipped) ++faulty_;
   for (const std::string& message : report.messages) ++messages_[message];
@@ -33,26 +17,29 @@ void RunStatistics::add(const FrameReport& report) {
     times.max_ms = frames_ == 0 ? ms : std::max(times.max_ms, ms);
     times.sum_ms += ms;
   };
-  const StageTimes& ms = report.milliseconds;
-  for (std::size_t stage = 0; stage < stage_count; ++stage) count(times_[stage], ms[stage]);
-  count(times_[stage_count], std::accumulate(ms.begin(), ms.end(), 0.0));
+  const auto ms = times_of(report);
+  for (std::size_t row = 0; row < time_row_count; ++row) count(times_[row], ms[row]);
   mask_pixels_ += report.mask_pixels;
   valid_pixels_ += report.valid_pixels;
   missing_pixels_ += report.missing_pixels;
   ++frames_;
 }
 
-double RunStatistics::average_ms(std::size_t stage) const {
-  return frames_ > 0 ? times_[stage].sum_ms / static_cast<double>(frames_) : 0;
+double RunStatistics::average_ms(std::size_t row) const {
+  return frames_ > 0 ? times_[row].sum_ms / static_cast<double>(frames_) : 0;
 }
 
 std::string RunStatistics::table() const {
-  std::string text = fmt::format("{:<20}{:>10}{:>10}{:>10}{:>16}\n", "Operation, ms", "avg", "min",
-                                 "max", "paper");
-  for (const PaperRow& row : rows) {
-    const Times& times = times_[row.stage];
-    text += fmt::format("{:<20}{:>10.1f}{:>10.1f}{:>10.1f}{:>16}\n", row.operation,
-                        average_ms(row.stage), times.min_ms, times.max_ms, row.paper_ms);
+  std::string text;
+  for (std::size_t i = 0; i < time_row_count; ++i) {
+    if (i == 0 || i == stage_count) {
+      text += fmt::format("{:<20}{:>10}{:>10}{:>10}{:>16}\n",
+                          i == 0 ? "Stage, ms" : "Table 2, ms", "avg", "min", "max",
+                          i == 0 ? "" : "paper");
+    }
+    const TimeRow& row = time_rows()[i];
+    text += fmt::format("{:<20}{:>10.1f}{:>10.1f}{:>10.1f}{:>16}\n", row.title, average_ms(i),
+                        times_[i].min_ms, times_[i].max_ms, row.paper_ms);
   }
   const double mask = static_cast<double>(std::max<std::size_t>(mask_pixels_, 1));
   text += fmt::format("{} frames; of the objects' pixels {:.1f} % seen, {:.1f} % not\n", frames_,

@@ -10,12 +10,14 @@ using ::testing::HasSubstr;
 TEST(RunStatistics, AddsUpFramesAndLeavesSkippedOnesOutOfTheTimes) {
   RunStatistics statistics;
   FrameReport report;
-  report.milliseconds = {1, 2, 3, 4, 5, 6};
+  report.milliseconds = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
+  report.frame_ms = 60;
   report.mask_pixels = 100;
   report.valid_pixels = 75;
   report.missing_pixels = 25;
   statistics.add(report);
-  report.milliseconds = {3, 2, 3, 4, 5, 6};
+  report.milliseconds[0] = 3;
+  report.frame_ms = 62;
   report.messages = {"ball: not found"};
   statistics.add(report);
   FrameReport skipped;
@@ -27,8 +29,14 @@ TEST(RunStatistics, AddsUpFramesAndLeavesSkippedOnesOutOfTheTimes) {
   EXPECT_EQ(statistics.skipped(), 1U);
   EXPECT_EQ(statistics.faulty(), 1U);
   EXPECT_DOUBLE_EQ(statistics.average_ms(0), 2);
-  EXPECT_DOUBLE_EQ(statistics.times()[stage_count].min_ms, 21);
-  EXPECT_DOUBLE_EQ(statistics.times()[stage_count].max_ms, 23);
+  EXPECT_DOUBLE_EQ(statistics.times()[whole_frame_row].min_ms, 60);
+  EXPECT_DOUBLE_EQ(statistics.times()[whole_frame_row].max_ms, 62);
+  // As the paper sums stages up: poses and detection, ..., inpainting.
+  EXPECT_DOUBLE_EQ(statistics.average_ms(stage_count), 4);
+  EXPECT_DOUBLE_EQ(statistics.average_ms(stage_count + 1), 33);
+  EXPECT_DOUBLE_EQ(statistics.average_ms(stage_count + 2), 21);
+  EXPECT_DOUBLE_EQ(statistics.average_ms(stage_count + 3), 10);
+  EXPECT_DOUBLE_EQ(statistics.average_ms(stage_count + 4), 11);
   const std::string table = statistics.table();
   EXPECT_THAT(table, HasSubstr("75.0 % seen, 25.0 % not"));
   EXPECT_THAT(table, HasSubstr("1 of 3 frames: ball: not found"));

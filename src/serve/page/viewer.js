@@ -1,7 +1,8 @@
 import { addressWithToken, get, pictures, post } from "./stream.js";
 
 const element = (id) => document.getElementById(id);
-const stageColors = ["#4db6ac", "#81c784", "#64b5f6", "#ba68c8", "#ffb74d", "#e57373"];
+const stageColors = ["#4db6ac", "#81c784", "#90a4ae", "#b0bec5", "#9575cd", "#7986cb",
+  "#4dd0e1", "#64b5f6", "#dce775", "#ba68c8", "#ffb74d", "#e57373"];
 const mainSettings = ["discontinuity_threshold_m", "mask_margin_px", "color_correct", "inpaint", "transparency", "budget_ms"];
 // Sliders need an end where a setting has none that is useful.
 const usefulRange = {

@@ -2,15 +2,12 @@
 
 #include <chrono>
 
-#include "diminish/diminished_frame.h"
-
 namespace diminish {
 
-/// Adds the time between its construction and destruction to a stage's milliseconds.
+/// Adds the milliseconds between its construction and destruction.
 class ScopedTimer {
  public:
-  ScopedTimer(StageTimes& milliseconds, Stage stage)
-      : total_ms_(milliseconds[static_cast<std::size_t>(stage)]) {}
+  explicit ScopedTimer(double& total_ms) : total_ms_(total_ms) {}
   ~ScopedTimer() {
     total_ms_ += std::chrono::duration<double, std::milli>(Clock::now() - start_).count();
   }

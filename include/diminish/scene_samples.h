@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "diminish/image.h"
+
+namespace diminish {
+
+/// A point on a surface that an RGB-D camera sees and the colour camera may see, too.
+struct SceneSample {
+  Eigen::Vector3f point_m = Eigen::Vector3f::Zero();  ///< in the colour camera's frame
+  Eigen::Vector2f pixel = Eigen::Vector2f::Zero();    ///< its place in the colour camera's image
+  Eigen::Vector2f texture =
+      Eigen::Vector2f::Zero();  ///< its place in the RGB-D camera's colour image
+  Bgr color;                    ///< the RGB-D camera's, averaged over the neighbourhood
+  std::uint8_t source = 0;      ///< 1 + the RGB-D camera's index
+  bool even = false;            ///< the neighbourhood has one colour
+};
+
+/// What the RGB-D cameras see, thinly over the whole picture.
+struct SceneSamples {
+  /// Of surfaces, away from objects to remove and from depth edges; sorted by `source`. A few
+  /// thousand.
+  std::vector<SceneSample> surfaces;
+  /// Of the objects to remove, in the colour camera's frame, as far as RGB-D cameras see them.
+  std::vector<Eigen::Vector3f> object_points_m;
+};
+
+}  // namespace diminish

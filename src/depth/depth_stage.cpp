@@ -1,0 +1,35 @@
+#include "depth/depth_stage.h"
+
+#include <oneapi/tbb/parallel_for.h>
+
+namespace diminish {
+namespace {
+
+/// In the picture: what the refinement of poses may move.
+constexpr int refinement_margin_px = 24;
+
+}  // namespace
+
+DepthStage::DepthStage(const Rig& rig) : depths_(rig.rgbd.size()) {
+  for (const RgbdCamera& camera : rig.rgbd) {
+    visible_.emplace_back(camera, rig.color);
+    cleaners_.emplace_back(camera);
+  }
+}
+
+void DepthStage::clean(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks,
+                       const Rect& drawn, const Options& options) {
+  oneapi::tbb::parallel_for(std::size_t{0}, depths_.size(), [&](std::size_t k) {
+    const RgbdFrame& rgbd = frame.rgbd[k];
+    if (!rgbd.available()) return;
+    if (poses.color_from_depth[k]) {
+      visible_[k].find(rgbd.depth, *poses.color_from_depth[k], grow(drawn, refinement_margin_px));
+    } else {
+      visible_[k].clear();
+    }
+    cleaners_[k].clean(rgbd.depth, {rgbd.color, masks.rgbd_color[k], masks.rgbd_depth[k]},
+                       visible_[k].part(), options, depths_[k]);
+  });
+}
+
+}  // namespace diminish

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <vector>
+
+#include "depth/depth_cleaner.h"
+#include "depth/visible_blocks.h"
+#include "diminish/frame_set.h"
+#include "diminish/occlusion_masks.h"
+#include "diminish/options.h"
+#include "diminish/poses.h"
+#include "diminish/reconstructor.h"
+#include "diminish/rig.h"
+
+namespace diminish {
+
+/// Gets all depth images ready to be drawn: cleans what may show up in the colour camera's picture.
+class DepthStage {
+ public:
+  explicit DepthStage(const Rig& rig);
+
+  /// poses: as measured. drawn: the part of the picture that will be drawn, once poses are refined.
+  void clean(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks,
+             const Rect& drawn, const Options& options);
+  /// Of cameras without images or without a pose, any.
+  const DepthImages& depths() const { return depths_; }
+
+ private:
+  std::vector<VisibleBlocks> visible_;
+  std::vector<DepthCleaner> cleaners_;
+  DepthImages depths_;
+};
+
+}  // namespace diminish

@@ -1,0 +1,29 @@
+#include "scene/background.h"
+
+namespace diminish {
+
+void Background::find(const Rect& objects, const SceneSamples& samples, const Wanted& wanted) {
+  has_planes_ = wanted.planes;
+  shadows_.clear();
+  if (!wanted.planes) return;
+  planes_.find(objects, samples.surfaces);
+  if (wanted.shadows) {
+    shadows_.find(planes_.planes(), samples.surfaces, samples.object_points_m);
+  }
+}
+
+void Background::label(const Reconstruction& reconstruction, Surfaces& surfaces) {
+  surfaces.region = reconstruction.region;
+  if (has_planes_) {
+    planes_.label(reconstruction, surfaces);
+  } else {
+    surfaces.label.resize(0, 0);
+  }
+  if (shadows_.any()) {
+    shadows_.shade(reconstruction, surfaces);
+  } else {
+    surfaces.light.resize(0, 0);
+  }
+}
+
+}  // namespace diminish

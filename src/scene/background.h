@@ -1,0 +1,43 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "diminish/image.h"
+#include "diminish/intrinsics.h"
+#include "diminish/reconstruction.h"
+#include "diminish/scene_samples.h"
+#include "diminish/surfaces.h"
+#include "scene/background_planes.h"
+#include "scene/cast_shadows.h"
+
+namespace diminish {
+
+/// The planes behind the objects to remove, and the shadows that the objects cast on them.
+class Background {
+ public:
+  explicit Background(const Intrinsics& color) : planes_(color), shadows_(color) {}
+
+  struct Wanted {
+    bool planes, shadows;  ///< shadows only with planes
+  };
+  /// objects: where they are in the colour camera's picture.
+  void find(const Rect& objects, const SceneSamples& samples, const Wanted& wanted);
+  /// Null where they were not looked for.
+  const std::vector<BackgroundPlane>* planes() const {
+    return has_planes_ ? &planes_.planes() : nullptr;
+  }
+  std::span<const CastShadows::Shadow> shadows() const { return shadows_.shadows(); }
+  /// The shadows' place in the colour camera's picture.
+  Rect shaded_part() const { return shadows_.bounds(); }
+
+  /// Which plane each pixel of the drawn scene shows, and how much light the shadows leave it.
+  void label(const Reconstruction& reconstruction, Surfaces& surfaces);
+
+ private:
+  BackgroundPlanes planes_;
+  CastShadows shadows_;
+  bool has_planes_ = false;
+};
+
+}  // namespace diminish

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <vector>
+
+#include "composite/compositor.h"
+#include "diminish/scene_samples.h"
+#include "pipeline/methods.h"
+#include "scene/color_maps.h"
+
+namespace diminish::testing {
+
+/// A frame's stages from colour maps on, but for the drawing, by the methods that the options name.
+class Composing {
+ public:
+  /// result: its reconstruction and surfaces are there.
+  void compose(const Image<Bgr>& camera, const Mask& occlusion, const Options& options,
+               const std::vector<SceneSample>& samples, DiminishedFrame& result) {
+    ColorCorrector& corrector = correctors_.get(options.color_correct);
+    maps_.fit(camera, occlusion, samples, corrector.declaration().maps);
+    const Compositor::Inputs inputs{camera, occlusion, bounding_box(occlusion), options};
+    Compositor::sort(inputs, result);
+    compositor_.correct_colors(inputs, maps_.by_source(), corrector, result);
+    compositor_.inpaint(inputs, inpainters_.get(options.inpaint), result);
+    compositor_.finish(inputs, modes_.get(options.mode), result);
+  }
+
+ private:
+  Methods<ColorCorrector> correctors_;
+  Methods<Inpainter> inpainters_;
+  Methods<ViewMode> modes_;
+  ColorMaps maps_;
+  Compositor compositor_;
+};
+
+}  // namespace diminish::testing
