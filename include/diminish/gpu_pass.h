@@ -14,8 +14,8 @@ struct GpuPass {
 /// A frame's drawing (Reconstructor).
 struct DrawingReport {
   double milliseconds = 0;      ///< from its call to its return
-  std::string device;           ///< the GPU, by its driver's name; empty: the processor
-  std::vector<GpuPass> passes;  ///< in their order; empty: the processor
+  std::string device;           ///< the GPU, by its driver's name; empty: the CPU
+  std::vector<GpuPass> passes;  ///< in their order; empty: the CPU
 };
 
 }  // namespace diminish

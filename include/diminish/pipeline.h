@@ -33,7 +33,7 @@ class Pipeline {
 
   /// From the next frame on, each picture goes into a texture that an application shares; nullopt:
   /// no longer. Where a GPU does the whole frame, `result.picture` and `result.provenance` are then
-  /// empty: nothing but what is reported is read back. Where the processor does the picture it is
+  /// empty: nothing but what is reported is read back. Where the CPU does the picture it is
   /// uploaded, and a message says so. Throws Error where diminish was built without OpenGL, or the
   /// context cannot be shared. To be called again where the application's context was lost.
   void want_texture(const std::optional<GlSharing>& application);

@@ -40,7 +40,8 @@ struct FrameInputs {
   TextureOutput* texture = nullptr;  ///< where the picture goes; null: to the result
 };
 
-/// A backend that does stages after the drawing, too, where it need not give away what it has drawn.
+/// A backend that does stages after the drawing, too, where it need not give away what it has
+/// drawn.
 class ComposingReconstructor : public Reconstructor {
  public:
   /// Whether it does this stage of a frame with these methods. It is asked in the stages' order,

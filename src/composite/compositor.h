@@ -44,7 +44,7 @@ class Compositor {
   ShadowLifting shadow_lifting_;
   ColorSmoothing color_smoothing_;
   SoftRim soft_rim_;
-  Mask missing_;        ///< nothing is set outside `missing_part_`
+  Mask missing_;  ///< nothing is set outside `missing_part_`
   Rect missing_part_;
 };
 

@@ -145,8 +145,8 @@ void map_row(ColorMapsBySource maps, MappedRow row) {
 
 }  // namespace
 
-void map_colors(ColorMapsBySource maps, const Reconstruction& reconstruction,
-                const Mask& occlusion, int y, const float* correction, Image<Bgr>& picture) {
+void map_colors(ColorMapsBySource maps, const Reconstruction& reconstruction, const Mask& occlusion,
+                int y, const float* correction, Image<Bgr>& picture) {
   const Rect& region = reconstruction.region;
   MappedRow row{reconstruction.color.row(y) + region.x,
                 reconstruction.source.row(y) + region.x,

@@ -12,7 +12,7 @@ namespace diminish {
 /// colour: that colour, mapped, plus `correction`. Where a second camera sees the same surface,
 /// mixes in that camera's colour, mapped by its own map.
 /// correction: from SoftMembrane::row.
-void map_colors(ColorMapsBySource maps, const Reconstruction& reconstruction,
-                const Mask& occlusion, int y, const float* correction, Image<Bgr>& picture);
+void map_colors(ColorMapsBySource maps, const Reconstruction& reconstruction, const Mask& occlusion,
+                int y, const float* correction, Image<Bgr>& picture);
 
 }  // namespace diminish

@@ -58,8 +58,7 @@ class MappedCorrection : public ColorCorrector {
         Eigen::Array3f mapped = map(maps[source], reconstruction.color(x, y), x, y);
         const SecondView& second = reconstruction.second;
         if (!second.share.empty() && second.share(x, y) != 0) {
-          const Eigen::Array3f other =
-              map(maps[second.source(x, y)], second.color(x, y), x, y);
+          const Eigen::Array3f other = map(maps[second.source(x, y)], second.color(x, y), x, y);
           mapped += (other - mapped) * (static_cast<float>(second.share(x, y)) / 255);
         }
         membrane_.add(x, y, to_channels(camera(x, y)) - mapped);

@@ -42,7 +42,8 @@ struct Problem {
   }
   Image<Bgr> solve(const char* method = "poisson") const {
     Image<Bgr> picture = camera;
-    Registry<ColorCorrector>::get(method)()->correct({camera, occlusion, reconstruction, {}}, picture);
+    Registry<ColorCorrector>::get(method)()->correct({camera, occlusion, reconstruction, {}},
+                                                     picture);
     return picture;
   }
 

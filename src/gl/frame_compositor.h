@@ -35,7 +35,7 @@ class FrameCompositor {
   /// which the frame is done here.
   void pack(const FrameInputs& inputs, Stage last, FrameUpload& upload);
   /// After the upload was sent. reconstruction: of the region, in the upload's order of cameras.
-  /// What was asked for is on its way to the processor afterwards.
+  /// What was asked for is on its way to the CPU afterwards.
   void run(const FrameInputs& inputs, const FrameUpload& upload,
            const ResultBuffers& reconstruction, PassTimer& timer);
   /// Fills what `run` has made, when it is done; needs no context. Outside the region result's

@@ -17,8 +17,8 @@ namespace {
 
 class Composition : public ::testing::Test, protected testing::DiminishedWall {
  protected:
-  /// By the stages of the processor.
-  void compose_by_processor(bool with_shadows) {
+  /// By the stages of the CPU.
+  void compose_on_cpu(bool with_shadows) {
     const Reconstruction& made = expected.reconstruction;
     planes.label(made, expected.surfaces);
     if (with_shadows) {
@@ -51,18 +51,9 @@ class Composition : public ::testing::Test, protected testing::DiminishedWall {
     const FrameMethods declared = methods();
     maps.fit(frame.frame.color, masks.color, samples, declared.color.maps);
     const auto cast = with_shadows ? shadows.shadows() : std::span<const CastShadows::Shadow>();
-    const FrameInputs inputs{frame.frame,
-                             depths,
-                             frame.poses,
-                             masks,
-                             bounding_box(masks.color),
-                             region,
-                             options,
-                             declared,
-                             &planes.planes(),
-                             cast,
-                             maps.by_source(),
-                             true};
+    const FrameInputs inputs{
+        frame.frame, depths,   frame.poses,      masks, bounding_box(masks.color), region,
+        options,     declared, &planes.planes(), cast,  maps.by_source(),          true};
     const Image<Bgr>& camera = frame.frame.color;
     result.picture = camera;
     result.provenance.resize(camera.width(), camera.height(), provenance::camera);
@@ -135,9 +126,9 @@ class Composition : public ::testing::Test, protected testing::DiminishedWall {
   std::optional<gl::FrameCompositor> on_gpu;
 };
 
-TEST_F(Composition, LabelsAndLightAreTheProcessors) {
+TEST_F(Composition, LabelsAndLightAreTheCpus) {
   ASSERT_TRUE(shadows.any());
-  compose_by_processor(true);
+  compose_on_cpu(true);
   compose_on_gpu(true);
   const Reconstruction& a = expected.reconstruction;
   const Reconstruction& b = result.reconstruction;
@@ -167,7 +158,7 @@ TEST_F(Composition, LabelsAndLightAreTheProcessors) {
 }
 
 // Pass by pass: what is sorted, then mapped, then with the membrane, then without shadows.
-TEST_F(Composition, ColorsAreTheProcessors) {
+TEST_F(Composition, ColorsAreTheCpus) {
   options.inpaint = "none";
   options.soft_rim_px = 0;
   for (const char* merge : {"blend", "choose"}) {
@@ -178,7 +169,7 @@ TEST_F(Composition, ColorsAreTheProcessors) {
       options.color_correct = method;
       ASSERT_TRUE(gl::FrameCompositor::takes_over(Stage::colors, methods()));
       for (const bool with_shadows : {false, true}) {
-        compose_by_processor(with_shadows);
+        compose_on_cpu(with_shadows);
         compose_on_gpu(with_shadows);
         expect_same(std::string(merge) + ", " + method + (with_shadows ? ", lifted" : ""));
         EXPECT_GT(expected.report.valid_pixels, 1000U);
@@ -192,7 +183,7 @@ TEST_F(Composition, ShadowsOutsideStayOrGo) {
   options.inpaint = "none";
   for (const bool removed : {false, true}) {
     options.remove_shadows = removed;
-    compose_by_processor(true);
+    compose_on_cpu(true);
     compose_on_gpu(true);
     expect_same(removed ? "removed" : "restored");
     std::size_t changed = 0;
@@ -204,19 +195,19 @@ TEST_F(Composition, ShadowsOutsideStayOrGo) {
   }
 }
 
-TEST_F(Composition, RimsAreTheProcessors) {
+TEST_F(Composition, RimsAreTheCpus) {
   options.inpaint = "none";
   options.mask_margin_px = 14;
   for (const int width_px : {1, 2, 7}) {
     options.soft_rim_px = width_px;
-    compose_by_processor(false);
+    compose_on_cpu(false);
     compose_on_gpu(false);
     expect_same(std::to_string(width_px));
   }
 }
 
 // Also where the object reaches the picture's border.
-TEST_F(Composition, ViewModesAreTheProcessors) {
+TEST_F(Composition, ViewModesAreTheCpus) {
   options.inpaint = "none";
   options.transparency = 0.3;
   region = frame.rig.color.bounds();
@@ -226,7 +217,7 @@ TEST_F(Composition, ViewModesAreTheProcessors) {
   for (const std::string& mode : Registry<ViewMode>::names()) {
     options.mode = mode;
     ASSERT_TRUE(gl::FrameCompositor::takes_over(Stage::finish, methods())) << mode;
-    compose_by_processor(true);
+    compose_on_cpu(true);
     compose_on_gpu(true);
     expect_same(mode);
   }

@@ -98,8 +98,8 @@ void FrameDownload::read_surfaces(const FrameInputs& inputs, Surfaces& surfaces)
       surfaces.label(x, y) = static_cast<std::uint8_t>(*word);
       if (shaded.empty()) continue;
       surfaces.light(x, y) = {static_cast<std::uint8_t>(*word >> 8),
-                                    static_cast<std::uint8_t>(*word >> 16),
-                                    static_cast<std::uint8_t>(*word >> 24)};
+                              static_cast<std::uint8_t>(*word >> 16),
+                              static_cast<std::uint8_t>(*word >> 24)};
     }
   }
 }

@@ -24,13 +24,13 @@ TEST_P(MasksOfRecordings, AreTheProcessorsOnTheGpu) {
   const Recording recording =
       load_recording(std::filesystem::path(testing::recordings_dir()) / GetParam());
   Pipeline pipeline(recording.rig, recording.scene, {});
-  OccluderStage by_processor(recording.rig, recording.scene);
+  OccluderStage by_cpu(recording.rig, recording.scene);
   OccluderStage by_gpu(recording.rig, recording.scene);
   by_gpu.draw_by("gl");
   const auto source = open_recording(recording, {});
   FrameSet frame;
   DiminishedFrame result;
-  const OcclusionMasks& expected = by_processor.masks();
+  const OcclusionMasks& expected = by_cpu.masks();
   const OcclusionMasks& masks = by_gpu.masks();
   std::vector<OccluderReport> expected_reports;
   std::vector<OccluderReport> reports;
@@ -42,7 +42,7 @@ TEST_P(MasksOfRecordings, AreTheProcessorsOnTheGpu) {
       options.mask_margin_px = options.rgbd_mask_margin_px = margin_px;
       options.margin_deviations = margin_px == 5 ? 2 : 0;
       const Observation observation{frame, result.report.markers, result.report.poses, options};
-      by_processor.detect(observation, expected_reports);
+      by_cpu.detect(observation, expected_reports);
       by_gpu.detect(observation, reports);
       ASSERT_EQ(by_gpu.message(), "");
       EXPECT_GT(count_nonzero(expected.color, expected.color.bounds()), 1000U);
@@ -99,7 +99,7 @@ class RandomPolygons : public ::testing::Test {
                                 std::vector<std::uint8_t>(objects, 0)});
       }
     }
-    by_processor->draw(drawings[0]);
+    by_cpu->draw(drawings[0]);
     by_gpu.draw(drawings[1]);
     EXPECT_EQ(masks, expected);
     for (std::size_t i = 0; i < masks.size(); ++i) {
@@ -109,7 +109,7 @@ class RandomPolygons : public ::testing::Test {
   }
 
   std::mt19937 random{7};
-  std::unique_ptr<MaskDrawer> by_processor = Registry<MaskDrawer>::get("cpu")();
+  std::unique_ptr<MaskDrawer> by_cpu = Registry<MaskDrawer>::get("cpu")();
   gl::GpuMaskDrawer by_gpu;
   int drawn = 0, not_drawn = 0;  ///< objects
 };

@@ -65,8 +65,7 @@ class Application {
   EGLContext context = EGL_NO_CONTEXT;
 };
 
-constexpr const char* by_processor =
-    "the picture was made by the CPU, and uploaded to its texture";
+constexpr const char* by_cpu = "the picture was made by the CPU, and uploaded to its texture";
 
 Options on_gpu() {
   Options options;
@@ -175,7 +174,7 @@ TEST_F(Textures, LeaveTheApplicationsContextCurrent) {
   application.end();
 }
 
-// From a backend of the processor's, a GPU's that leaves the rest to it, or one that fails.
+// From a backend of the CPU's, a GPU's that leaves the rest to it, or one that fails.
 TEST_F(Textures, HoldTheProcessorsPicturesToo) {
   Registry<Reconstructor>::add("broken", [](const Rig&) -> std::unique_ptr<Reconstructor> {
     class Broken : public Reconstructor {
@@ -200,7 +199,7 @@ TEST_F(Textures, HoldTheProcessorsPicturesToo) {
     EXPECT_EQ(application.shown(pipeline.texture()), expected.picture) << name;
     EXPECT_EQ(result.picture, expected.picture) << name;
     EXPECT_EQ(result.provenance, expected.provenance) << name;
-    EXPECT_THAT(result.report.messages, Contains(by_processor)) << name;
+    EXPECT_THAT(result.report.messages, Contains(by_cpu)) << name;
   }
 }
 
@@ -211,7 +210,7 @@ TEST_F(Textures, HoldTheCamerasPictureWhereNothingIsRemoved) {
   pipeline.process(scene.frame, result);
   EXPECT_EQ(application.shown(pipeline.texture()), scene.frame.color);
   EXPECT_TRUE(result.picture.empty());
-  EXPECT_THAT(result.report.messages, ::testing::Not(Contains(by_processor)));
+  EXPECT_THAT(result.report.messages, ::testing::Not(Contains(by_cpu)));
 }
 
 TEST_F(Textures, AreNotThereWithoutAPicture) {

@@ -178,8 +178,8 @@ void GlReconstructor::compose(const FrameInputs& inputs, Stage last, DiminishedF
     context_.check("making the compositor's programs and buffers");
   }
   r.upload.pack(inputs.frame, inputs.depths, inputs.poses, inputs.masks, region, inputs.options);
-  resize_second(r.upload.blends() && FrameCompositor::gives_reconstruction(inputs, last), rig_.color,
-                result.reconstruction.second);
+  resize_second(r.upload.blends() && FrameCompositor::gives_reconstruction(inputs, last),
+                rig_.color, result.reconstruction.second);
   prepare_blending();
   r.compositor->pack(inputs, last, r.upload);
   {

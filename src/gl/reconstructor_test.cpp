@@ -144,7 +144,7 @@ class ManyCameras : public ::testing::TestWithParam<const char*> {
         scene.frame, depths, scene.poses, masks, region, options, reconstruction);
   }
   /// The plain version takes other ones of cameras that are trusted equally.
-  Difference beside_the_processors() {
+  Difference beside_the_cpus() {
     reconstruct(GetParam(), result);
     reconstruct("cpu", expected);
     return compare(result, expected);
@@ -181,7 +181,7 @@ TEST_P(ThreeCameras, WithSlivers) {
   EXPECT_GT(slivers, 1000U);
 
   options.merge_cameras = "blend";
-  const Difference difference = beside_the_processors();
+  const Difference difference = beside_the_cpus();
   expect_alike(difference);
   EXPECT_GT(difference.drawn, difference.pixels / 2);
   EXPECT_GT(difference.blended, difference.drawn / 4);
@@ -193,7 +193,7 @@ TEST_P(ThreeCameras, WithSlivers) {
 TEST_P(ThreeCameras, InSmallRegions) {
   for (const Rect& small : {Rect{150, 120, 16, 24}, Rect{97, 80, 23, 31}, Rect{60, 60, 5, 3}}) {
     region = small;
-    const Difference difference = beside_the_processors();
+    const Difference difference = beside_the_cpus();
     EXPECT_EQ(difference.drawn, difference.pixels);
     EXPECT_EQ(difference.other_source + difference.other_color, 0U);
     EXPECT_GT(difference.blended, 0U);
@@ -209,7 +209,7 @@ INSTANTIATE_TEST_SUITE_P(Backends, NineCameras, ::testing::Values("gl", "gl_geom
 TEST_P(NineCameras, AreBlendedOnlyWhereOneSeesNothing) {
   for (const bool blended : {false, true}) {
     if (blended) scene.frame.rgbd[4].depth.fill(0);
-    const Difference difference = beside_the_processors();
+    const Difference difference = beside_the_cpus();
     expect_alike(difference);
     EXPECT_GT(difference.drawn, difference.pixels / 2);
     EXPECT_EQ(difference.blended > difference.drawn / 4, blended);

@@ -40,8 +40,8 @@ struct Task {
   }
   bool fill_on_cpu(Image<Bgr>& filled) const {
     filled = picture;
-    return Registry<Inpainter>::get("surfaces")()->inpaint({missing(), occlusion(), surfaces},
-                                                           {}, filled);
+    return Registry<Inpainter>::get("surfaces")()->inpaint({missing(), occlusion(), surfaces}, {},
+                                                           filled);
   }
 };
 
@@ -274,8 +274,7 @@ TEST_P(GlSurfaceFillingOnRecordings, FillsAsTheProcessorDoes) {
   DiminishedFrame result;
   for (int i = 0; i < 3 && source->next(frame); ++i) {
     pipeline.process(frame, result);
-    expect_same_as_cpu(gpu, {result.picture, result.provenance, result.surfaces},
-                             frame.name);
+    expect_same_as_cpu(gpu, {result.picture, result.provenance, result.surfaces}, frame.name);
   }
 }
 

@@ -54,8 +54,7 @@ void PlaneColors::find_objects(const Mask& occlusion) {
 }
 
 /// The colours of a row of cells, each in the entry to its lower right.
-void PlaneColors::add_row(int row, const Image<std::uint8_t>& labels,
-                          const Image<Bgr>& picture) {
+void PlaneColors::add_row(int row, const Image<std::uint8_t>& labels, const Image<Bgr>& picture) {
   Cell* own = cell_row(row + 1) + 1;
   const std::uint8_t* near = near_object_.row(row);
   const int end = std::min((row + 1) * cell, region_.height);

@@ -65,8 +65,7 @@ class SurfaceInpainting : public Inpainter {
     states_.resize(window_.width, window_.height);
     const Surfaces& surfaces = holes.surfaces;
     const Rect seen = intersect(window_, holes.missing.bounds());
-    const Rect drawn =
-        intersect(intersect(surfaces.region, surfaces.label.bounds()), seen);
+    const Rect drawn = intersect(intersect(surfaces.region, surfaces.label.bounds()), seen);
     for (int y = window_.y; y < window_.bottom(); ++y) {
       state::Code* const states = state_row(y);
       std::fill(states + window_.x, states + window_.right(), state::outside);

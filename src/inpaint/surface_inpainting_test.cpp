@@ -44,8 +44,8 @@ struct Room {
   }
   Image<Bgr> fill(const char* method = "surfaces") const {
     Image<Bgr> filled = picture;
-    EXPECT_TRUE(Registry<Inpainter>::get(method)()->inpaint({missing, occlusion, surfaces},
-                                                            {}, filled));
+    EXPECT_TRUE(
+        Registry<Inpainter>::get(method)()->inpaint({missing, occlusion, surfaces}, {}, filled));
     return filled;
   }
 };

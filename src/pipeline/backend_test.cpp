@@ -29,24 +29,22 @@ namespace {
   throw Error("the driver lost the context");
 }
 
-/// Draws by the processor, but for the frame `failing_frame`, in which it fails as a GPU does.
+/// Draws by the CPU, but for the frame `failing_frame`, in which it fails as a GPU does.
 class Unreliable : public Reconstructor {
  public:
   static inline std::size_t failing_frame = 1;
   static inline int made = 0;
 
-  explicit Unreliable(const Rig& rig) : processor_(Registry<Reconstructor>::get("cpu")(rig)) {
-    ++made;
-  }
+  explicit Unreliable(const Rig& rig) : cpu_(Registry<Reconstructor>::get("cpu")(rig)) { ++made; }
   void reconstruct(const FrameSet& frame, const DepthImages& depths, const Poses& poses,
                    const OcclusionMasks& masks, const TiledRegion& region, const Options& options,
                    Reconstruction& reconstruction) override {
     if (frame.index == failing_frame) fail(reconstruction);
-    processor_->reconstruct(frame, depths, poses, masks, region, options, reconstruction);
+    cpu_->reconstruct(frame, depths, poses, masks, region, options, reconstruction);
   }
 
  private:
-  std::unique_ptr<Reconstructor> processor_;
+  std::unique_ptr<Reconstructor> cpu_;
 };
 
 /// Cannot compose anything.
@@ -68,11 +66,11 @@ class Helpless : public ComposingReconstructor {
 };
 
 /// Three times the same frame. failures: those in which the backend fails.
-void expect_the_processors_frames(const std::string& backend, const std::vector<bool>& failures) {
+void expect_the_cpus_frames(const std::string& backend, const std::vector<bool>& failures) {
   const Recording recording =
       load_recording(std::filesystem::path(testing::recordings_dir()) / "calendar");
   Options options;
-  Pipeline by_processor(recording.rig, recording.scene, options);
+  Pipeline by_cpu(recording.rig, recording.scene, options);
   options.backend = backend;
   Pipeline pipeline(recording.rig, recording.scene, options);
   FrameSet frame;
@@ -81,7 +79,7 @@ void expect_the_processors_frames(const std::string& backend, const std::vector<
   DiminishedFrame result;
   for (std::size_t i = 0; i < failures.size(); ++i) {
     frame.index = i;
-    by_processor.process(frame, expected);
+    by_cpu.process(frame, expected);
     pipeline.process(frame, result);
     EXPECT_EQ(result.picture, expected.picture) << i;
     EXPECT_EQ(result.provenance, expected.provenance) << i;
@@ -89,25 +87,24 @@ void expect_the_processors_frames(const std::string& backend, const std::vector<
     EXPECT_EQ(result.report.messages.size(),
               expected.report.messages.size() + (failures[i] ? 1 : 0));
     if (failures[i]) {
-      EXPECT_THAT(
-          result.report.messages,
-          ::testing::Contains("the driver lost the context; drawn by the CPU instead"));
+      EXPECT_THAT(result.report.messages,
+                  ::testing::Contains("the driver lost the context; drawn by the CPU instead"));
     }
   }
 }
 
-TEST(Backend, WhereTheGpuFailsTheProcessorDrawsTheFrameAndTheNextBeginsAnew) {
+TEST(Backend, WhereTheGpuFailsTheCpuDrawsTheFrameAndTheNextBeginsAnew) {
   Registry<Reconstructor>::add("unreliable",
                                [](const Rig& rig) { return std::make_unique<Unreliable>(rig); });
   Unreliable::made = 0;
-  expect_the_processors_frames("unreliable", {false, true, false});
+  expect_the_cpus_frames("unreliable", {false, true, false});
   EXPECT_EQ(Unreliable::made, 2);
 }
 
-TEST(Backend, WhereTheGpuFailsOnTheWayToThePictureTheProcessorDoesTheFrame) {
+TEST(Backend, WhereTheGpuFailsOnTheWayToThePictureTheCpuDoesTheFrame) {
   Registry<Reconstructor>::add("helpless", [](const Rig&) { return std::make_unique<Helpless>(); });
   Helpless::made = 0;
-  expect_the_processors_frames("helpless", {true, true});
+  expect_the_cpus_frames("helpless", {true, true});
   EXPECT_EQ(Helpless::made, 2);
 }
 
@@ -132,8 +129,18 @@ TEST(Backend, AutoIsTheGpuOnlyWhereHardwareDraws) {
   const FrameMethods methods{{}, {.rule = Inpainter::Declaration::Rule::by_surface}, "remove"};
   DiminishedFrame result;
   backend.begin_frame();
-  backend.draw({scene.frame, depths, scene.poses, masks, {}, region, options, methods, nullptr, {},
-                {}, true},
+  backend.draw({scene.frame,
+                depths,
+                scene.poses,
+                masks,
+                {},
+                region,
+                options,
+                methods,
+                nullptr,
+                {},
+                {},
+                true},
                result);
   const DrawingReport& report = result.report.drawing;
   EXPECT_FALSE(backend.has_done(Stage::compositing)) << "the correction has its own rule";
@@ -148,7 +155,7 @@ class WholeFrames : public ::testing::TestWithParam<const char*> {
  protected:
   std::filesystem::path folder = std::filesystem::path(testing::recordings_dir()) / GetParam();
   Recording recording = load_recording(folder);
-  Pipeline by_processor{recording.rig, recording.scene, {}};
+  Pipeline by_cpu{recording.rig, recording.scene, {}};
   Pipeline by_gpu{recording.rig, recording.scene, {}};
   FrameSet frame;
   DiminishedFrame expected, result;
@@ -156,9 +163,9 @@ class WholeFrames : public ::testing::TestWithParam<const char*> {
   void process_both(const Options& options) {
     Options on_gpu = options;
     on_gpu.backend = "gl";
-    by_processor.set_options(options);
+    by_cpu.set_options(options);
     by_gpu.set_options(on_gpu);
-    by_processor.process(frame, expected);
+    by_cpu.process(frame, expected);
     by_gpu.process(frame, result);
   }
 
@@ -198,7 +205,7 @@ INSTANTIATE_TEST_SUITE_P(Recordings, WholeFrames,
                          [](const auto& test) { return std::string(test.param); });
 
 // What users see: the pictures of both backends, and what they score.
-TEST_P(WholeFrames, OfTheGpuAreThoseOfTheProcessor) {
+TEST_P(WholeFrames, OfTheGpuAreThoseOfTheCpu) {
   const auto source = open_recording(recording, {});
   while (source->next(frame)) {
     process_both({});
@@ -212,7 +219,7 @@ TEST_P(WholeFrames, OfTheGpuAreThoseOfTheProcessor) {
   }
 }
 
-TEST_P(WholeFrames, OfTheGpuAreThoseOfTheProcessorInEveryMode) {
+TEST_P(WholeFrames, OfTheGpuAreThoseOfTheCpuInEveryMode) {
   ASSERT_TRUE(open_recording(recording, {})->next(frame));
   for (const char* inpainting : {"surfaces", "none"}) {
     for (const std::string& mode : Registry<ViewMode>::names()) {
@@ -227,7 +234,7 @@ TEST_P(WholeFrames, OfTheGpuAreThoseOfTheProcessorInEveryMode) {
   }
 }
 
-TEST_P(WholeFrames, OfTheGpuAreThoseOfTheProcessorWithOtherOptions) {
+TEST_P(WholeFrames, OfTheGpuAreThoseOfTheCpuWithOtherOptions) {
   ASSERT_TRUE(open_recording(recording, {})->next(frame));
   for (const char* what :
        {"remove_shadows", "with shadows", "whole_view", "harmonic", "none", "surroundings_px"}) {

@@ -208,11 +208,11 @@ void Pipeline::process(const FrameSet& frame, DiminishedFrame& result) {
       });
   stage(Stage::drawing, [&] {
     self.choose_region();
-    self.backend.draw({frame, self.depth.depths(), report.poses, masks, objects, self.region,
-                       options, self.methods, self.background.planes(), self.background.shadows(),
-                       self.color_maps.by_source(), self.wants_reconstruction,
-                       self.texture.output()},
-                      result);
+    self.backend.draw(
+        {frame, self.depth.depths(), report.poses, masks, objects, self.region, options,
+         self.methods, self.background.planes(), self.background.shadows(),
+         self.color_maps.by_source(), self.wants_reconstruction, self.texture.output()},
+        result);
   });
 
   // 3.4 Compositing, colour correction, inpainting; a backend may have done these

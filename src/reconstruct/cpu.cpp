@@ -266,8 +266,8 @@ std::unique_ptr<Reconstructor> make(const Rig& rig) {
   return std::make_unique<VectorizedReconstructor>(rig);
 }
 
-const bool registered = Registry<Reconstructor>::add(
-    "cpu", {make, [] { return Reconstructor::Suited::always; }});
+const bool registered =
+    Registry<Reconstructor>::add("cpu", {make, [] { return Reconstructor::Suited::always; }});
 
 }  // namespace
 }  // namespace diminish

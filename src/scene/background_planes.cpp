@@ -163,8 +163,7 @@ void BackgroundPlanes::label_run(int first, int last, int y, const Image<float>&
                    planes_[k].normal.head<2>().dot(rays.slope) / planes_[k].distance_m};
     }
     surface_rows::label(depth_m.row(y) + x, rays.count, planes.data(),
-                        static_cast<int>(planes_.size()), tolerance,
-                        label.row(y) + x);
+                        static_cast<int>(planes_.size()), tolerance, label.row(y) + x);
     x += rays.count;
   }
 }

@@ -16,8 +16,7 @@ const Eigen::Vector3d eye(-0.45, 0.3, 0.9);
 class OnAnalyticScene : public ::testing::Test {
  protected:
   OnAnalyticScene() : frame(scene, {eye}) {
-    SceneSampler(frame.rig).sample(frame.frame, frame.poses, testing::empty_masks(frame.rig),
-                                   thin);
+    SceneSampler(frame.rig).sample(frame.frame, frame.poses, testing::empty_masks(frame.rig), thin);
   }
   AnalyticScene scene;
   AnalyticFrame frame;

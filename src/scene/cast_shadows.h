@@ -63,7 +63,8 @@ class CastShadows {
   std::span<const Shadow> shadows() const { return {shadows_.data(), shadow_count_}; }
   /// The box of the shadows in the colour camera's picture.
   Rect bounds() const;
-  /// Fills `surfaces.light`; the labels are there. Shadows end where something stands on their plane.
+  /// Fills `surfaces.light`; the labels are there. Shadows end where something stands on their
+  /// plane.
   void shade(const Reconstruction& reconstruction, Surfaces& surfaces);
 
  private:

@@ -8,8 +8,8 @@
 #include "diminish/frame_set.h"
 #include "diminish/occlusion_masks.h"
 #include "diminish/poses.h"
-#include "diminish/scene_samples.h"
 #include "diminish/rig.h"
+#include "diminish/scene_samples.h"
 #include "render/depth_mesh.h"
 
 namespace diminish {

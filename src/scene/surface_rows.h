@@ -6,7 +6,7 @@
 
 #include "depth/depth_noise.h"
 #include "diminish/image.h"
-#include "diminish/reconstruction.h"
+#include "diminish/surfaces.h"
 
 // The row kernels of BackgroundPlanes and CastShadows, on vector instructions.
 namespace diminish::surface_rows {

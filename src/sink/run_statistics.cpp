@@ -33,9 +33,8 @@ std::string RunStatistics::table() const {
   std::string text;
   for (std::size_t i = 0; i < time_row_count; ++i) {
     if (i == 0 || i == stage_count) {
-      text += fmt::format("{:<20}{:>10}{:>10}{:>10}{:>16}\n",
-                          i == 0 ? "Stage, ms" : "Table 2, ms", "avg", "min", "max",
-                          i == 0 ? "" : "paper");
+      text += fmt::format("{:<20}{:>10}{:>10}{:>10}{:>16}\n", i == 0 ? "Stage, ms" : "Table 2, ms",
+                          "avg", "min", "max", i == 0 ? "" : "paper");
     }
     const TimeRow& row = time_rows()[i];
     text += fmt::format("{:<20}{:>10.1f}{:>10.1f}{:>10.1f}{:>16}\n", row.title, average_ms(i),

@@ -32,8 +32,8 @@ class RunStatistics {
   /// Messages about what was not found or could not be done, with the number of frames.
   const std::map<std::string, std::size_t>& messages() const { return messages_; }
 
-  /// The times of the stages, the paper's Table 2 beside its own figures, then the messages with the
-  /// number of frames.
+  /// The times of the stages, the paper's Table 2 beside its own figures, then the messages with
+  /// the number of frames.
   std::string table() const;
 
  private:
