@@ -132,8 +132,8 @@ TEST_F(Composition, LabelsAndLightAreTheCpus) {
   compose_on_gpu(true);
   const Reconstruction& a = expected.reconstruction;
   const Reconstruction& b = result.reconstruction;
-  const Surfaces& on_cpu = expected.surfaces;
-  const Surfaces& on_gpu = result.surfaces;
+  const Surfaces& cpu_surfaces = expected.surfaces;
+  const Surfaces& gpu_surfaces = result.surfaces;
   EXPECT_EQ(a.color, b.color);
   EXPECT_EQ(a.depth_m, b.depth_m);
   EXPECT_EQ(a.source, b.source);
@@ -145,13 +145,13 @@ TEST_F(Composition, LabelsAndLightAreTheCpus) {
   std::size_t shaded = 0;
   for (int y = region.y; y < region.bottom(); ++y) {
     for (int x = region.x; x < region.right(); ++x) {
-      other_labels += on_cpu.label(x, y) != on_gpu.label(x, y) ? 1U : 0U;
-      ++by_label[on_cpu.label(x, y)];
-      shaded += on_cpu.light(x, y) != Bgr{255, 255, 255} ? 1U : 0U;
+      other_labels += cpu_surfaces.label(x, y) != gpu_surfaces.label(x, y) ? 1U : 0U;
+      ++by_label[cpu_surfaces.label(x, y)];
+      shaded += cpu_surfaces.light(x, y) != Bgr{255, 255, 255} ? 1U : 0U;
     }
   }
   EXPECT_LE(other_labels, 5U);
-  EXPECT_LE(other_colors(on_cpu.light, on_gpu.light), 10U);
+  EXPECT_LE(other_colors(cpu_surfaces.light, gpu_surfaces.light), 10U);
   EXPECT_GT(by_label[surface_label::first_plane], 10000U);
   EXPECT_GT(by_label[surface_label::foreground], 1000U);
   EXPECT_GT(shaded, 1000U);
