@@ -10,6 +10,7 @@
 
 #include "blend/layers.h"
 #include "core/rows.h"
+#include "core/runs.h"
 #include "depth/depth_noise.h"
 
 namespace diminish {
@@ -71,11 +72,8 @@ void CameraBlender::look_at_row(int y, Scratch& scratch, std::vector<Sliver>& sl
   gather(y, scratch.rows);
   scratch.bytes.resize(static_cast<std::size_t>(region_.width));
   find_seen(scratch.rows, agreement_m_, region_.width, seen_.row(y), scratch.bytes.data());
-  const std::uint8_t* const begin = scratch.bytes.data();
-  const std::uint8_t* const end = begin + region_.width;
-  for (const std::uint8_t* lone = std::find(begin, end, 255); lone != end;
-       lone = std::find(lone + 1, end, 255)) {
-    const auto x = static_cast<int>(lone - begin);
+  const std::uint8_t* const lone = scratch.bytes.data();
+  for (int x = 0; (x = find_equal(lone, x, region_.width, 255)) < region_.width; ++x) {
     const auto camera = static_cast<std::size_t>(std::countr_zero(seen_(x, y)));
     const float noise_m = DepthNoise().at(depth_m(scratch.rows[camera], x));
     if (is_sliver((*surfaces_)[camera], x, y,

@@ -2,6 +2,8 @@
 
 #include <cstring>
 
+#include "core/runs.h"
+
 namespace diminish {
 namespace {
 
@@ -16,15 +18,6 @@ bool any_set(const std::uint8_t* row, int count) {
   }
   for (; x < count; ++x) any |= row[x];
   return any != 0;
-}
-
-/// The first non-zero of `count` pixels; `count` if there is none.
-int first_set(const std::uint8_t* row, int count) {
-  constexpr int step = 32;
-  int x = 0;
-  while (x + step <= count && !any_set(row + x, step)) x += step;
-  while (x < count && row[x] == 0) ++x;
-  return x;
 }
 
 /// The last non-zero of `count` pixels; -1 if there is none.
@@ -72,7 +65,7 @@ Rect bounding_box(const Mask& mask, const Rect& part) {
   while (bottom > top && is_empty(bottom)) --bottom;
   for (int y = top; y <= bottom; ++y) {
     const std::uint8_t* row = mask.row(y) + part.x;
-    left = first_set(row, left);
+    left = find_other(row, 0, left, 0);
     right += 1 + last_set(row + right + 1, part.width - right - 1);
   }
   if (top > bottom) return {};

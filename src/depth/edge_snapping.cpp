@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
 
 #include "core/rows.h"
+#include "core/runs.h"
 #include "depth/depth_noise.h"
 #include "depth/discontinuity.h"
 
@@ -25,17 +25,6 @@ constexpr float least_gap_noise = 3;
 constexpr float least_contrast = 20;
 /// Of a surface's slope, against its neighbours' number: there are few.
 constexpr float slope_ridge = 1;
-
-/// Calls visit(i) for each that is not 0.
-template <class Visit>
-void for_each_set(const std::uint8_t* flags, int count, const Visit& visit) {
-  const std::uint8_t* const end = flags + count;
-  for (const std::uint8_t* at = flags;; ++at) {
-    at = static_cast<const std::uint8_t*>(std::memchr(at, 1, static_cast<std::size_t>(end - at)));
-    if (!at) return;
-    visit(static_cast<int>(at - flags));
-  }
-}
 
 void add_flags(const std::uint8_t* flags, std::size_t count, std::uint8_t* sum) {
   for (std::size_t i = 0; i < count; ++i) sum[i] |= flags[i];

@@ -1,7 +1,8 @@
 #include "inpaint/smooth_filling.h"
 
 #include <algorithm>
-#include <cstring>
+
+#include "core/runs.h"
 
 namespace diminish {
 namespace {
@@ -11,24 +12,6 @@ Rect coarser_box(const Rect& box) {
   const int x = box.x >> 1;
   const int y = box.y >> 1;
   return {x, y, ((box.right() + 1) >> 1) - x, ((box.bottom() + 1) >> 1) - y};
-}
-
-/// Calls visit(i) for each of `count` bytes that is not 0.
-template <class Visit>
-void for_each_set(const std::uint8_t* bytes, int count, const Visit& visit) {
-  std::uint64_t some = 0;
-  constexpr int step = sizeof some;
-  int i = 0;
-  for (; i + step <= count; i += step) {
-    std::memcpy(&some, bytes + i, sizeof some);
-    if (some == 0) continue;
-    for (int k = i; k < i + step; ++k) {
-      if (bytes[k] != 0) visit(k);
-    }
-  }
-  for (; i < count; ++i) {
-    if (bytes[i] != 0) visit(i);
-  }
 }
 
 }  // namespace
@@ -46,15 +29,10 @@ void SmoothFilling::Grid::find_open() {
   for (int y = 0; y < box.height; ++y) {
     row_begin.push_back(runs.size());
     const Kind* const row_kinds = kinds.row(y + 1) + 1;
-    for (int x = 0; x < box.width;) {
-      const void* const found =
-          std::memchr(row_kinds + x, open, static_cast<std::size_t>(box.width - x));
-      if (found == nullptr) break;
-      const int first = static_cast<int>(static_cast<const Kind*>(found) - row_kinds);
-      // The rim is not open.
-      x = first + 1;
-      while (row_kinds[x] == open) ++x;
-      runs.push_back({box.x + first, box.x + x});
+    int last = 0;
+    for (int first; (first = find_equal(row_kinds, last, box.width, open)) < box.width;) {
+      last = find_other(row_kinds, first, box.width, open);
+      runs.push_back({box.x + first, box.x + last});
     }
   }
   row_begin.push_back(runs.size());

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/channels.h"
+#include "core/connected_regions.h"
 #include "core/rows.h"
-#include "detect/color_blob/connected_regions.h"
 #include "diminish/inpainter.h"
 #include "inpaint/plane_colors.h"
 #include "inpaint/smooth_filling.h"
@@ -94,7 +94,7 @@ class SurfaceInpainting : public Inpainter {
       const state::Code* const states = states_.data();
       const std::size_t pixels = states_.size();
       for (std::size_t i = 0; i < pixels; ++i) open[i] = states[i] == code ? 255 : 0;
-      regions_.find(open_, 255, Connectivity::four);
+      regions_.find(open_, Pixels::set, Connectivity::four);
       if (label != surface_label::unknown) count_rims(label);
       for (std::size_t i = 0; i < regions_.regions().size(); ++i) {
         const bool is_kept = label == surface_label::unknown || is_on_plane(rims_[i]);

@@ -19,6 +19,13 @@ constexpr int coarsest_sweeps = 2;
 /// Multiplications that its factorization may take.
 constexpr double most_work = 2e6;
 
+/// Those of a word's pixels that lie in the run, which must reach into the word.
+std::uint32_t bits_of(const ConnectedRegions::Run& run, int word) {
+  const int from = std::max(run.first - 32 * word, 0);
+  const int to = std::min(run.last - 32 * word, 32);
+  return (to == 32 ? ~0U : (1U << to) - 1) & ~((1U << from) - 1);
+}
+
 /// The squared error after a cycle, in terms of its squared change, if further ones reduce it at
 /// the rate at which it was reduced before; at least as is usual, and as said of the first cycle.
 double left_of_error(double change_before, double change) {
@@ -123,35 +130,38 @@ void MembraneSolver::add_source(int x, int y, const Values& value) {
 }
 
 const std::vector<LooseRun>& MembraneSolver::take_out_loose_parts() {
-  parts_.find(cells_.data() + word_index(0), words_per_row_, tile_columns_, height_);
-  held_.assign(parts_.part_limit(), false);
+  using Run = ConnectedRegions::Run;
+  parts_.begin();
   for (int y = 0; y < height_; ++y) {
-    const std::uint32_t* row = fixed_.data() + word_index(y);
+    for_each_run(cells_.data() + word_index(y), tile_columns_,
+                 [&](int first, int last) { parts_.add(y, first, last); });
+  }
+  parts_.connect(Connectivity::four);
+  held_.assign(parts_.regions().size(), false);
+  for (const Run& run : parts_.runs()) {
+    const std::uint32_t* row = fixed_.data() + word_index(run.y);
     const std::uint32_t* above = row - words_per_row_;
     const std::uint32_t* below = row + words_per_row_;
-    for (const ConnectedRuns::Run& run : parts_.row(y)) {
-      bool held = held_[run.part];
-      for (int word = run.first / 32; !held && word <= (run.last - 1) / 32; ++word) {
-        const std::uint32_t beside = row[word] << 1 | row[word] >> 1 | row[word - 1] >> 31 |
-                                     row[word + 1] << 31 | above[word] | below[word];
-        held = (beside & run.bits(word)) != 0;
-      }
-      held_[run.part] = held;
+    bool held = held_[run.region];
+    for (int word = run.first / 32; !held && word <= (run.last - 1) / 32; ++word) {
+      const std::uint32_t beside = row[word] << 1 | row[word] >> 1 | row[word - 1] >> 31 |
+                                   row[word + 1] << 31 | above[word] | below[word];
+      held = (beside & bits_of(run, word)) != 0;
     }
+    held_[run.region] = held;
   }
   loose_.clear();
-  for (int y = 0; y < height_; ++y) {
-    for (const ConnectedRuns::Run& run : parts_.row(y)) {
-      if (held_[run.part]) continue;
-      loose_.push_back({y, run.first, run.last});
-      for (int word = run.first / 32; word <= (run.last - 1) / 32; ++word) {
-        const std::size_t at = static_cast<std::size_t>(word_index(y) + word);
-        size_ -= static_cast<std::size_t>(std::popcount(cells_[at] & run.bits(word)));
-        cells_[at] &= ~run.bits(word);
-        irregular_[at] &= ~run.bits(word);
-      }
-      std::fill(keys(y) + run.first, keys(y) + run.last, std::uint8_t{0});
+  for (const Run& run : parts_.runs()) {
+    if (held_[run.region]) continue;
+    loose_.push_back({run.y, run.first, run.last});
+    for (int word = run.first / 32; word <= (run.last - 1) / 32; ++word) {
+      const std::size_t at = static_cast<std::size_t>(word_index(run.y) + word);
+      const std::uint32_t bits = bits_of(run, word);
+      size_ -= static_cast<std::size_t>(std::popcount(cells_[at] & bits));
+      cells_[at] &= ~bits;
+      irregular_[at] &= ~bits;
     }
+    std::fill(keys(run.y) + run.first, keys(run.y) + run.last, std::uint8_t{0});
   }
   return loose_;
 }

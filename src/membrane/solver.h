@@ -1,12 +1,11 @@
 #pragma once
 
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
+#include "core/connected_regions.h"
 #include "membrane/coarsest.h"
-#include "membrane/connected_runs.h"
 #include "membrane/level.h"
 
 namespace diminish {
@@ -53,11 +52,11 @@ class MembraneSolver {
   /// Calls visit(x, y) for each fixed pixel that has a neighbour to solve for: set_fixed it.
   template <class Visit>
   void for_each_fixed(const Visit& visit) const {
-    for_each_bit(fixed_, visit);
+    for_each_pixel(fixed_, visit);
   }
   template <class Visit>
   void for_each_irregular(const Visit& visit) const {
-    for_each_bit(irregular_, visit);
+    for_each_pixel(irregular_, visit);
   }
   void set_fixed(int x, int y, const Values& value);
   /// Adds to the right side of an irregular pixel.
@@ -103,13 +102,11 @@ class MembraneSolver {
 
  private:
   template <class Visit>
-  void for_each_bit(const std::vector<std::uint32_t>& words, const Visit& visit) const {
+  void for_each_pixel(const std::vector<std::uint32_t>& words, const Visit& visit) const {
     for (int y = 0; y < height_; ++y) {
       const std::uint32_t* row = words.data() + word_index(y);
       for (int word = 0; word < tile_columns_; ++word) {
-        for (unsigned bits = row[word]; bits != 0; bits &= bits - 1) {
-          visit(word * MembraneLevel::tile_width + std::countr_zero(bits), y);
-        }
+        for_each_bit(row[word], [&](int bit) { visit(word * MembraneLevel::tile_width + bit, y); });
       }
     }
   }
@@ -130,7 +127,7 @@ class MembraneSolver {
   std::vector<std::uint32_t> cells_, fixed_, irregular_;
   std::size_t size_ = 0;
   std::vector<Boundary> sources_, fixed_values_;
-  ConnectedRuns parts_;
+  ConnectedRegions parts_;
   std::vector<bool> held_;
   std::vector<LooseRun> loose_;
   std::vector<MembraneLevel> levels_;

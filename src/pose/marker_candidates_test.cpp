@@ -10,7 +10,7 @@
 #include "core/mat.h"
 #include "diminish/marker_detector.h"
 #include "paths.h"
-#include "pose/dark_components.h"
+#include "pose/dark_regions.h"
 #include "pose/decimation.h"
 #include "pose/marker_code.h"
 #include "pose/quad_candidates.h"
@@ -31,10 +31,9 @@ Image<Bgr> dark_polygon(const std::vector<cv::Point>& corners) {
 std::vector<Quad> candidates(const Image<Bgr>& image) {
   Image<std::uint8_t> small;
   decimate(image, small);
-  DarkComponents components;
-  components.find(small);
+  DarkRegions dark;
   QuadCandidates quads;
-  return quads.find(components);
+  return quads.find(dark.find(small));
 }
 
 TEST(Decimate, IsTheMeanOfTheGreenChannelInItsMiddleRows) {
@@ -60,44 +59,31 @@ TEST(Decimate, IsTheMeanOfTheGreenChannelInItsMiddleRows) {
   }
 }
 
-// Against OpenCV's connected components of the same threshold.
-TEST(DarkComponents, AreTheFourConnectedPartsBelowTheLocalMean) {
+TEST(DarkRegions, AreTheFourConnectedPartsBelowTheLocalMean) {
   std::mt19937 random(2);
   Image<std::uint8_t> picture(97, 61);
   for (std::uint8_t& pixel : picture) pixel = static_cast<std::uint8_t>(random() % 200 + 20);
-  cv::Mat blurred;
   cv::Mat mat = as_mat(picture);
   cv::GaussianBlur(mat, mat, {}, 1.5);
-  DarkComponents components;
-  components.find(picture);
-  cv::Mat dark = cv::Mat::zeros(mat.size(), CV_8U);
+  Mask expected(97, 61, 0);
   for (int y = 2; y < mat.rows - 2; ++y) {
     for (int x = 2; x < mat.cols - 2; ++x) {
       const double mean = cv::mean(mat(cv::Rect(x - 2, y - 2, 5, 5)))[0];
       // 27 (v + 2) < 25 mean
-      if (27 * (picture(x, y) + 2) < std::lround(25 * mean)) dark.at<std::uint8_t>(y, x) = 255;
+      if (27 * (picture(x, y) + 2) < std::lround(25 * mean)) expected(x, y) = 255;
     }
   }
+  DarkRegions regions;
+  Mask dark(97, 61, 0);
+  const ConnectedRegions& found = regions.find(picture);
+  for (const ConnectedRegions::Run& run : found.runs()) {
+    dark.fill({run.first, run.y, run.last - run.first, 1}, 255);
+  }
+  EXPECT_TRUE(dark == expected);
   cv::Mat labels;
-  const int expected = cv::connectedComponents(dark, labels, 4) - 1;
-  ASSERT_GT(expected, 20);
-  ASSERT_EQ(components.components().size(), static_cast<std::size_t>(expected));
-  for (const DarkComponents::Component& component : components.components()) {
-    const int label = labels.at<int>(components.run(component.first_run).y,
-                                     components.run(component.first_run).first);
-    int pixels = 0;
-    for (int i = component.first_run; i >= 0; i = components.run(i).next) {
-      const DarkComponents::Run& run = components.run(i);
-      for (int x = run.first; x < run.last; ++x, ++pixels)
-        ASSERT_EQ(labels.at<int>(run.y, x), label);
-    }
-    EXPECT_EQ(pixels, component.pixels);
-    EXPECT_EQ(pixels, cv::countNonZero(labels == label));
-    std::vector<cv::Point> places;
-    cv::findNonZero(labels == label, places);
-    const cv::Rect box = cv::boundingRect(places);
-    EXPECT_EQ(component.box, (Rect{box.x, box.y, box.width, box.height}));
-  }
+  const int count = cv::connectedComponents(as_mat(expected), labels, 4) - 1;
+  ASSERT_GT(count, 20);
+  EXPECT_EQ(found.regions().size(), static_cast<std::size_t>(count));
 }
 
 TEST(QuadCandidates, HaveTheCornersOfADarkQuadrilateral) {

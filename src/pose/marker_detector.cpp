@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "pose/corner_refinement.h"
-#include "pose/dark_components.h"
+#include "pose/dark_regions.h"
 #include "pose/decimation.h"
 #include "pose/marker_code.h"
 #include "pose/marker_dictionary.h"
@@ -40,7 +40,7 @@ struct MarkerDetector::Implementation {
 
   MarkerCode code;
   Image<std::uint8_t> small;
-  DarkComponents components;
+  DarkRegions dark_regions;
   QuadCandidates candidates;
 };
 
@@ -55,8 +55,7 @@ void MarkerDetector::detect(const Image<Bgr>& image, const Lens& lens,
   Implementation& self = *implementation_;
   markers.clear();
   decimate(image, self.small);
-  self.components.find(self.small);
-  for (Quad quad : self.candidates.find(self.components)) {
+  for (Quad quad : self.candidates.find(self.dark_regions.find(self.small))) {
     const int modules = self.code.modules();
     if (!refine_corners(image, lens, modules, coarse_pass, quad) ||
         !refine_corners(image, lens, modules, middle_pass, quad)) {

@@ -23,42 +23,43 @@ long doubled_area(int ax, int ay, int bx, int by, int cx, int cy) {
 
 }  // namespace
 
-const std::vector<Quad>& QuadCandidates::find(const DarkComponents& components) {
+const std::vector<Quad>& QuadCandidates::find(const ConnectedRegions& regions) {
   quads_.clear();
-  for (const DarkComponents::Component& component : components.components()) {
-    if (std::max(component.box.width, component.box.height) < min_box ||
-        std::min(component.box.width, component.box.height) < min_box / 2 ||
-        component.pixels < component.box.width + component.box.height) {
+  for (const ConnectedRegions::Region& region : regions.regions()) {
+    if (std::max(region.box.width, region.box.height) < min_box ||
+        std::min(region.box.width, region.box.height) < min_box / 2 ||
+        region.pixels < region.box.width + region.box.height) {
       continue;
     }
-    find_hull(components, component);
+    find_hull(regions, region);
     Quad quad;
     if (reduce_to_quad(quad)) quads_.push_back(quad);
   }
   return quads_;
 }
 
-void QuadCandidates::find_hull(const DarkComponents& components,
-                               const DarkComponents::Component& component) {
+void QuadCandidates::find_hull(const ConnectedRegions& regions,
+                               const ConnectedRegions::Region& region) {
   // The outline's ends on each line between two rows of pixels, from top to bottom: sorted.
   points_.clear();
   int above_first = std::numeric_limits<int>::max();
   int above_last = std::numeric_limits<int>::min();
-  for (int i = component.first_run; i >= 0;) {
-    const int y = components.run(i).y;
+  const std::vector<ConnectedRegions::Run>& runs = regions.runs();
+  for (int i = region.first_run; i >= 0;) {
+    const int y = runs[i].y;
     int first = std::numeric_limits<int>::max();
     int last = std::numeric_limits<int>::min();
-    for (; i >= 0 && components.run(i).y == y; i = components.run(i).next) {
-      first = std::min(first, components.run(i).first);
-      last = std::max(last, components.run(i).last);
+    for (; i >= 0 && runs[i].y == y; i = runs[i].next) {
+      first = std::min(first, runs[i].first);
+      last = std::max(last, runs[i].last);
     }
     points_.push_back({std::min(first, above_first), y});
     points_.push_back({std::max(last, above_last), y});
     above_first = first;
     above_last = last;
   }
-  points_.push_back({above_first, component.box.bottom()});
-  points_.push_back({above_last, component.box.bottom()});
+  points_.push_back({above_first, region.box.bottom()});
+  points_.push_back({above_last, region.box.bottom()});
   // Andrew 1979, down the right side and up the left: clockwise.
   hull_.clear();
   const auto add = [this](const Point& point, std::size_t base) {

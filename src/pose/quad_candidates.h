@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "pose/dark_components.h"
+#include "core/connected_regions.h"
 
 namespace diminish {
 
@@ -12,16 +12,16 @@ namespace diminish {
 /// right to a few of them.
 using Quad = std::array<Eigen::Vector2d, 4>;
 
-/// Finds the components whose outline is a convex quadrilateral.
+/// Finds the regions whose outline is a convex quadrilateral.
 class QuadCandidates {
  public:
-  const std::vector<Quad>& find(const DarkComponents& components);
+  const std::vector<Quad>& find(const ConnectedRegions& regions);
 
  private:
   struct Point {
     int x, y;
   };
-  void find_hull(const DarkComponents& components, const DarkComponents::Component& component);
+  void find_hull(const ConnectedRegions& regions, const ConnectedRegions::Region& region);
   bool reduce_to_quad(Quad& quad);
 
   std::vector<Point> points_, hull_;

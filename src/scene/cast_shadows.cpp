@@ -8,6 +8,7 @@
 
 #include "core/channels.h"
 #include "core/rows.h"
+#include "core/runs.h"
 #include "depth/depth_noise.h"
 #include "scene/surface_rows.h"
 
@@ -134,9 +135,8 @@ void CastShadows::choose_lit(const Ground& ground, const std::vector<SceneSample
 template <class Visit>
 void CastShadows::for_each_direction(const std::uint64_t* bits, const Visit& visit) {
   for (std::size_t word = 0; word < words; ++word) {
-    for (std::uint64_t left = bits[word]; left != 0; left &= left - 1) {
-      visit(bits_a_word * word + static_cast<std::size_t>(std::countr_zero(left)));
-    }
+    for_each_bit(bits[word],
+                 [&](int bit) { visit(bits_a_word * word + static_cast<std::size_t>(bit)); });
   }
 }
 

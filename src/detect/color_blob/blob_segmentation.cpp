@@ -45,7 +45,7 @@ void BlobSegmentation::find_seeds() {
   for (std::size_t i = 0; i < seeds_.size(); ++i) {
     seeds_.data()[i] = gradient_.data()[i] <= std::max(lowest_.data()[i], even) ? 255 : 0;
   }
-  seed_regions_.find(seeds_, 255, Connectivity::four);
+  seed_regions_.find(seeds_, Pixels::set, Connectivity::four);
   labels_.resize(small_.width(), small_.height(), 0);
   for (const ConnectedRegions::Run& run : seed_regions_.runs()) {
     std::fill_n(labels_.row(run.y) + run.first, run.last - run.first,

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "detect/color_blob/connected_regions.h"
+#include "core/connected_regions.h"
 #include "detect/color_blob/smooth_picture.h"
 #include "detect/color_blob/watershed.h"
 #include "diminish/image.h"

@@ -12,7 +12,7 @@ const std::vector<Rect>& CandidateWindows::find(const Image<Bgr>& image, const C
   take_samples(image, table, pitch, limits);
   // Across a sample that noise or a highlight spoils.
   dilate(candidates_, {1, 1}, scratch_, joined_);
-  regions_.find(joined_, 255, Connectivity::four);
+  regions_.find(joined_, Pixels::set, Connectivity::four);
   core_samples_.assign(regions_.regions().size(), 0);
   for (const ConnectedRegions::Run& run : regions_.runs()) {
     const std::uint8_t* const row = core_.row(run.y);

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/connected_regions.h"
 #include "detect/color_blob/color_table.h"
-#include "detect/color_blob/connected_regions.h"
 #include "diminish/image.h"
 
 namespace diminish {

@@ -156,7 +156,7 @@ bool ColorBlobFinder::select_blobs(int level) {
   if (round_) {  // no ball has an edge or a pole of its colour behind it for a handle
     open_by_disc();
   }
-  selected_regions_.find(selected_, 255, Connectivity::eight);
+  selected_regions_.find(selected_, Pixels::set, Connectivity::eight);
   return true;
 }
 
@@ -183,14 +183,13 @@ void ColorBlobFinder::open_by_disc() {
 /// than its mean colour does, but are next to it.
 bool ColorBlobFinder::find_component(const ConnectedRegions::Region& region, double largest_hole) {
   if (region.box.width * region.box.height < fewest_pixels_) return false;
-  trace_outline(selected_, region.first, outline_);
+  trace_outline(selected_, selected_regions_.first_pixel(region), outline_);
   if (polygon_area(outline_) < fewest_pixels_ / 2) return false;
   component_.resize(selected_.width(), selected_.height(), 0);
-  for (const ConnectedRegions::Run& run : selected_regions_.runs()) {
-    if (&selected_regions_.regions()[run.region] != &region) continue;
+  selected_regions_.for_each_run(region, [&](const ConnectedRegions::Run& run) {
     std::fill(component_.row(run.y) + run.first, component_.row(run.y) + run.last,
               std::uint8_t{255});
-  }
+  });
   component_pixels_ = region.pixels;
   fill_holes(largest_hole);
   const int core = count_both(component_, core_);
@@ -199,7 +198,7 @@ bool ColorBlobFinder::find_component(const ConnectedRegions::Region& region, dou
 
 /// Fills the holes of `component_`, but for those larger than a part of it, where only blobs stay.
 void ColorBlobFinder::fill_holes(double largest_hole) {
-  gaps_.find(component_, 0, Connectivity::four);
+  gaps_.find(component_, Pixels::clear, Connectivity::four);
   const Rect inner = grow(component_.bounds(), -1);
   const auto is_hole = [&](const ConnectedRegions::Region& gap) {
     return intersect(gap.box, inner) == gap.box;
@@ -231,7 +230,7 @@ bool ColorBlobFinder::is_known_outline() {
 void ColorBlobFinder::refine(const Image<Bgr>& image, const Rect& window, Mask& mask) {
   const Rect part =
       refinement_.refine(image, region_, window, BlobSegmentation::scale(image), object_);
-  object_regions_.find(object_, 255, Connectivity::eight);
+  object_regions_.find(object_, Pixels::set, Connectivity::eight);
   for (const ConnectedRegions::Run& run : object_regions_.runs()) {
     std::uint8_t* const row = mask.row(part.y + run.y) + part.x;
     std::fill(row + run.first, row + run.last, std::uint8_t{255});
@@ -243,7 +242,7 @@ void ColorBlobFinder::refine(const Image<Bgr>& image, const Rect& window, Mask& 
 void ColorBlobFinder::complete_round_shape(const Rect& part, Mask& mask) {
   outline_.clear();
   for (const ConnectedRegions::Region& region : object_regions_.regions()) {
-    trace_outline(object_, region.first, other_outline_);
+    trace_outline(object_, object_regions_.first_pixel(region), other_outline_);
     if (other_outline_.size() > outline_.size()) std::swap(outline_, other_outline_);
   }
   const Rect picture{-part.x, -part.y, mask.width(), mask.height()};

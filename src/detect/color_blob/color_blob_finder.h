@@ -3,11 +3,12 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/connected_regions.h"
 #include "detect/color_blob/blob_segmentation.h"
 #include "detect/color_blob/candidate_windows.h"
 #include "detect/color_blob/color_model.h"
 #include "detect/color_blob/color_table.h"
-#include "detect/color_blob/connected_regions.h"
+#include "detect/color_blob/outline.h"
 #include "detect/color_blob/outline_refinement.h"
 #include "detect/color_blob/round_shape.h"
 #include "diminish/image.h"

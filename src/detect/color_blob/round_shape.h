@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "detect/color_blob/conic_fit.h"
-#include "detect/color_blob/connected_regions.h"
+#include "detect/color_blob/outline.h"
 #include "diminish/image.h"
 
 namespace diminish {

@@ -5,15 +5,17 @@
 #include <algorithm>
 #include <numbers>
 
+#include "core/connected_regions.h"
+
 namespace diminish {
 namespace {
 
 /// The only region's shape; the region's mask is the whole picture.
 std::optional<RoundShape> fit(const Mask& region) {
   ConnectedRegions regions;
-  regions.find(region, 255, Connectivity::eight);
+  regions.find(region, Pixels::set, Connectivity::eight);
   Outline outline;
-  trace_outline(region, regions.regions().at(0).first, outline);
+  trace_outline(region, regions.first_pixel(regions.regions().at(0)), outline);
   return RoundShapeFitter().fit(outline, region, region.bounds());
 }
 
@@ -68,8 +70,8 @@ TEST(RoundShape, TheMaskMayBeAPartOfThePicture) {
   for (int y = 0; y < 90; ++y) std::copy_n(whole.row(15 + y), 35, part.row(y));
   Outline outline;
   ConnectedRegions regions;
-  regions.find(part, 255, Connectivity::eight);
-  trace_outline(part, regions.regions().at(0).first, outline);
+  regions.find(part, Pixels::set, Connectivity::eight);
+  trace_outline(part, regions.first_pixel(regions.regions().at(0)), outline);
   const auto shape = RoundShapeFitter().fit(outline, part, {0, -15, 160, 120});
   const auto expected = fit(whole);
   ASSERT_TRUE(shape && expected);

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
-#include <cstring>
+
+#include "core/runs.h"
 
 namespace diminish {
 namespace {
@@ -17,9 +18,7 @@ int first_unknown(const std::uint32_t* labels, int count) {
   return static_cast<int>(std::find(labels, labels + count, 0U) - labels);
 }
 int first_unknown(const std::uint8_t* labels, int count) {
-  const void* const found = std::memchr(labels, 0, static_cast<std::size_t>(count));
-  return found == nullptr ? count
-                          : static_cast<int>(static_cast<const std::uint8_t*>(found) - labels);
+  return find_equal(labels, 0, count, 0);
 }
 
 /// Pixels by a difference from 0 to 255, of each difference first in, first out.

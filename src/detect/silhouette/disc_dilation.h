@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/runs.h"
 #include "diminish/image.h"
 
 namespace diminish {
@@ -21,9 +22,7 @@ class DiscDilation {
 
  private:
   void copy_part(const Mask& mask, const Rect& part);
-  template <class IsSet>
-  void spread_runs(const Rect& part, int radius, const IsSet& is_set, std::uint8_t value,
-                   Mask& target);
+  void spread_runs(const Rect& part, int radius, Pixels pixels, std::uint8_t value, Mask& target);
 
   Mask before_;
   std::vector<int> half_widths_;  ///< of the disc's rows, from its middle on

@@ -1,0 +1,102 @@
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <cstring>
+
+namespace diminish {
+
+namespace runs_detail {
+int find_other_far(const std::uint8_t* bytes, int x, int end, std::uint8_t value);
+int find_equal_far(const std::uint8_t* bytes, int x, int end, std::uint8_t value);
+
+inline constexpr int word_bytes = sizeof(std::uint64_t);
+inline constexpr std::uint64_t every_byte = 0x0101010101010101U;
+
+/// Eight bytes from `bytes` on, each combined with `value` by XOR.
+inline std::uint64_t differences(const std::uint8_t* bytes, std::uint8_t value) {
+  static_assert(std::endian::native == std::endian::little, "the first byte is the lowest");
+  std::uint64_t word;
+  std::memcpy(&word, bytes, sizeof(word));
+  return word ^ (value * every_byte);
+}
+}  // namespace runs_detail
+
+/// The index of the first of bytes [x, end) that is not `value`; `end` if all are.
+inline int find_other(const std::uint8_t* bytes, int x, int end, std::uint8_t value) {
+  if (x + runs_detail::word_bytes <= end) {
+    const std::uint64_t word = runs_detail::differences(bytes + x, value);
+    if (word != 0) return x + std::countr_zero(word) / 8;
+    x += runs_detail::word_bytes;
+  }
+  return runs_detail::find_other_far(bytes, x, end, value);
+}
+
+/// The index of the first of bytes [x, end) that is `value`; `end` if none is.
+inline int find_equal(const std::uint8_t* bytes, int x, int end, std::uint8_t value) {
+  if (x + runs_detail::word_bytes <= end) {
+    const std::uint64_t word = runs_detail::differences(bytes + x, value);
+    // The lowest of these bits is in the lowest byte that is 0; those above it may be wrong.
+    const std::uint64_t zeros =
+        (word - runs_detail::every_byte) & ~word & (0x80 * runs_detail::every_byte);
+    if (zeros != 0) return x + std::countr_zero(zeros) / 8;
+    x += runs_detail::word_bytes;
+  }
+  return runs_detail::find_equal_far(bytes, x, end, value);
+}
+
+/// Calls visit(x) for each of `count` bytes that is not 0, in order.
+template <class Visit>
+void for_each_set(const std::uint8_t* bytes, int count, const Visit& visit) {
+  for (int x = 0; (x = find_other(bytes, x, count, 0)) < count; ++x) visit(x);
+}
+
+/// Which pixels of a mask are meant: those that are not 0, or those that are.
+enum class Pixels { set, clear };
+
+/// Calls visit(first, last) for each longest run [first, last) of such bytes in [begin, end), in
+/// order.
+template <class Visit>
+void for_each_run(const std::uint8_t* bytes, int begin, int end, Pixels pixels,
+                  const Visit& visit) {
+  for (int last = begin; last < end;) {
+    const int first =
+        pixels == Pixels::set ? find_other(bytes, last, end, 0) : find_equal(bytes, last, end, 0);
+    if (first == end) return;
+    last =
+        pixels == Pixels::set ? find_equal(bytes, first, end, 0) : find_other(bytes, first, end, 0);
+    visit(first, last);
+  }
+}
+
+/// Calls visit(i) for each bit i that is set, the lowest first.
+template <class Word, class Visit>
+void for_each_bit(Word bits, const Visit& visit) {
+  for (; bits != 0; bits &= bits - 1) visit(std::countr_zero(bits));
+}
+
+/// Calls visit(first, last) for each longest run [first, last) of set bits in a row of `words`
+/// words of 32 pixels, the lowest bit first.
+template <class Visit>
+void for_each_run(const std::uint32_t* bits, int words, const Visit& visit) {
+  constexpr int width = 32;
+  int first = -1;
+  for (int word = 0; word < words; ++word) {
+    const std::uint32_t value = bits[word];
+    if (value == (first < 0 ? 0U : ~0U)) continue;
+    for (int bit = 0; bit < width;) {
+      const std::uint32_t rest = (first < 0 ? value : ~value) >> bit;
+      if (rest == 0) break;
+      bit += std::countr_zero(rest);
+      if (first < 0) {
+        first = word * width + bit;
+      } else {
+        visit(first, word * width + bit);
+        first = -1;
+      }
+    }
+  }
+  if (first >= 0) visit(first, words * width);
+}
+
+}  // namespace diminish

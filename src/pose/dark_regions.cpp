@@ -1,0 +1,48 @@
+#include "pose/dark_regions.h"
+
+namespace diminish {
+namespace {
+
+/// Half the side of the square around a pixel. Small, so that a marker does not grow together with
+/// the shadow around its margin.
+constexpr int radius = 2;
+constexpr int side = 2 * radius + 1;
+/// A dark pixel's brightness times this is less than the sum of the square: 7 % below its mean.
+constexpr int scale = 27;
+static_assert(side == 5 && scale * (255 + 2) < 65536, "the sums below are written out, in 16 bits");
+/// In levels: what noise does not reach in a dark picture.
+constexpr int min_contrast = 2;
+
+}  // namespace
+
+const ConnectedRegions& DarkRegions::find(const Image<std::uint8_t>& small) {
+  const int width = small.width();
+  const int height = small.height();
+  regions_.begin();
+  column_sums_.resize(static_cast<std::size_t>(width));
+  // Nothing is dark in the margins.
+  dark_.assign(static_cast<std::size_t>(width), 0);
+  std::uint16_t* sums = column_sums_.data();
+  for (int y = radius; y + radius < height && width > 2 * radius; ++y) {
+    const std::uint8_t* rows[side];
+    for (int i = 0; i < side; ++i) rows[i] = small.row(y - radius + i);
+    for (int x = 0; x < width; ++x) {
+      sums[x] = static_cast<std::uint16_t>(rows[0][x] + rows[1][x] + rows[2][x] + rows[3][x] +
+                                           rows[4][x]);
+    }
+    const std::uint8_t* row = small.row(y);
+    std::uint8_t* dark = dark_.data();
+    for (int x = radius; x < width - radius; ++x) {
+      const auto around = static_cast<std::uint16_t>(sums[x - 2] + sums[x - 1] + sums[x] +
+                                                     sums[x + 1] + sums[x + 2]);
+      const auto own = static_cast<std::uint16_t>(scale * row[x] + scale * min_contrast);
+      dark[x] = own < around ? 255 : 0;
+    }
+    for_each_run(dark, 0, width, Pixels::set,
+                 [&](int first, int last) { regions_.add(y, first, last); });
+  }
+  regions_.connect(Connectivity::four);
+  return regions_;
+}
+
+}  // namespace diminish

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/connected_regions.h"
+#include "diminish/image.h"
+
+namespace diminish {
+
+/// The connected parts of a picture that are darker than what is around them.
+class DarkRegions {
+ public:
+  /// A pixel is dark if it is 7 % (and two levels) below the mean of the 5x5 pixels around it.
+  /// Parts are 4-connected: a marker's corner often touches that of the shadow around its margin.
+  const ConnectedRegions& find(const Image<std::uint8_t>& small);
+
+ private:
+  std::vector<std::uint16_t> column_sums_;
+  std::vector<std::uint8_t> dark_;  ///< of a row
+  ConnectedRegions regions_;
+};
+
+}  // namespace diminish
