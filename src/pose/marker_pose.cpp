@@ -6,32 +6,26 @@
 #include <limits>
 #include <utility>
 
-#include "geometry/rotation.h"
+#include "geometry/cross.h"
+#include "geometry/homography.h"
+#include "geometry/ideal_camera.h"
+#include "geometry/rigid_least_squares.h"
 
 namespace diminish {
 namespace {
 
-/// A marker's corners as pixels of an ideal camera: no lens, focal length as the real one's.
+/// A marker's corners as an ideal camera sees them.
 struct IdealView {
+  IdealCamera camera;
   std::array<Eigen::Vector2d, 4> pixels;
-  double fx, fy;
-
-  Eigen::Vector2d project(const Eigen::Vector3d& p) const {
-    return {fx * p.x() / p.z(), fy * p.y() / p.z()};
-  }
 };
 
 IdealView undistort(const std::array<Eigen::Vector2d, 4>& corners, const Lens& lens) {
-  IdealView view{{}, lens.intrinsics().fx, lens.intrinsics().fy};
+  IdealView view{IdealCamera(lens), {}};
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    const Eigen::Vector2d ray = lens.undistort(corners[i]);
-    view.pixels[i] = {ray.x() * view.fx, ray.y() * view.fy};
+    view.pixels[i] = view.camera.ideal_pixel(lens, corners[i]);
   }
   return view;
-}
-
-double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
 }
 
 bool is_convex_clockwise(const std::array<Eigen::Vector2d, 4>& p) {
@@ -51,51 +45,37 @@ double reprojection_error(const Corners& corners, const IdealView& view,
                           const RigidTransform& camera_from_corners) {
   double squares = 0;
   for (std::size_t i = 0; i < 4; ++i) {
-    squares += (view.project(camera_from_corners * corners[i]) - view.pixels[i]).squaredNorm();
+    squares +=
+        (view.camera.project(camera_from_corners * corners[i]) - view.pixels[i]).squaredNorm();
   }
   return std::sqrt(squares / 4);
 }
 
-/// Levenberg-Marquardt on the reprojection error; returns what is left of it, pixels.
+/// Levenberg-Marquardt on the reprojection error; returns what is left of it, pixels. The unknowns
+/// are a turn about the marker's centre, along the camera's axes, and a shift.
 double refine(const Corners& corners, const IdealView& view, RigidTransform& camera_from_corners) {
-  constexpr int max_steps = 40;
-  double error = reprojection_error(corners, view, camera_from_corners);
-  double damping = 1e-3;
-  for (int step = 0; step < max_steps && std::isfinite(error); ++step) {
-    Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
-    Eigen::Matrix<double, 6, 1> gradient = Eigen::Matrix<double, 6, 1>::Zero();
+  constexpr double damping = 1e-3;
+  constexpr int most_steps = 40;
+  const auto linearise = [&](const RigidTransform& pose) {
+    NormalEquations<double> equations;
     for (std::size_t i = 0; i < 4; ++i) {
-      // In camera coordinates, by the rotation about the marker's centre, then the translation.
-      const Eigen::Vector3d arm = camera_from_corners.rotation * corners[i];
-      const Eigen::Vector3d p = arm + camera_from_corners.translation;
-      Eigen::Matrix<double, 2, 3> by_point;
-      by_point << view.fx / p.z(), 0, -view.fx * p.x() / (p.z() * p.z()),  //
-          0, view.fy / p.z(), -view.fy * p.y() / (p.z() * p.z());
-      Eigen::Matrix3d by_rotation;  // minus the cross product's matrix
-      by_rotation << 0, arm.z(), -arm.y(), -arm.z(), 0, arm.x(), arm.y(), -arm.x(), 0;
+      const Eigen::Vector3d arm = pose.rotation * corners[i];
+      const Eigen::Vector3d p = arm + pose.translation;
+      const Eigen::Matrix<double, 2, 3> by_point = view.camera.derivative(p);
       Eigen::Matrix<double, 2, 6> jacobian;
-      jacobian << by_point * by_rotation, by_point;
-      normal += jacobian.transpose() * jacobian;
-      gradient += jacobian.transpose() * (view.pixels[i] - view.project(p));
+      jacobian << by_point * derivative_by_turn(arm), by_point;
+      equations.add<2>(jacobian, view.pixels[i] - view.camera.project(p));
     }
-    Eigen::Matrix<double, 6, 6> damped = normal;
-    damped.diagonal() *= 1 + damping;
-    const Eigen::Matrix<double, 6, 1> change = damped.ldlt().solve(gradient);
-    const RigidTransform next{rotation_by(change.head<3>()) * camera_from_corners.rotation,
-                              camera_from_corners.translation + change.tail<3>()};
-    const double next_error = reprojection_error(corners, view, next);
-    if (!(next_error < error)) {
-      damping *= 10;
-      if (damping > 1e6) break;
-      continue;
-    }
-    const bool done = error - next_error <= 1e-12 * error;
-    camera_from_corners = next;
-    error = next_error;
-    damping /= 10;
-    if (done) break;
-  }
-  return error;
+    return equations;
+  };
+  const auto move = [](const RigidTransform& pose, const Motion& change) {
+    return RigidTransform{rotation_by(change.head<3>()) * pose.rotation,
+                          pose.translation + change.tail<3>()};
+  };
+  const auto error = [&](const RigidTransform& pose) {
+    return reprojection_error(corners, view, pose);
+  };
+  return levenberg_marquardt(camera_from_corners, damping, most_steps, linearise, move, error);
 }
 
 /// The solver works on a marker frame with y down and z into the marker: an upright marker that
@@ -106,21 +86,9 @@ const RigidTransform solver_from_marker{Eigen::Vector3d(1, -1, -1).asDiagonal(),
 /// camera_from_solver from the homography of the marker's plane (Zhang 2000), which is exact for
 /// exact corners.
 RigidTransform pose_from_homography(const IdealView& view, double size_m) {
-  std::array<Eigen::Vector2d, 4> p;
-  for (std::size_t i = 0; i < 4; ++i) {
-    p[i] = {view.pixels[i].x() / view.fx, view.pixels[i].y() / view.fy};
-  }
-  // From the unit square to the four points (Heckbert 1989).
-  const Eigen::Vector2d a = p[1] - p[2];
-  const Eigen::Vector2d b = p[3] - p[2];
-  const Eigen::Vector2d sum = p[0] - p[1] + p[2] - p[3];
-  const double g = cross(sum, b) / cross(a, b);
-  const double h = cross(a, sum) / cross(a, b);
-  Eigen::Matrix3d homography;
-  homography.col(0) << p[1] - p[0] + g * p[1], g;
-  homography.col(1) << p[3] - p[0] + h * p[3], h;
-  homography.col(2) << p[0], 1;
-
+  std::array<Eigen::Vector2d, 4> rays;
+  for (std::size_t i = 0; i < 4; ++i) rays[i] = view.camera.ray(view.pixels[i]);
+  const Eigen::Matrix3d homography = homography_of_unit_square(rays);
   Eigen::Matrix3d axes;
   axes.col(0) = homography.col(0) / size_m;
   axes.col(1) = homography.col(1) / size_m;

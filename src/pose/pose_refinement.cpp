@@ -1,12 +1,10 @@
 #include "pose/pose_refinement.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "core/robust.h"
-#include "geometry/rotation.h"
 
 namespace diminish {
 namespace {
@@ -274,7 +272,7 @@ std::optional<RigidTransform> PoseRefinement::refine(const FrameSet& frame, cons
     const Twist held = prior * (scale * scale / independent_share);
     equations.squares.diagonal() += held;
     equations.products -= held.cwiseProduct(total);
-    const Twist step = equations.squares.ldlt().solve(equations.products);
+    const Twist step = equations.solve();
     if (step.cwiseAbs().maxCoeff() < last_step) break;
     total += step;
     correction = exponential(step.cast<double>()) * correction;

@@ -6,13 +6,14 @@
 #include <optional>
 #include <vector>
 
+#include "pose/shrunk_picture.h"
 #include "diminish/frame_set.h"
 #include "diminish/intrinsics.h"
 #include "diminish/occlusion_masks.h"
 #include "diminish/poses.h"
 #include "diminish/scene_samples.h"
 #include "geometry/projection.h"
-#include "pose/shrunk_picture.h"
+#include "geometry/rigid_least_squares.h"
 
 namespace diminish {
 
@@ -37,6 +38,7 @@ class PoseRefinement {
   void apply(const RigidTransform& correction, Poses& poses, SceneSamples& samples) const;
 
  private:
+  /// A shift, then a turn.
   using Twist = Eigen::Matrix<float, 6, 1>;
 
   /// Points that one RGB-D camera sees, worked on together; those after the last have no depth.
@@ -55,11 +57,8 @@ class PoseRefinement {
   struct Line {
     float gain = 1, offset = 0;
   };
-  /// squares * step = products
-  struct Equations {
-    Eigen::Matrix<float, 6, 6> squares;
-    Twist products;
-    float cost;
+  struct Equations : NormalEquations<float> {
+    float cost = 0;
   };
 
   void collect(const FrameSet& frame, const std::vector<SceneSample>& samples);

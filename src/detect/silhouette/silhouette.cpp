@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "geometry/cross.h"
+
 namespace diminish {
 namespace {
 
@@ -12,10 +14,6 @@ constexpr double near_m = 0.01;
 
 /// Rays (x, y, 1) or pixels.
 using Polygon = std::vector<Eigen::Vector2d>;
-
-double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
 
 /// Where the line through two points meets the plane (or line) with these signed distances from the
 /// points.

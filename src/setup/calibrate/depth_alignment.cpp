@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/robust.h"
-#include "geometry/rotation.h"
+#include "geometry/rigid_least_squares.h"
 
 namespace diminish {
 namespace {
@@ -18,7 +18,6 @@ constexpr double inner_share = 0.85;
 /// Depth further from a plane than this share of the target's distance belongs to something else.
 constexpr double largest_distance = 0.1;
 
-using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 }  // namespace
@@ -29,8 +28,7 @@ struct DepthAlignment::Row {
   double distance_m = 0;     ///< mean
   double spread_m = 0;       ///< mean absolute
   /// Means over the points; rotation about the colour frame's origin.
-  Matrix6d normal = Matrix6d::Zero();
-  Vector6d gradient = Vector6d::Zero();
+  NormalEquations<double> equations;
 };
 
 DepthAlignment::DepthAlignment(const Lens& depth_lens, double depth_unit_m,
@@ -87,16 +85,16 @@ bool DepthAlignment::fit(const Plane& plane, const RigidTransform& color_from_de
     const double end = largest_distance * color_from_target.translation.norm();
     Row candidate;
     candidate.centre_m.setZero();
+    NormalEquations<double> sums;
     std::size_t count = 0;
     for (const Eigen::Vector3d& point : plane.points_m) {
       const Eigen::Vector3d in_color = color_from_depth * point;
       const Eigen::Vector3d on_target = target_from_color * in_color;
       const Eigen::Vector2d off = (on_target.head<2>() - middle).cwiseAbs();
       if (off.x() > half.x() || off.y() > half.y() || std::abs(on_target.z()) > end) continue;
-      Vector6d derivative;
-      derivative << in_color.cross(normal), normal;
-      candidate.normal += derivative * derivative.transpose();
-      candidate.gradient += derivative * on_target.z();
+      Eigen::Matrix<double, 1, 6> derivative;
+      derivative << in_color.cross(normal).transpose(), normal.transpose();
+      sums.add<1>(derivative, Eigen::Matrix<double, 1, 1>(-on_target.z()));
       candidate.distance_m += on_target.z();
       candidate.spread_m += std::abs(on_target.z());
       candidate.centre_m += in_color;
@@ -104,8 +102,7 @@ bool DepthAlignment::fit(const Plane& plane, const RigidTransform& color_from_de
     }
     if (count < least_points) continue;
     const double share = 1 / static_cast<double>(count);
-    candidate.normal *= share;
-    candidate.gradient *= share;
+    candidate.equations.add(sums, share);
     candidate.distance_m *= share;
     candidate.spread_m *= share;
     candidate.centre_m *= share;
@@ -134,7 +131,7 @@ double root_mean_square(const std::vector<double>& values) {
   return values.empty() ? 0 : std::sqrt(squares / static_cast<double>(values.size()));
 }
 
-std::string direction_name(const Vector6d& direction) {
+std::string direction_name(const Motion& direction) {
   constexpr const char* names[] = {"rotation about x", "rotation about y", "rotation about z",
                                    "shift along x",    "shift along y",    "shift along z"};
   Eigen::Index largest = 0;
@@ -171,44 +168,38 @@ DepthAlignment::Result DepthAlignment::solve() const {
     // Rotation about the targets' centre, in metres at their distance from it, so that all six
     // unknowns have the same unit.
     Matrix6d to_origin = Matrix6d::Identity();
-    Eigen::Matrix3d cross;
-    cross << 0, -centre.z(), centre.y(), centre.z(), 0, -centre.x(), -centre.y(), centre.x(), 0;
     to_origin.topLeftCorner<3, 3>() /= arm;
-    to_origin.bottomLeftCorner<3, 3>() = cross / arm;
-    Matrix6d normal = Matrix6d::Zero();
-    Vector6d gradient = Vector6d::Zero();
+    to_origin.bottomLeftCorner<3, 3>() = -derivative_by_turn(centre) / arm;
+    NormalEquations<double> equations;
     double squares = 0;
     double weights = 0;
     for (const Row& row : current) {
       const auto weight = static_cast<double>(
           tukey_weight(static_cast<float>(row.spread_m), static_cast<float>(4.7 * scale)));
-      normal += weight * to_origin.transpose() * row.normal * to_origin;
-      gradient += weight * to_origin.transpose() * row.gradient;
+      equations.add(row.equations.in_terms_of(to_origin), weight);
       squares += weight * row.distance_m * row.distance_m;
       weights += weight;
     }
-    const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(normal);
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(equations.squares);
     // Planes whose normals differ by less than a few degrees are the same plane plus noise.
     const double least = 0.004 * eigen.eigenvalues()[5];
     const double deviation = std::sqrt(squares / std::max(weights - 6, 1.0));
-    Vector6d change = Vector6d::Zero();
+    Motion change = Motion::Zero();
     result.determined = 0;
     result.undetermined.clear();
     result.deviation_m = 0;
     for (int i = 5; i >= 0; --i) {
-      const Vector6d direction = eigen.eigenvectors().col(i);
+      const Motion direction = eigen.eigenvectors().col(i);
       if (!(eigen.eigenvalues()[i] > least)) {
         result.undetermined.push_back(direction_name(direction));
         continue;
       }
-      change -= direction * direction.dot(gradient) / eigen.eigenvalues()[i];
+      change += direction * direction.dot(equations.products) / eigen.eigenvalues()[i];
       result.deviation_m =
           std::max(result.deviation_m, deviation / std::sqrt(eigen.eigenvalues()[i]));
       ++result.determined;
     }
-    const Vector6d about_origin = to_origin * change;
-    const RigidTransform correction{rotation_by(about_origin.head<3>()), about_origin.tail<3>()};
-    result.color_from_depth = correction * result.color_from_depth;
+    result.color_from_depth = to_transform(to_origin * change) * result.color_from_depth;
     current = rows(result.color_from_depth);
     if (change.norm() < 1e-8) break;
   }

@@ -6,6 +6,7 @@
 
 #include "diminish/intrinsics.h"
 #include "diminish/rigid_transform.h"
+#include "geometry/ideal_camera.h"
 #include "setup/calibrate/target_view.h"
 
 namespace diminish {
@@ -40,13 +41,25 @@ class FixedPoseFit {
  private:
   struct Sighting {
     TargetView first, second;
-    std::vector<Eigen::Vector2d> first_px, second_px;  ///< undistorted
+    std::vector<Eigen::Vector2d> first_px, second_px;  ///< as the ideal cameras see them
   };
   double transfer_error_px(const Sighting& sighting, const RigidTransform& first_from_second,
                            RigidTransform* second_from_target) const;
   RigidTransform start() const;
 
-  Lens first_, second_;
+  struct Poses;
+  struct Linearised;
+  /// Of the corners in both images, in squared pixels.
+  double squared_error(const Sighting& sighting, const RigidTransform& first_from_second,
+                       const RigidTransform& second_from_target) const;
+  /// Root mean square, by sighting.
+  std::vector<double> errors_px(const Poses& poses) const;
+  std::vector<double> weights(const Poses& poses) const;
+  Linearised linearise(const Poses& poses, const std::vector<double>& weights) const;
+  std::optional<Result> summarise(const Poses& poses, const std::vector<double>& weights) const;
+
+  Lens first_lens_, second_lens_;
+  IdealCamera first_, second_;
   std::vector<Sighting> sightings_;
 };
 
