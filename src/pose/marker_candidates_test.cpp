@@ -8,10 +8,10 @@
 #include <random>
 
 #include "core/mat.h"
+#include "core/shrink.h"
 #include "diminish/marker_detector.h"
 #include "paths.h"
 #include "pose/dark_regions.h"
-#include "pose/decimation.h"
 #include "pose/marker_code.h"
 #include "pose/quad_candidates.h"
 
@@ -30,33 +30,10 @@ Image<Bgr> dark_polygon(const std::vector<cv::Point>& corners) {
 
 std::vector<Quad> candidates(const Image<Bgr>& image) {
   Image<std::uint8_t> small;
-  decimate(image, small);
+  shrink_green(image, small);
   DarkRegions dark;
   QuadCandidates quads;
   return quads.find(dark.find(small));
-}
-
-TEST(Decimate, IsTheMeanOfTheGreenChannelInItsMiddleRows) {
-  std::mt19937 random(1);
-  for (const int width : {43, 261, 1280}) {
-    Image<Bgr> image(width, 18);
-    for (Bgr& pixel : image) {
-      pixel = {static_cast<std::uint8_t>(random()), static_cast<std::uint8_t>(random()),
-               static_cast<std::uint8_t>(random())};
-    }
-    Image<std::uint8_t> small;
-    decimate(image, small);
-    ASSERT_EQ(small.width(), width / 4);
-    ASSERT_EQ(small.height(), 4);
-    for (int y = 0; y < small.height(); ++y) {
-      for (int x = 0; x < small.width(); ++x) {
-        double sum = 0;
-        for (int i = 0; i < 4; ++i)
-          sum += image(4 * x + i, 4 * y + 1).g + image(4 * x + i, 4 * y + 2).g;
-        ASSERT_NEAR(small(x, y), sum / 8, 0.5) << width << ": " << x << ' ' << y;
-      }
-    }
-  }
 }
 
 TEST(DarkRegions, AreTheFourConnectedPartsBelowTheLocalMean) {

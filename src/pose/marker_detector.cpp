@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/shrink.h"
 #include "pose/corner_refinement.h"
 #include "pose/dark_regions.h"
-#include "pose/decimation.h"
+
 #include "pose/marker_code.h"
 #include "pose/marker_dictionary.h"
 #include "pose/quad_candidates.h"
@@ -54,7 +55,7 @@ void MarkerDetector::detect(const Image<Bgr>& image, const Lens& lens,
                             std::vector<Marker>& markers) {
   Implementation& self = *implementation_;
   markers.clear();
-  decimate(image, self.small);
+  shrink_green(image, self.small);
   for (Quad quad : self.candidates.find(self.dark_regions.find(self.small))) {
     const int modules = self.code.modules();
     if (!refine_corners(image, lens, modules, coarse_pass, quad) ||

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "pose/shrunk_picture.h"
+#include "core/shrunk_picture.h"
 #include "diminish/frame_set.h"
 #include "diminish/intrinsics.h"
 #include "diminish/occlusion_masks.h"

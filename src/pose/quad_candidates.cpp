@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "pose/decimation.h"
+#include "core/shrink.h"
 
 namespace diminish {
 namespace {
@@ -108,7 +108,7 @@ bool QuadCandidates::reduce_to_quad(Quad& quad) {
     const Point& a = hull_[i];
     const Point& b = hull_[(i + 1) % 4];
     if (std::hypot(b.x - a.x, b.y - a.y) < min_side) return false;
-    quad[i] = {decimation * a.x - 0.5, decimation * a.y - 0.5};
+    quad[i] = {green_shrinkage * a.x - 0.5, green_shrinkage * a.y - 0.5};
   }
   return true;
 }

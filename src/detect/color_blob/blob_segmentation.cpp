@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "core/shrink.h"
 #include "detect/color_blob/extremum_filters.h"
-#include "detect/color_blob/shrink_picture.h"
 
 namespace diminish {
 
@@ -16,7 +16,7 @@ int BlobSegmentation::scale(const Image<Bgr>& image) {
 }
 
 void BlobSegmentation::segment(const Image<Bgr>& image, const Rect& window) {
-  shrink_picture(image, scale(image), window, sums_, small_);
+  shrink(image, scale(image), window, sums_, small_);
   smooth_.resize(window.width, window.height);
   for (int y = 0; y < window.height; ++y) {
     smoother_.smooth_row(small_, small_.bounds(), y, 0, window.width, smooth_.row(y));

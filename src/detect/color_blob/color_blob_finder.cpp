@@ -4,8 +4,8 @@
 #include <iterator>
 #include <span>
 
+#include "core/shrink.h"
 #include "detect/color_blob/extremum_filters.h"
-#include "detect/color_blob/shrink_picture.h"
 
 namespace diminish {
 namespace {

@@ -5,7 +5,6 @@
 
 #include "core/mat.h"
 #include "detect/color_blob/extremum_filters.h"
-#include "detect/color_blob/shrink_picture.h"
 #include "detect/color_blob/smooth_picture.h"
 #include "each_vector_target.h"
 
@@ -27,55 +26,6 @@ template <class Pixel>
 void expect_same(const Image<Pixel>& image, const cv::Mat& expected) {
   ASSERT_EQ(cv::Size(image.width(), image.height()), expected.size());
   EXPECT_EQ(cv::norm(as_mat(image), expected, cv::NORM_INF), 0);
-}
-
-/// `small` against `cv::sum`.
-void expect_rounded_means(const Image<Bgr>& image, int scale, const Image<Bgr>& small) {
-  ASSERT_EQ(small.bounds(), (Rect{0, 0, image.width() / scale, image.height() / scale}));
-  for (int y = 0; y < small.height(); ++y) {
-    for (int x = 0; x < small.width(); ++x) {
-      const cv::Rect cell(x * scale, y * scale, scale, scale);
-      const cv::Scalar sum = cv::sum(as_mat(image)(cell));
-      const auto mean = [&](int channel) {
-        return static_cast<int>(std::floor(sum[channel] / cell.area() + 0.5));
-      };
-      ASSERT_EQ(small(x, y).b, mean(0)) << x << ' ' << y;
-      ASSERT_EQ(small(x, y).g, mean(1)) << x << ' ' << y;
-      ASSERT_EQ(small(x, y).r, mean(2)) << x << ' ' << y;
-    }
-  }
-}
-
-TEST(ShrinkPicture, IsTheRoundedMean) {
-  const Image<Bgr> image = noise(101, 83);
-  testing::on_each_vector_target([&] {
-    std::vector<std::uint16_t> scratch;
-    Image<Bgr> small;
-    for (int scale = 1; scale <= 16; ++scale) {
-      SCOPED_TRACE(scale);
-      shrink_picture(image, scale, shrunk_bounds(image, scale), scratch, small);
-      expect_rounded_means(image, scale, small);
-    }
-  });
-}
-
-TEST(ShrinkPicture, APictureThinnerThanTheScaleBecomesOnePixelWide) {
-  Image<Bgr> image(40, 2, {10, 20, 30});
-  image.fill({0, 1, 40, 1}, {30, 20, 10});
-  std::vector<std::uint16_t> scratch;
-  Image<Bgr> small;
-  shrink_picture(image, 4, shrunk_bounds(image, 4), scratch, small);
-  EXPECT_EQ(small, Image<Bgr>(10, 1, {20, 20, 20}));
-}
-
-TEST(ShrinkPicture, APartIsThePartOfTheWhole) {
-  const Image<Bgr> image = noise(101, 83);
-  const Rect part{4, 7, 19, 11};
-  std::vector<std::uint16_t> scratch;
-  Image<Bgr> whole, small;
-  shrink_picture(image, 4, shrunk_bounds(image, 4), scratch, whole);
-  shrink_picture(image, 4, part, scratch, small);
-  expect_same(small, as_mat(whole)(as_cv(part)));
 }
 
 TEST(PictureSmoother, IsOpenCvsGaussian) {

@@ -1,7 +1,7 @@
-#include "detect/color_blob/shrink_picture.h"
+#include "core/shrink.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "detect/color_blob/shrink_picture.cpp"
+#define HWY_TARGET_INCLUDE "core/shrink.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -59,23 +59,74 @@ void AverageColumns(const std::uint16_t* sums, int columns, int rows, int count,
   }
 }
 
+constexpr int step = 3 * green_shrinkage;
+
+#if HWY_TARGET != HWY_SCALAR
+/// The sums of neighbouring numbers, in half as many of twice the size.
+template <class D, class Wide, class V>
+HWY_INLINE hn::Vec<Wide> AddPairs(D /*of the numbers*/, Wide wide, V numbers) {
+  constexpr int bits = 8 * sizeof(hn::TFromD<D>);
+  const auto both = hn::BitCast(wide, numbers);
+  const auto even = hn::And(both, hn::Set(wide, static_cast<hn::TFromD<Wide>>((1U << bits) - 1U)));
+  return hn::Add(even, hn::ShiftRight<bits>(both));
+}
+
+/// ShrinkGreenRow's whole vectors; returns their number of pixels.
+HWY_INLINE int ShrinkGreenVectors(const std::uint8_t* upper, const std::uint8_t* lower, int count,
+                                  std::uint8_t* means) {
+  const hn::ScalableTag<std::uint8_t> d;
+  const hn::RepartitionToWide<decltype(d)> d16;
+  const hn::RepartitionToWide<decltype(d16)> d32;
+  const hn::RebindToSigned<decltype(d32)> i32;
+  const hn::Rebind<std::uint8_t, decltype(d32)> d8;
+  const auto at_once = static_cast<int>(hn::Lanes(d32));
+  const auto pairs_of = [&](const std::uint8_t* row) HWY_ATTR {
+    hn::Vec<decltype(d)> blue, green, red;
+    hn::LoadInterleaved3(d, row, blue, green, red);
+    return AddPairs(d, d16, green);
+  };
+  int x = 0;
+  for (; x + at_once <= count; x += at_once) {
+    const auto pairs = hn::Add(pairs_of(upper + step * x), pairs_of(lower + step * x));
+    const auto sums = hn::Add(AddPairs(d16, d32, pairs), hn::Set(d32, 4));
+    hn::StoreU(hn::DemoteTo(d8, hn::BitCast(i32, hn::ShiftRight<3>(sums))), d8, means + x);
+  }
+  return x;
+}
+#endif
+
+/// The rounded means of the green channel of 4x2 pixels.
+void ShrinkGreenRow(const std::uint8_t* upper, const std::uint8_t* lower, int count,
+                    std::uint8_t* means) {
+  int x = 0;
+#if HWY_TARGET != HWY_SCALAR
+  x = ShrinkGreenVectors(upper, lower, count, means);
+#endif
+  for (; x < count; ++x) {
+    int sum = 4;
+    for (int i = 0; i < green_shrinkage; ++i) {
+      sum += upper[step * x + 3 * i + 1] + lower[step * x + 3 * i + 1];
+    }
+    means[x] = static_cast<std::uint8_t>(sum >> 3);
+  }
+}
+
 }  // namespace
 }  // namespace diminish::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-#include <algorithm>
-
 namespace diminish {
 namespace {
 
 HWY_EXPORT(SumRows);
 HWY_EXPORT(AverageColumns);
+HWY_EXPORT(ShrinkGreenRow);
 
 }  // namespace
 
-void shrink_picture(const Image<Bgr>& image, int scale, const Rect& part,
-                    std::vector<std::uint16_t>& scratch, Image<Bgr>& small) {
+void shrink(const Image<Bgr>& image, int scale, const Rect& part,
+            std::vector<std::uint16_t>& scratch, Image<Bgr>& small) {
   small.resize(part.width, part.height);
   const int rows = std::min(scale, image.height());
   const int columns = std::min(scale, image.width());
@@ -102,6 +153,17 @@ void shrink_picture(const Image<Bgr>& image, int scale, const Rect& part,
     for (int x = 0; x < part.width; ++x, mean += std::ptrdiff_t{3} * columns) {
       pixels[x] = {mean[0], mean[1], mean[2]};
     }
+  }
+}
+
+void shrink_green(const Image<Bgr>& image, Image<std::uint8_t>& small) {
+  small.resize(image.width() / green_shrinkage, image.height() / green_shrinkage);
+  for (int y = 0; y < small.height(); ++y) {
+    // Two of the four rows: half the memory, and noise is no worry here.
+    HWY_DYNAMIC_DISPATCH(ShrinkGreenRow)
+    (reinterpret_cast<const std::uint8_t*>(image.row(green_shrinkage * y + 1)),
+     reinterpret_cast<const std::uint8_t*>(image.row(green_shrinkage * y + 2)), small.width(),
+     small.row(y));
   }
 }
 

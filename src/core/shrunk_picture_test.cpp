@@ -1,4 +1,4 @@
-#include "pose/shrunk_picture.h"
+#include "core/shrunk_picture.h"
 
 #include <gtest/gtest.h>
 

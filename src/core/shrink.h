@@ -1,0 +1,32 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "diminish/image.h"
+
+namespace diminish {
+
+// Pictures made smaller by a whole factor: all of each square's colours (`shrink`), or as little of
+// it as a marker takes (`shrink_green`). ShrunkPicture makes single pixels when they are asked for.
+
+/// The size that `shrink` makes of a picture. Up to `scale - 1` columns and rows at the right and
+/// below are left out; a picture narrower or lower than `scale` becomes one pixel wide or high.
+inline Rect shrunk_bounds(const Image<Bgr>& image, int scale) {
+  return {0, 0, std::max(1, image.width() / scale), std::max(1, image.height() / scale)};
+}
+
+/// Makes each pixel of `small` the rounded mean of `scale` x `scale` pixels of `image`, in a part
+/// of `shrunk_bounds`.
+/// scale: 1 to 16. `scratch` is memory to use again.
+void shrink(const Image<Bgr>& image, int scale, const Rect& part,
+            std::vector<std::uint16_t>& scratch, Image<Bgr>& small);
+
+/// The picture's brightness at a quarter of the resolution: each pixel the rounded mean of the
+/// green channel (the others add little) of 4x2 of the picture's, the square's two middle rows.
+/// Enough to see a marker, and little memory to touch.
+inline constexpr int green_shrinkage = 4;
+void shrink_green(const Image<Bgr>& image, Image<std::uint8_t>& small);
+
+}  // namespace diminish
