@@ -62,7 +62,7 @@ void AverageColumns(const std::uint16_t* sums, int columns, int rows, int count,
 constexpr int step = 3 * green_shrinkage;
 
 #if HWY_TARGET != HWY_SCALAR
-/// The sums of neighbouring numbers, in half as many of twice the size.
+/// The sums of neighbouring numbers: half as many, twice as wide.
 template <class D, class Wide, class V>
 HWY_INLINE hn::Vec<Wide> AddPairs(D /*of the numbers*/, Wide wide, V numbers) {
   constexpr int bits = 8 * sizeof(hn::TFromD<D>);
@@ -71,7 +71,7 @@ HWY_INLINE hn::Vec<Wide> AddPairs(D /*of the numbers*/, Wide wide, V numbers) {
   return hn::Add(even, hn::ShiftRight<bits>(both));
 }
 
-/// ShrinkGreenRow's whole vectors; returns their number of pixels.
+/// The whole vectors of ShrinkGreenRow. Returns their number of pixels.
 HWY_INLINE int ShrinkGreenVectors(const std::uint8_t* upper, const std::uint8_t* lower, int count,
                                   std::uint8_t* means) {
   const hn::ScalableTag<std::uint8_t> d;
@@ -95,7 +95,7 @@ HWY_INLINE int ShrinkGreenVectors(const std::uint8_t* upper, const std::uint8_t*
 }
 #endif
 
-/// The rounded means of the green channel of 4x2 pixels.
+/// The rounded means of 4x2 pixels' green channel.
 void ShrinkGreenRow(const std::uint8_t* upper, const std::uint8_t* lower, int count,
                     std::uint8_t* means) {
   int x = 0;
@@ -159,7 +159,7 @@ void shrink(const Image<Bgr>& image, int scale, const Rect& part,
 void shrink_green(const Image<Bgr>& image, Image<std::uint8_t>& small) {
   small.resize(image.width() / green_shrinkage, image.height() / green_shrinkage);
   for (int y = 0; y < small.height(); ++y) {
-    // Two of the four rows: half the memory, and noise is no worry here.
+    // Two of the four rows: half the memory, and noise does no harm here.
     HWY_DYNAMIC_DISPATCH(ShrinkGreenRow)
     (reinterpret_cast<const std::uint8_t*>(image.row(green_shrinkage * y + 1)),
      reinterpret_cast<const std::uint8_t*>(image.row(green_shrinkage * y + 2)), small.width(),

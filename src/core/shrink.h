@@ -8,8 +8,8 @@
 
 namespace diminish {
 
-// Pictures made smaller by a whole factor: all of each square's colours (`shrink`), or as little of
-// it as a marker takes (`shrink_green`). ShrunkPicture makes single pixels when they are asked for.
+// Pictures made smaller by a whole factor: from all colours of each square (`shrink`), or from as
+// few pixels as finding markers needs (`shrink_green`). ShrunkPicture computes pixels on demand.
 
 /// The size that `shrink` makes of a picture. Up to `scale - 1` columns and rows at the right and
 /// below are left out; a picture narrower or lower than `scale` becomes one pixel wide or high.
@@ -23,9 +23,9 @@ inline Rect shrunk_bounds(const Image<Bgr>& image, int scale) {
 void shrink(const Image<Bgr>& image, int scale, const Rect& part,
             std::vector<std::uint16_t>& scratch, Image<Bgr>& small);
 
-/// The picture's brightness at a quarter of the resolution: each pixel the rounded mean of the
-/// green channel (the others add little) of 4x2 of the picture's, the square's two middle rows.
-/// Enough to see a marker, and little memory to touch.
+/// The picture's brightness at a quarter of the resolution: each pixel is the rounded mean of 4x2
+/// pixels' green channel (the other channels add little), from the square's two middle rows.
+/// Enough to see a marker, and little memory to read.
 inline constexpr int green_shrinkage = 4;
 void shrink_green(const Image<Bgr>& image, Image<std::uint8_t>& small);
 

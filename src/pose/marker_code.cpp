@@ -1,8 +1,9 @@
 #include "pose/marker_code.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+
+#include "geometry/homography.h"
 
 namespace diminish {
 namespace {
@@ -14,39 +15,16 @@ constexpr double border_errors = 0.2;
 /// Between the mean of the light cells and that of the dark ones.
 constexpr float min_contrast = 20;
 
-/// image_from_unit: maps the unit square's corners (0,0), (1,0), (1,1), (0,1) to these four.
-Eigen::Matrix3d homography(const std::array<Eigen::Vector2d, 4>& p) {
-  const Eigen::Vector2d d1 = p[1] - p[2];
-  const Eigen::Vector2d d2 = p[3] - p[2];
-  const Eigen::Vector2d s = p[0] - p[1] + p[2] - p[3];
-  const double denominator = d1.x() * d2.y() - d2.x() * d1.y();
-  const double g = (s.x() * d2.y() - d2.x() * s.y()) / denominator;
-  const double h = (d1.x() * s.y() - s.x() * d1.y()) / denominator;
-  Eigen::Matrix3d result;
-  result << p[1].x() - p[0].x() + g * p[1].x(), p[3].x() - p[0].x() + h * p[3].x(), p[0].x(),
-      p[1].y() - p[0].y() + g * p[1].y(), p[3].y() - p[0].y() + h * p[3].y(), p[0].y(), g, h, 1;
-  return result;
-}
-
 }  // namespace
 
-MarkerCode::MarkerCode(const cv::aruco::Dictionary& dictionary)
-    : bits_(dictionary.markerSize),
-      max_errors_(static_cast<int>(dictionary.maxCorrectionBits * correction_rate)) {
-  for (int id = 0; id < dictionary.bytesList.rows; ++id) {
-    const cv::Mat cells = cv::aruco::Dictionary::getBitsFromByteList(
-        dictionary.bytesList.rowRange(id, id + 1), bits_);
-    Bits code;
-    for (int i = 0; i < bits_ * bits_; ++i) {
-      code[static_cast<std::size_t>(i)] = cells.at<std::uint8_t>(i / bits_, i % bits_) != 0;
-    }
-    codes_.push_back(code);
-  }
-}
+MarkerCode::MarkerCode(const MarkerDictionary& dictionary)
+    : bits_(dictionary.side),
+      max_errors_(static_cast<int>(dictionary.correctable_cells * correction_rate)),
+      codes_(dictionary.codes) {}
 
 std::optional<MarkerCode::Reading> MarkerCode::read(
     const Image<Bgr>& image, const std::array<Eigen::Vector2d, 4>& corners) const {
-  const Eigen::Matrix3d image_from_unit = homography(corners);
+  const Eigen::Matrix3d image_from_unit = homography_of_unit_square(corners);
   const int n = modules();
   std::array<float, max_modules * max_modules> cells{};
   float least = 255;

@@ -3,18 +3,18 @@
 #include <Eigen/Core>
 #include <array>
 #include <bitset>
-#include <opencv2/aruco.hpp>
 #include <optional>
 #include <vector>
 
 #include "diminish/image.h"
+#include "pose/aruco.h"
 
 namespace diminish {
 
 /// Reads markers of one dictionary.
 class MarkerCode {
  public:
-  explicit MarkerCode(const cv::aruco::Dictionary& dictionary);
+  explicit MarkerCode(const MarkerDictionary& dictionary);
 
   /// The number of cells along a side, including the black border.
   int modules() const { return bits_ + 2; }

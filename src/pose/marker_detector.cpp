@@ -4,11 +4,10 @@
 #include <utility>
 
 #include "core/shrink.h"
+#include "pose/aruco.h"
 #include "pose/corner_refinement.h"
 #include "pose/dark_regions.h"
-
 #include "pose/marker_code.h"
-#include "pose/marker_dictionary.h"
 #include "pose/quad_candidates.h"
 
 namespace diminish {
@@ -37,7 +36,7 @@ void remove_ambiguous(std::vector<Marker>& markers) {
 }  // namespace
 
 struct MarkerDetector::Implementation {
-  explicit Implementation(const std::string& dictionary) : code(*find_dictionary(dictionary)) {}
+  explicit Implementation(const std::string& dictionary) : code(find_dictionary(dictionary)) {}
 
   MarkerCode code;
   Image<std::uint8_t> small;

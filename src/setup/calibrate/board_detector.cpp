@@ -1,10 +1,11 @@
-#include <opencv2/aruco/charuco.hpp>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
+#include <optional>
+#include <utility>
 
 #include "core/mat.h"
 #include "diminish/calibration.h"
-#include "setup/print/board_layout.h"
+#include "pose/aruco.h"
 
 namespace diminish {
 namespace {
@@ -30,20 +31,11 @@ bool spans_a_plane(const std::vector<Eigen::Vector3d>& points) {
 
 struct BoardDetector::Implementation {
   Board board;
-  cv::Ptr<cv::aruco::CharucoBoard> charuco;
+  std::optional<CharucoBoard> charuco;
 
   BoardView find_charuco(const cv::Mat& grey) const {
-    std::vector<std::vector<cv::Point2f>> markers;
-    std::vector<std::vector<cv::Point2f>> rejected;
-    std::vector<int> marker_ids;
-    cv::aruco::detectMarkers(grey, charuco->dictionary, markers, marker_ids,
-                             cv::aruco::DetectorParameters::create(), rejected);
     BoardView view;
-    if (marker_ids.empty()) return view;
-    std::vector<cv::Point2f> corners;
-    std::vector<int> ids;
-    cv::aruco::interpolateCornersCharuco(markers, marker_ids, grey, charuco, corners, ids);
-    for (std::size_t i = 0; i < corners.size(); ++i) add(ids[i], corners[i], view);
+    for (const auto& [id, pixel] : charuco->detect(grey)) add(id, pixel, view);
     return view;
   }
 
@@ -68,9 +60,11 @@ struct BoardDetector::Implementation {
   }
 };
 
-BoardDetector::BoardDetector(const Board& board)
-    : implementation_(std::make_unique<const Implementation>(Implementation{
-          board, board.kind == Board::Kind::charuco ? make_charuco_board(board) : nullptr})) {}
+BoardDetector::BoardDetector(const Board& board) {
+  Implementation implementation{board, std::nullopt};
+  if (board.kind == Board::Kind::charuco) implementation.charuco.emplace(board);
+  implementation_ = std::make_unique<const Implementation>(std::move(implementation));
+}
 BoardDetector::~BoardDetector() = default;
 BoardDetector::BoardDetector(BoardDetector&&) noexcept = default;
 BoardDetector& BoardDetector::operator=(BoardDetector&&) noexcept = default;

@@ -4,12 +4,10 @@
 
 #include <algorithm>
 #include <map>
-#include <opencv2/aruco.hpp>
-#include <opencv2/imgproc.hpp>
 #include <set>
 
 #include "core/mat.h"
-#include "pose/marker_dictionary.h"
+#include "pose/aruco.h"
 #include "setup/check/flipped.h"
 
 namespace diminish {
@@ -92,12 +90,9 @@ bool check_too_small(Diagnosis& setup, const SensorSurvey& sensor, std::size_t i
   std::vector<double> sides;
   for (const SetupSurvey::Kept& kept : setup.survey.kept) {
     if (image_of(kept, index).empty()) continue;
-    std::vector<std::vector<cv::Point2f>> corners;
-    std::vector<int> ids;
-    cv::aruco::detectMarkers(as_mat(image_of(kept, index)),
-                             find_dictionary(setup.scene.marker_dictionary), corners, ids);
-    for (std::size_t i = 0; i < ids.size(); ++i) {
-      if (ids[i] == id) sides.push_back(cv::arcLength(corners[i], true) / 4);
+    for (const Marker& marker :
+         detect_with_opencv(as_mat(image_of(kept, index)), setup.scene.marker_dictionary)) {
+      if (marker.id == id) sides.push_back(mean_side_px(marker));
     }
   }
   if (sides.empty()) return false;

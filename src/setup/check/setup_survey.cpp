@@ -16,14 +16,6 @@ namespace {
 constexpr std::size_t most_frames_kept = 6;
 constexpr std::size_t most_faults_kept = 3;
 
-double mean_side_px(const Marker& marker) {
-  double sum = 0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    sum += (marker.corners[i] - marker.corners[(i + 1) % 4]).norm();
-  }
-  return sum / 4;
-}
-
 /// Measures brightness and overexposure from every eighth pixel.
 void survey_exposure(const Image<Bgr>& image, SensorSurvey& sensor) {
   constexpr int step = 8;
@@ -181,6 +173,14 @@ class Surveyor {
 };
 
 }  // namespace
+
+double mean_side_px(const Marker& marker) {
+  double sum = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    sum += (marker.corners[i] - marker.corners[(i + 1) % 4]).norm();
+  }
+  return sum / 4;
+}
 
 std::vector<double> errors_between(const std::vector<Marker>& in_color,
                                    const std::vector<Marker>& in_rgbd,

@@ -14,6 +14,9 @@
 
 namespace diminish {
 
+/// Of a marker's four sides.
+double mean_side_px(const Marker& marker);
+
 /// What one colour sensor saw.
 struct SensorSurvey {
   struct MarkerStatistics {

@@ -6,7 +6,7 @@
 
 #include "core/text.h"
 #include "diminish/error.h"
-#include "setup/print/board_layout.h"
+#include "pose/aruco.h"
 
 namespace diminish {
 namespace {
@@ -67,7 +67,7 @@ Board parse_board(const std::string& text) {
   board.marker_m = read_metres(text, parts[3]);
   if (!(board.marker_m < board.square_m)) fail(text, "expected markers smaller than the squares");
   board.dictionary = parts.size() == 5 ? parts[4] : "DICT_4X4_50";
-  make_charuco_board(board);
+  CharucoBoard{board};  // throws Error
   return board;
 }
 

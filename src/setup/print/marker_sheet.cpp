@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "diminish/error.h"
-#include "pose/marker_dictionary.h"
+#include "pose/aruco.h"
 #include "setup/print/board_layout.h"
 #include "setup/print/page.h"
 #include "sink/partial_file.h"
@@ -99,17 +99,18 @@ const Paper& find_paper(const std::string& name) {
 
 void write_marker_sheet(const MarkerSheet& sheet, const Paper& paper,
                         const std::filesystem::path& file) {
-  const auto dictionary = find_dictionary(sheet.dictionary);
+  const MarkerDictionary dictionary = find_dictionary(sheet.dictionary);
+  const auto markers = static_cast<int>(dictionary.codes.size());
   if (sheet.ids.empty()) throw Error("ids: expected at least one marker");
   for (const int id : sheet.ids) {
-    if (id < 0 || id >= dictionary->bytesList.rows) {
+    if (id < 0 || id >= markers) {
       throw Error(fmt::format("ids: expected ids of {}, from 0 to {}, got {}", sheet.dictionary,
-                              dictionary->bytesList.rows - 1, id));
+                              markers - 1, id));
     }
   }
   const double size = 1000 * sheet.size_m;
   if (!(size >= 5)) throw Error(fmt::format("size: expected at least 5 mm, got {:.6g} mm", size));
-  const double cell = size / (dictionary->markerSize + 2);
+  const double cell = size / (dictionary.side + 2);
   const double quiet = std::max(0.0, sheet.quiet_modules) * cell;
   const double width = size + 2 * quiet;
   const double height = width + caption_height;
@@ -137,7 +138,7 @@ void write_marker_sheet(const MarkerSheet& sheet, const Paper& paper,
     const double x = page_margin + column * (width + between_cells);
     const double y = page_margin + row * (height + between_cells);
     Page& page = pages.back();
-    add_marker(*dictionary, sheet.ids[i], x + quiet, y + quiet, size, page.black);
+    add_marker(dictionary, sheet.ids[i], x + quiet, y + quiet, size, page.black);
     page.texts.push_back(
         {x + quiet, y + width + caption_height - 1.5, std::min(font_height, size / 12),
          fmt::format("{} id {}, {:.6g} mm", sheet.dictionary, sheet.ids[i], size)});
@@ -162,8 +163,8 @@ void write_board(const Board& board, const Paper& paper, const std::filesystem::
   }
   const bool charuco = board.kind == Board::Kind::charuco;
   Page page = empty_page(
-      used, charuco ? 1000 * board.marker_m / (find_dictionary(board.dictionary)->markerSize + 2)
-                    : square);
+      used,
+      charuco ? 1000 * board.marker_m / (find_dictionary(board.dictionary).side + 2) : square);
   for (Page::Rectangle r : board_drawing(board)) {
     page.black.push_back({r.x + page_margin, r.y + page_margin, r.width, r.height});
   }
