@@ -1,17 +1,20 @@
 #pragma once
 
 #include <algorithm>
-#include <cstddef>
 #include <vector>
 
 namespace diminish {
 
-/// The median (the upper one of two). Reorders `values`, which must not be empty.
+/// The upper one of two medians; reorders the values, of which there must be one at least.
+template <class Iterator>
+auto median(Iterator begin, Iterator end) {
+  const Iterator middle = begin + (end - begin) / 2;
+  std::nth_element(begin, middle, end);
+  return *middle;
+}
 template <class Value>
 Value median(std::vector<Value>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return median(values.begin(), values.end());
 }
 
 /// The weight of a residual in robust least squares (Beaton & Tukey 1974): 0 from `end` on.

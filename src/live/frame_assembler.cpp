@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/robust.h"
+
 namespace diminish {
 namespace {
 
@@ -23,9 +25,7 @@ double period_s(const ImageHistory<Bgr>& history) {
     periods[i] = history.newest(i).stamp_s - history.newest(i + 1).stamp_s;
   }
   if (count == 0) return usual_period_s;
-  const auto middle = periods.begin() + static_cast<std::ptrdiff_t>(count / 2);
-  std::nth_element(periods.begin(), middle, periods.begin() + static_cast<std::ptrdiff_t>(count));
-  return *middle;
+  return median(periods.begin(), periods.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
 }  // namespace
