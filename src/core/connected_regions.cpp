@@ -16,7 +16,7 @@ void ConnectedRegions::find(const Mask& mask, Pixels pixels, Connectivity connec
 void ConnectedRegions::connect(Connectivity connectivity) {
   const int reach = connectivity == Connectivity::eight ? 1 : 0;
   const int count = static_cast<int>(runs_.size());
-  int above = 0;  // the next run of the row above that may touch
+  int above = 0;  // the next run in the row above that may touch
   for (int row = 0; row < count;) {
     const int y = runs_[row].y;
     const int above_end = row > 0 && runs_[row - 1].y == y - 1 ? row : above;

@@ -8,18 +8,19 @@
 
 namespace diminish {
 
-/// Four: pixels that share a side are neighbours. Eight: or a corner.
+/// Which pixels are neighbours: those that share a side (four), or also those that share a corner
+/// (eight).
 enum class Connectivity { four, eight };
 
-/// The connected regions of a set of pixels, found by uniting the runs of neighbouring rows. Keeps
-/// its memory from one set to the next. Cost: one pass over the pixels, one over their runs.
+/// Finds the connected regions of a set of pixels by uniting the runs of neighbouring rows. Reuses
+/// its memory. Cost: one pass over the pixels and two over their runs.
 class ConnectedRegions {
  public:
   /// The pixels [first, last) of row y.
   struct Run {
     int y, first, last;
     int region;  ///< index in `regions()`
-    int next;    ///< index in `runs()` of the region's next one; -1: it is the last
+    int next;    ///< index in `runs()` of the region's next run; -1: this is the last one
   };
   struct Region {
     Rect box;
@@ -27,11 +28,11 @@ class ConnectedRegions {
     int first_run, last_run;  ///< indices in `runs()`
   };
 
-  /// Of a mask's pixels.
+  /// Finds the regions of a mask's pixels that are set, or clear.
   void find(const Mask& mask, Pixels pixels, Connectivity connectivity);
 
-  /// The same of runs that are given one by one: `begin`, `add` each, `connect`. By row, then from
-  /// left to right; two runs of a row must not touch.
+  /// Does the same for runs that the caller knows: call `begin`, `add` each run, then `connect`.
+  /// Runs come by row, then from left to right. Runs in a row must not touch each other.
   void begin() { runs_.clear(); }
   void add(int y, int first, int last) { runs_.push_back({y, first, last, 0, -1}); }
   void connect(Connectivity connectivity);

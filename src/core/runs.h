@@ -13,7 +13,7 @@ int find_equal_far(const std::uint8_t* bytes, int x, int end, std::uint8_t value
 inline constexpr int word_bytes = sizeof(std::uint64_t);
 inline constexpr std::uint64_t every_byte = 0x0101010101010101U;
 
-/// Eight bytes from `bytes` on, each combined with `value` by XOR.
+/// Eight bytes, each XORed with `value`.
 inline std::uint64_t differences(const std::uint8_t* bytes, std::uint8_t value) {
   static_assert(std::endian::native == std::endian::little, "the first byte is the lowest");
   std::uint64_t word;
@@ -22,7 +22,7 @@ inline std::uint64_t differences(const std::uint8_t* bytes, std::uint8_t value) 
 }
 }  // namespace runs_detail
 
-/// The index of the first of bytes [x, end) that is not `value`; `end` if all are.
+/// The index of the first of the bytes [x, end) that is not `value`; `end` if there is none.
 inline int find_other(const std::uint8_t* bytes, int x, int end, std::uint8_t value) {
   if (x + runs_detail::word_bytes <= end) {
     const std::uint64_t word = runs_detail::differences(bytes + x, value);
@@ -32,11 +32,11 @@ inline int find_other(const std::uint8_t* bytes, int x, int end, std::uint8_t va
   return runs_detail::find_other_far(bytes, x, end, value);
 }
 
-/// The index of the first of bytes [x, end) that is `value`; `end` if none is.
+/// The index of the first of the bytes [x, end) that is `value`; `end` if there is none.
 inline int find_equal(const std::uint8_t* bytes, int x, int end, std::uint8_t value) {
   if (x + runs_detail::word_bytes <= end) {
     const std::uint64_t word = runs_detail::differences(bytes + x, value);
-    // The lowest of these bits is in the lowest byte that is 0; those above it may be wrong.
+    // The lowest of these bits lies in the lowest byte that is 0. Higher bits may be wrong.
     const std::uint64_t zeros =
         (word - runs_detail::every_byte) & ~word & (0x80 * runs_detail::every_byte);
     if (zeros != 0) return x + std::countr_zero(zeros) / 8;
@@ -45,16 +45,16 @@ inline int find_equal(const std::uint8_t* bytes, int x, int end, std::uint8_t va
   return runs_detail::find_equal_far(bytes, x, end, value);
 }
 
-/// Calls visit(x) for each of `count` bytes that is not 0, in order.
+/// Calls visit(x) for each of the `count` bytes that is not 0, in order.
 template <class Visit>
 void for_each_set(const std::uint8_t* bytes, int count, const Visit& visit) {
   for (int x = 0; (x = find_other(bytes, x, count, 0)) < count; ++x) visit(x);
 }
 
-/// Which pixels of a mask are meant: those that are not 0, or those that are.
+/// The pixels of a mask that are not 0, or those that are 0.
 enum class Pixels { set, clear };
 
-/// Calls visit(first, last) for each longest run [first, last) of such bytes in [begin, end), in
+/// Calls visit(first, last) for each maximal run [first, last) of such bytes in [begin, end), in
 /// order.
 template <class Visit>
 void for_each_run(const std::uint8_t* bytes, int begin, int end, Pixels pixels,
@@ -69,14 +69,14 @@ void for_each_run(const std::uint8_t* bytes, int begin, int end, Pixels pixels,
   }
 }
 
-/// Calls visit(i) for each bit i that is set, the lowest first.
+/// Calls visit(i) for each bit i that is set, from the lowest to the highest.
 template <class Word, class Visit>
 void for_each_bit(Word bits, const Visit& visit) {
   for (; bits != 0; bits &= bits - 1) visit(std::countr_zero(bits));
 }
 
-/// Calls visit(first, last) for each longest run [first, last) of set bits in a row of `words`
-/// words of 32 pixels, the lowest bit first.
+/// Calls visit(first, last) for each maximal run [first, last) of set bits in a row. Each of its
+/// `words` words holds 32 pixels, the first one in the lowest bit.
 template <class Visit>
 void for_each_run(const std::uint32_t* bits, int words, const Visit& visit) {
   constexpr int width = 32;

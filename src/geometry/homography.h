@@ -7,8 +7,8 @@
 
 namespace diminish {
 
-/// image_from_unit: takes the unit square's corners (0,0), (1,0), (1,1), (0,1) to these four, of
-/// which no three lie on a line (Heckbert 1989).
+/// image_from_unit: maps the unit square's corners (0,0), (1,0), (1,1), (0,1) to these four points,
+/// no three of which may lie on a line (Heckbert 1989).
 inline Eigen::Matrix3d homography_of_unit_square(const std::array<Eigen::Vector2d, 4>& p) {
   const Eigen::Vector2d a = p[1] - p[2];
   const Eigen::Vector2d b = p[3] - p[2];

@@ -11,32 +11,34 @@
 
 namespace diminish {
 
-/// Least squares in the six degrees of freedom of a rigid transform. They are a small motion of
-/// points after the transform: a turn about their frame's origin (axis times angle, radians), then
-/// a shift (metres).
+// Least squares in the six degrees of freedom of a rigid transform.
+
+/// The unknowns: a small motion of points after the transform. First three: a rotation about the
+/// origin of their frame (axis times angle, radians). Last three: a shift (metres).
 using Motion = Eigen::Matrix<double, 6, 1>;
 
 inline RigidTransform to_transform(const Motion& motion) {
   return {rotation_by(motion.head<3>()), motion.tail<3>()};
 }
 
-/// Of a point by a turn about the frame's origin: minus the cross product's matrix, p x turn.
-inline Eigen::Matrix3d derivative_by_turn(const Eigen::Vector3d& p) {
-  Eigen::Matrix3d by_turn;
-  by_turn << 0, p.z(), -p.y(),  //
-      -p.z(), 0, p.x(),         //
+/// The derivative of a point p by a rotation about the frame's origin: minus the matrix of the
+/// cross product with p.
+inline Eigen::Matrix3d derivative_by_rotation(const Eigen::Vector3d& p) {
+  Eigen::Matrix3d by_rotation;
+  by_rotation << 0, p.z(), -p.y(),  //
+      -p.z(), 0, p.x(),             //
       p.y(), -p.x(), 0;
-  return by_turn;
+  return by_rotation;
 }
 
-/// Of a point by a small motion.
+/// The derivative of a point by a small motion.
 inline Eigen::Matrix<double, 3, 6> derivative_by_motion(const Eigen::Vector3d& p) {
   Eigen::Matrix<double, 3, 6> by_motion;
-  by_motion << derivative_by_turn(p), Eigen::Matrix3d::Identity();
+  by_motion << derivative_by_rotation(p), Eigen::Matrix3d::Identity();
   return by_motion;
 }
 
-/// squares * step = products: the step to the least sum of squares.
+/// squares * step = products. The solution is the step to the least sum of squares.
 template <class Scalar>
 struct NormalEquations {
   using Vector = Eigen::Matrix<Scalar, 6, 1>;
@@ -45,7 +47,8 @@ struct NormalEquations {
   Matrix squares = Matrix::Zero();
   Vector products = Vector::Zero();
 
-  /// errors: what is wanted less what there is. jacobian: of what there is, by the unknowns.
+  /// Adds `rows` errors (measured minus predicted) and the derivatives of the predictions by the
+  /// unknowns.
   template <int rows>
   void add(const Eigen::Matrix<Scalar, rows, 6>& jacobian,
            const Eigen::Matrix<Scalar, rows, 1>& errors) {
@@ -57,12 +60,12 @@ struct NormalEquations {
     products += weight * others.products;
   }
 
-  /// Of other unknowns, of which these are `from_others` times.
+  /// The equations for other unknowns: these unknowns are `from_others` times the others.
   NormalEquations in_terms_of(const Matrix& from_others) const {
     return {from_others.transpose() * squares * from_others, from_others.transpose() * products};
   }
 
-  /// damping: the part by which the diagonal is enlarged, for a shorter step (Marquardt 1963).
+  /// damping: enlarges the diagonal by this share of it, for a shorter step (Marquardt 1963).
   Vector solve(Scalar damping = 0) const {
     Matrix damped = squares;
     damped.diagonal() *= 1 + damping;
@@ -70,14 +73,14 @@ struct NormalEquations {
   }
 };
 
-/// Levenberg-Marquardt (Marquardt 1963): takes steps that lower the cost until they lower it by
-/// next to nothing, or `most_steps` were tried. Returns the cost that is left; `state` stays as it
-/// is if the cost is infinite or not a number there.
+/// Levenberg-Marquardt (Marquardt 1963): takes steps that lower the cost, until the gain is tiny or
+/// `most_steps` steps have been tried. Returns the remaining cost. Leaves `state` unchanged if its
+/// cost is not finite.
 ///
-/// linearise(state): of which solve(damping) is the step, such as NormalEquations<double>. It may
-/// change the cost, as weights do that follow the errors.
-/// move(state, step): the state after a step.
-/// cost(state): not a number where there is no such state.
+/// linearise(state): returns something whose solve(damping) is the step, such as
+/// NormalEquations<double>. It may change the cost function, as robust weights do.
+/// move(state, step): returns the state after the step.
+/// cost(state): returns NaN for an impossible state.
 template <class State, class Linearise, class Move, class Cost>
 double levenberg_marquardt(State& state, double damping, int most_steps, const Linearise& linearise,
                            const Move& move, const Cost& cost) {

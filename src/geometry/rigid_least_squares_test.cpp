@@ -35,7 +35,7 @@ TEST(RigidLeastSquares, DerivativesAreTheNumericOnes) {
           (to_transform(by_motion) * p - to_transform(-by_motion) * p) / (2 * h);
       EXPECT_LT((derivative_by_motion(p).col(i) - moved).norm(), 1e-8);
       if (i >= 3) continue;
-      EXPECT_LT((derivative_by_turn(p).col(i) - moved).norm(), 1e-8);
+      EXPECT_LT((derivative_by_rotation(p).col(i) - moved).norm(), 1e-8);
       const Eigen::Vector3d aside = h * Eigen::Vector3d::Unit(i);
       EXPECT_LT(
           (pixel_derivative(700, 650, p).col(i) - (pixel(p + aside) - pixel(p - aside)) / (2 * h))

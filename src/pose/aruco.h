@@ -14,10 +14,10 @@ namespace diminish {
 // What we use of OpenCV's aruco module. Its interface changed in OpenCV 4.7: only aruco.cpp
 // includes it.
 
-/// Square markers of black and white cells.
+/// The cells of each of a dictionary's markers.
 struct MarkerDictionary {
   int side = 0;  ///< cells along a side, without the black border
-  /// Cells that may be read wrong without a marker looking like another one.
+  /// How many wrong cells a marker may have without being mistaken for another one.
   int correctable_cells = 0;
   std::vector<std::bitset<64>> codes;  ///< by id, row by row; set: white
 };
@@ -28,8 +28,8 @@ MarkerDictionary find_dictionary(const std::string& name);
 /// All dictionaries. Among those with the same cells, smaller ones come first.
 const std::vector<std::string>& dictionary_names();
 
-/// OpenCV's detector: slower than MarkerDetector, but finds smaller markers. `picture`: 8 bit, grey
-/// or BGR. Throws Error for an unknown dictionary.
+/// Detects markers with OpenCV: slower than MarkerDetector, but finds smaller ones. picture: 8-bit
+/// grey or BGR. Throws Error for an unknown dictionary.
 std::vector<Marker> detect_with_opencv(const cv::Mat& picture, const std::string& dictionary);
 
 /// A chessboard with markers in its white squares. OpenCV versions differ in which squares hold
@@ -46,13 +46,15 @@ class CharucoBoard {
     int id;
     double x_m, y_m;  ///< of the marker's centre, from the board's top left
   };
+  /// Where the board's markers are.
   std::vector<Place> markers() const;
 
-  /// Inner corners, numbered row by row.
+  /// An inner corner; ids count row by row.
   struct Corner {
     int id;
     cv::Point2f pixel;
   };
+  /// The corners that an 8-bit grey picture shows.
   std::vector<Corner> detect(const cv::Mat& grey) const;
 
  private:

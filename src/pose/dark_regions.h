@@ -8,7 +8,7 @@
 
 namespace diminish {
 
-/// The connected parts of a picture that are darker than what is around them.
+/// Finds the connected parts of a picture that are darker than their surroundings.
 class DarkRegions {
  public:
   /// A pixel is dark if it is 7 % (and two levels) below the mean of the 5x5 pixels around it.

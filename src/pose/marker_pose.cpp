@@ -51,8 +51,8 @@ double reprojection_error(const Corners& corners, const IdealView& view,
   return std::sqrt(squares / 4);
 }
 
-/// Levenberg-Marquardt on the reprojection error; returns what is left of it, pixels. The unknowns
-/// are a turn about the marker's centre, along the camera's axes, and a shift.
+/// Levenberg-Marquardt on the reprojection error. Returns the remaining error in pixels. The
+/// unknowns are a rotation about the marker's centre and a shift, along the camera's axes.
 double refine(const Corners& corners, const IdealView& view, RigidTransform& camera_from_corners) {
   constexpr double damping = 1e-3;
   constexpr int most_steps = 40;
@@ -63,7 +63,7 @@ double refine(const Corners& corners, const IdealView& view, RigidTransform& cam
       const Eigen::Vector3d p = arm + pose.translation;
       const Eigen::Matrix<double, 2, 3> by_point = view.camera.derivative(p);
       Eigen::Matrix<double, 2, 6> jacobian;
-      jacobian << by_point * derivative_by_turn(arm), by_point;
+      jacobian << by_point * derivative_by_rotation(arm), by_point;
       equations.add<2>(jacobian, view.pixels[i] - view.camera.project(p));
     }
     return equations;

@@ -38,7 +38,7 @@ class PoseRefinement {
   void apply(const RigidTransform& correction, Poses& poses, SceneSamples& samples) const;
 
  private:
-  /// A shift, then a turn.
+  /// A shift, then a rotation.
   using Twist = Eigen::Matrix<float, 6, 1>;
 
   /// Points that one RGB-D camera sees, worked on together; those after the last have no depth.

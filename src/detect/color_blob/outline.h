@@ -7,7 +7,7 @@
 
 namespace diminish {
 
-/// Border pixels in order.
+/// Border pixels, in order.
 using Outline = std::vector<Eigen::Vector2i>;
 
 /// Follows the outer border of the 8-connected region of 255 whose first pixel (highest row, then

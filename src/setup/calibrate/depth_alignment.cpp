@@ -169,7 +169,7 @@ DepthAlignment::Result DepthAlignment::solve() const {
     // unknowns have the same unit.
     Matrix6d to_origin = Matrix6d::Identity();
     to_origin.topLeftCorner<3, 3>() /= arm;
-    to_origin.bottomLeftCorner<3, 3>() = -derivative_by_turn(centre) / arm;
+    to_origin.bottomLeftCorner<3, 3>() = -derivative_by_rotation(centre) / arm;
     NormalEquations<double> equations;
     double squares = 0;
     double weights = 0;

@@ -39,7 +39,7 @@ struct FixedPoseFit::Linearised {
   };
   std::vector<Block> blocks;  ///< by sighting
 
-  /// Of the transform's unknowns alone. inverses: of the targets' squares.
+  /// The equations of the transform alone. Also returns the inverses of the targets' squares.
   NormalEquations<double> eliminate(double damping, std::vector<Matrix6d>& inverses) const {
     NormalEquations<double> sum;
     inverses.clear();

@@ -49,10 +49,10 @@ class FixedPoseFit {
 
   struct Poses;
   struct Linearised;
-  /// Of the corners in both images, in squared pixels.
+  /// The sum of the corners' squared errors in both images, in square pixels.
   double squared_error(const Sighting& sighting, const RigidTransform& first_from_second,
                        const RigidTransform& second_from_target) const;
-  /// Root mean square, by sighting.
+  /// Each sighting's root mean square error.
   std::vector<double> errors_px(const Poses& poses) const;
   std::vector<double> weights(const Poses& poses) const;
   Linearised linearise(const Poses& poses, const std::vector<double>& weights) const;

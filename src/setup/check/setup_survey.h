@@ -14,7 +14,7 @@
 
 namespace diminish {
 
-/// Of a marker's four sides.
+/// The mean length of a marker's four sides.
 double mean_side_px(const Marker& marker);
 
 /// What one colour sensor saw.
