@@ -19,11 +19,8 @@ struct OccluderReport {
   std::string name;
   bool in_color = false;      ///< a mask was drawn in the colour image
   std::vector<bool> in_rgbd;  ///< ... in each RGB-D camera
-  /// How uncertain its place in the pictures is, pixels, as far as the detector knows: masks'
-  /// margins grow by it (the option margin_deviations).
-  double deviation_px = 0;
-  bool kept = false;    ///< it was not looked for: the option `keep` names it
-  std::string message;  ///< why it was not found, in plain words; empty when it was
+  bool kept = false;          ///< it was not looked for: the option `keep` names it
+  std::string message;        ///< why it was not found, in plain words; empty when it was
 };
 
 }  // namespace diminish

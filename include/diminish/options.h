@@ -11,7 +11,6 @@ namespace diminish {
 struct Options {
   double sync_tolerance_s = 0;
   int mask_margin_px = 5;
-  double margin_deviations = 2;
   int soft_rim_px = 2;
   int rgbd_mask_margin_px = 9;
   double blob_spread = 1.0;
@@ -58,10 +57,6 @@ void for_each_option(AnyOptions& options, Visit&& visit) {
   visit(OptionInfo{"mask_margin_px", "pixels", "Growth of the objects' masks in the colour image",
                    0, 200},
         options.mask_margin_px);
-  visit(OptionInfo{"margin_deviations", "standard deviations",
-                   "Further growth: of what is known of the mask's place, by its marker's pose", 0,
-                   100},
-        options.margin_deviations);
   visit(OptionInfo{"soft_rim_px", "pixels",
                    "Width, within the margin, of the passage from the camera's picture to the "
                    "background; at most half the margin",

@@ -1,11 +1,8 @@
-#include <Eigen/Geometry>
 #include <Eigen/QR>
 #include <algorithm>
-#include <numbers>
 #include <vector>
 
 #include "detect/marker_views.h"
-#include "detect/place_deviation.h"
 #include "detect/shape_detector.h"
 #include "detect/silhouette/silhouette.h"
 #include "geometry/triangle_mesh.h"
@@ -14,9 +11,6 @@
 
 namespace diminish {
 namespace {
-
-/// Standard deviation of a corner's coordinates in a sharp picture (docs/benchmarks.md).
-constexpr double corner_noise_px = 0.1;
 
 std::vector<Eigen::Vector3d> read_vertices(const Config& config) {
   std::vector<Eigen::Vector3d> vertices;
@@ -28,16 +22,6 @@ std::vector<Eigen::Vector3d> read_vertices(const Config& config) {
     config.fail("expected points that are not all on one line");
   }
   return vertices;
-}
-
-std::vector<Eigen::Vector3d> corners_of_box(const std::vector<Eigen::Vector3d>& points) {
-  Eigen::AlignedBox3d box;
-  for (const Eigen::Vector3d& point : points) box.extend(point);
-  std::vector<Eigen::Vector3d> corners;
-  for (int i = 0; i < 8; ++i) {
-    corners.push_back(box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)));
-  }
-  return corners;
 }
 
 /// An object with a marker on it, whose shape in the marker's frame is known.
@@ -56,7 +40,6 @@ class MarkerOccluder : public ShapeDetector {
     } else {
       shape_ = load_obj(mesh.path());
     }
-    shape_corners_ = corners_of_box(shape_.vertices);
     for (const RgbdCamera& camera : rig.rgbd) {
       rgbd_color_lenses_.emplace_back(camera.color);
       in_rgbd_color_.emplace_back(rgbd_color_lenses_.back());
@@ -93,7 +76,6 @@ class MarkerOccluder : public ShapeDetector {
       add_shape(rig_.rgbd[k].color_from_depth.inverse() * *pose, in_rgbd_depth_[k], object,
                 outlines.rgbd_depth[k]);
     }
-    report.deviation_px = deviation_px();
     report.message = message();
     return report;
   }
@@ -103,23 +85,6 @@ class MarkerOccluder : public ShapeDetector {
     const Marker* found = find_marker(seen, marker_.id);
     if (!found) return std::nullopt;
     return found->corners;
-  }
-
-  /// Of the shape's corners, in the picture where it is most uncertain. Where the marker is not
-  /// seen, the shape is known by the other pictures, and by the way there.
-  double deviation_px() const {
-    double most = 0;
-    for (std::size_t i = 0; i < views_.size(); ++i) {
-      if (!views_[i].corners || !camera_from_marker_[i]) continue;
-      // Of four corners' eight coordinates the pose leaves two free to differ.
-      const double error_px =
-          std::numbers::sqrt2 * marker_error_px(*camera_from_marker_[i], marker_.size_m,
-                                                *views_[i].lens, *views_[i].corners);
-      most = std::max(most,
-                      place_deviation_px(*camera_from_marker_[i], marker_.size_m, *views_[i].lens,
-                                         std::max(error_px, corner_noise_px), shape_corners_));
-    }
-    return most;
   }
 
   void add_shape(const RigidTransform& camera_from_marker, Silhouette& silhouette,
@@ -156,7 +121,6 @@ class MarkerOccluder : public ShapeDetector {
   Rig rig_;
   MarkerSpec marker_;
   TriangleMesh shape_;  ///< in the marker's frame; without triangles: its convex hull
-  std::vector<Eigen::Vector3d> shape_corners_;  ///< of the box around it
   Lens color_lens_;
   std::vector<Lens> rgbd_color_lenses_;
   Silhouette in_color_;

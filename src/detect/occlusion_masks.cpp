@@ -69,11 +69,7 @@ void OccluderStage::detect(const Observation& observation, std::vector<OccluderR
 
 /// What is outlined, and the margins.
 void OccluderStage::draw(const Options& options, std::vector<OccluderReport>& reports) {
-  double deviation_px = 0;
-  for (const OccluderReport& report : reports) {
-    deviation_px = std::max(deviation_px, report.deviation_px);
-  }
-  list_drawings(options, deviation_px);
+  list_drawings(options);
   draw_by_chosen();
   for (std::size_t i = 0; i < drawings_.size(); ++i) {
     const MaskDrawing& drawing = drawings_[i];
@@ -99,14 +95,7 @@ void OccluderStage::clear() {
   });
 }
 
-void OccluderStage::list_drawings(const Options& options, double deviation_px) {
-  // A marker that faces the camera leaves its own lean open; so much it does not matter.
-  constexpr double most_px = 10;
-  // Half the margin is for blur, half for what is usual.
-  const double usual_px = options.mask_margin_px / 2.0;
-  const double wanted_px =
-      options.margin_deviations > 0 ? options.margin_deviations * deviation_px : 0;
-  const auto more_px = static_cast<int>(std::lrint(std::clamp(wanted_px - usual_px, 0.0, most_px)));
+void OccluderStage::list_drawings(const Options& options) {
   const auto list = [&](std::size_t image, const Polygons& polygons, int margin_px, Mask& mask) {
     MaskDrawing& drawing = drawings_[image];
     drawing.polygons = &polygons;
@@ -115,8 +104,8 @@ void OccluderStage::list_drawings(const Options& options, double deviation_px) {
     drawing.mask = &mask;
     drawing.covers.assign(detectors_.size(), 0);
   };
-  list(0, outlines_.color, options.mask_margin_px + more_px, masks_.color);
-  const int margin_px = options.rgbd_mask_margin_px + more_px;
+  list(0, outlines_.color, options.mask_margin_px, masks_.color);
+  const int margin_px = options.rgbd_mask_margin_px;
   for (std::size_t k = 0; k < rig_.rgbd.size(); ++k) {
     list(1 + 2 * k, outlines_.rgbd_color[k], margin_px, masks_.rgbd_color[k]);
     list(2 + 2 * k, outlines_.rgbd_depth[k], depth_margin_px(rig_.rgbd[k], margin_px),

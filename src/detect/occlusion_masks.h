@@ -37,7 +37,7 @@ class OccluderStage {
  private:
   void clear();
   void draw(const Options& options, std::vector<OccluderReport>& reports);
-  void list_drawings(const Options& options, double deviation_px);
+  void list_drawings(const Options& options);
   void draw_by_chosen();
 
   Rig rig_;

@@ -40,7 +40,6 @@ TEST_P(MasksOfRecordings, AreTheProcessorsOnTheGpu) {
       SCOPED_TRACE(frame.name + ", " + std::to_string(margin_px));
       Options options;
       options.mask_margin_px = options.rgbd_mask_margin_px = margin_px;
-      options.margin_deviations = margin_px == 5 ? 2 : 0;
       const Observation observation{frame, result.report.markers, result.report.poses, options};
       by_cpu.detect(observation, expected_reports);
       by_gpu.detect(observation, reports);

@@ -77,7 +77,6 @@ INSTANTIATE_TEST_SUITE_P(All, PipelineOnRecordings,
 TEST_P(PipelineOnRecordings, FindsTheObject) {
   Options options;
   options.mask_margin_px = 0;
-  options.margin_deviations = 0;
   BundledRecording recording(GetParam().recording, options);
   while (recording.next()) {
     EXPECT_GE(intersection_over_union(recording.result.mask, recording.true_mask()),
