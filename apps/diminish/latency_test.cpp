@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "camera/clock_code.h"
+#include "camera/test/clock_code.h"
 #include "commands.h"
 #include "core/mat.h"
 #include "diminish/error.h"

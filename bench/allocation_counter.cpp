@@ -1,37 +1,29 @@
-#include "allocation_counter.h"
+// Linked into the program where benchmarks are built: `diminish bench` then says what a frame
+// allocates. With the GNU C library only, and not where a sanitizer replaces malloc.
+#include "allocations.h"
+
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 
 #include <atomic>
 #include <cerrno>
-#include <cstdlib>
 
-namespace diminish {
 namespace {
 
 std::atomic<std::size_t> total_count = 0;
 std::atomic<std::size_t> total_bytes = 0;
 
-}  // namespace
+void count(std::size_t bytes) {
+  total_count.fetch_add(1, std::memory_order_relaxed);
+  total_bytes.fetch_add(bytes, std::memory_order_relaxed);
+}
 
-Allocations allocations() {
+diminish::Allocations counted() {
   return {total_count.load(std::memory_order_relaxed), total_bytes.load(std::memory_order_relaxed)};
 }
 
-}  // namespace diminish
-
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-
-namespace {
-
-void count(std::size_t bytes) {
-  diminish::total_count.fetch_add(1, std::memory_order_relaxed);
-  diminish::total_bytes.fetch_add(bytes, std::memory_order_relaxed);
-}
+const bool is_counting = (diminish::count_allocations = counted) != nullptr;
 
 }  // namespace
-
-bool diminish::allocations_are_counted() {
-  return true;
-}
 
 // A program's own malloc takes the place of the library's in every shared library; it passes on to
 // the functions that the GNU C library exports for that purpose.
@@ -69,11 +61,5 @@ int posix_memalign(void** result, std::size_t alignment, std::size_t size) {
 }
 
 }  // extern "C"
-
-#else
-
-bool diminish::allocations_are_counted() {
-  return false;
-}
 
 #endif
