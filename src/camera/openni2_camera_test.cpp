@@ -1,4 +1,4 @@
-// Goes through the real OpenNI2, with a driver that serves a recording (openni2_test_driver/).
+// Goes through the real OpenNI2, with a driver that serves a recording (test/openni2_driver/).
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "camera/clock_code.h"
+#include "camera/test/clock_code.h"
 
 #include <algorithm>
 
