@@ -1,33 +1,9 @@
 #include "diminish/image.h"
 
-#include <cstring>
-
-#include "core/runs.h"
+#include "core/bounding_box.h"
 
 namespace diminish {
 namespace {
-
-bool any_set(const std::uint8_t* row, int count) {
-  // Without a branch, so that the compiler vectorises it.
-  std::uint64_t any = 0;
-  int x = 0;
-  for (; x + 8 <= count; x += 8) {
-    std::uint64_t pixels;
-    std::memcpy(&pixels, row + x, sizeof(pixels));
-    any |= pixels;
-  }
-  for (; x < count; ++x) any |= row[x];
-  return any != 0;
-}
-
-/// The last non-zero of `count` pixels; -1 if there is none.
-int last_set(const std::uint8_t* row, int count) {
-  constexpr int step = 32;
-  int end = count;
-  while (end >= step && !any_set(row + end - step, step)) end -= step;
-  while (end > 0 && row[end - 1] == 0) --end;
-  return end - 1;
-}
 
 /// As many as a byte can count at a time, so that the compiler takes many pixels at a time.
 template <class Predicate>
@@ -56,20 +32,7 @@ Rect bounding_box(const Mask& mask) {
 }
 
 Rect bounding_box(const Mask& mask, const Rect& part) {
-  int left = part.width;
-  int right = -1;
-  const auto is_empty = [&](int y) { return !any_set(mask.row(y) + part.x, part.width); };
-  int top = part.y;
-  int bottom = part.bottom() - 1;
-  while (top <= bottom && is_empty(top)) ++top;
-  while (bottom > top && is_empty(bottom)) --bottom;
-  for (int y = top; y <= bottom; ++y) {
-    const std::uint8_t* row = mask.row(y) + part.x;
-    left = find_other(row, 0, left, 0);
-    right += 1 + last_set(row + right + 1, part.width - right - 1);
-  }
-  if (top > bottom) return {};
-  return {part.x + left, top, right - left + 1, bottom - top + 1};
+  return bounding_box(mask.data(), mask.width(), part);
 }
 
 std::size_t count_equal(const Image<std::uint8_t>& image, std::uint8_t value, const Rect& part) {

@@ -190,7 +190,7 @@ TEST_F(Textures, HoldTheProcessorsPicturesToo) {
     const std::string name = what;
     options.backend = name == "cpu" || name == "broken" ? name : "gl";
     if (name == "telea") options.inpaint = name;
-    if (name == "poisson") options.color_correct = "poisson_reference";
+    if (name == "poisson") options.color_correct = name;
     Pipeline downloading(scene.recording.rig, scene.recording.scene, options);
     DiminishedFrame expected;
     downloading.process(scene.frame, expected);

@@ -7,7 +7,7 @@
 
 #include "diminish/diminished_frame.h"
 #include "gl/pixels_of.h"
-#include "inpaint/smooth_filling.h"
+#include "membrane/smooth_filling.h"
 #include "inpaint/surface_rules.h"
 
 namespace diminish::gl {

@@ -10,7 +10,7 @@
 #include "core/rows.h"
 #include "diminish/inpainter.h"
 #include "inpaint/plane_colors.h"
-#include "inpaint/smooth_filling.h"
+#include "membrane/smooth_filling.h"
 #include "inpaint/surface_rules.h"
 
 namespace diminish {

@@ -25,14 +25,18 @@ using Bytes = hn::Rebind<std::uint8_t, Shorts>;
 struct Result {
   hn::Vec<Bytes> channel[3];
 
-  HWY_INLINE Result(const std::int16_t* solution, const Bgra* base, int i) {
+  HWY_INLINE Result(const std::int16_t* solution, const std::uint8_t* base, int base_channels,
+                    int i) {
     const Bytes d;
     hn::Vec<Shorts> sum[3];
     for (int c = 0; c < 3; ++c) sum[c] = hn::Load(Shorts(), solution + c * block + i);
     if (base) {
       hn::Vec<Bytes> color[4];
-      hn::LoadInterleaved4(d, reinterpret_cast<const std::uint8_t*>(base + i), color[0], color[1],
-                           color[2], color[3]);
+      if (base_channels == 4) {
+        hn::LoadInterleaved4(d, base + 4 * i, color[0], color[1], color[2], color[3]);
+      } else {
+        hn::LoadInterleaved3(d, base + 3 * i, color[0], color[1], color[2]);
+      }
       for (int c = 0; c < 3; ++c) sum[c] = hn::Add(sum[c], hn::PromoteTo(Shorts(), color[c]));
     }
     for (int c = 0; c < 3; ++c) channel[c] = hn::DemoteTo(d, sum[c]);
@@ -41,7 +45,8 @@ struct Result {
 
 /// One block of pixels. solution: three channels of 32. keys: null if all pixels are to be written.
 /// base: null for none.
-void WriteBlock(const float* solution, const std::uint8_t* keys, const Bgra* base, Bgr* picture) {
+void WriteBlock(const float* solution, const std::uint8_t* keys, const std::uint8_t* base,
+                int base_channels, std::uint8_t* picture) {
   const Bytes d;
   const hn::Rebind<std::int16_t, Floats> rounded;
   HWY_ALIGN std::int16_t levels[3 * block];
@@ -50,8 +55,8 @@ void WriteBlock(const float* solution, const std::uint8_t* keys, const Bgra* bas
     hn::Store(hn::DemoteTo(rounded, values), rounded, levels + i);
   }
   for (int i = 0; i < block; i += static_cast<int>(hn::Lanes(d))) {
-    Result result(levels, base, i);
-    auto* pixels = reinterpret_cast<std::uint8_t*>(picture + i);
+    Result result(levels, base, base_channels, i);
+    std::uint8_t* const pixels = picture + 3 * i;
     if (keys) {
       const auto key = hn::LoadU(d, keys + i);
       const auto skipped =
@@ -79,43 +84,45 @@ HWY_EXPORT(WriteBlock);
 
 constexpr int block = MembraneLevel::tile_width;
 
-void write(const MembraneSolver& solver, const Rect& window, const Image<Bgra>* base, Rows rows,
-           Image<Bgr>& picture) {
+void write(const MembraneSolver& solver, const Membrane::ConstView& base, Rows rows,
+           const Membrane::View& window) {
   HWY_ALIGN float solution[3 * block];
-  HWY_ALIGN Bgra base_end[block] = {};
-  HWY_ALIGN Bgr picture_end[block];
-  for (int row = rows.first; row < rows.last; ++row) {
+  HWY_ALIGN std::uint8_t base_end[4 * block] = {};
+  HWY_ALIGN std::uint8_t picture_end[3 * block] = {};
+  for (int y = rows.first; y < rows.last; ++y) {
     for (int column = 0; column * block < window.width; ++column) {
-      const std::uint32_t cells = solver.cells_in_block(row, column);
+      const std::uint32_t cells = solver.cells_in_block(y, column);
       if (cells == 0) continue;
-      solver.read_block(row, column, solution);
-      const int x = window.x + column * block;
-      const int count = std::min(block, window.right() - x);
-      const std::uint8_t* keys = cells == ~0U ? nullptr : solver.keys(row) + column * block;
-      const Bgra* colors = base ? base->row(window.y + row) + x : nullptr;
-      Bgr* pixels = picture.row(window.y + row) + x;
+      solver.read_block(y, column, solution);
+      const int x = column * block;
+      const int count = std::min(block, window.width - x);
+      const std::uint8_t* keys = cells == ~0U ? nullptr : solver.keys(y) + x;
+      const std::uint8_t* colors = base.data ? base.pixel(x, y) : nullptr;
+      std::uint8_t* const pixels = window.pixel(x, y);
       if (count == block) {
-        HWY_DYNAMIC_DISPATCH(WriteBlock)(solution, keys, colors, pixels);
+        HWY_DYNAMIC_DISPATCH(WriteBlock)(solution, keys, colors, base.channels, pixels);
         continue;
       }
       // The last block of a row reaches beyond the images.
-      if (base) std::copy_n(colors, count, base_end);
-      std::copy_n(pixels, count, picture_end);
-      HWY_DYNAMIC_DISPATCH(WriteBlock)
-      (solution, keys, base ? static_cast<const Bgra*>(base_end) : nullptr, picture_end);
-      std::copy_n(picture_end, count, pixels);
+      if (colors) {
+        std::copy_n(colors, base.channels * count, base_end);
+        colors = base_end;
+      }
+      std::copy_n(pixels, 3 * count, picture_end);
+      HWY_DYNAMIC_DISPATCH(WriteBlock)(solution, keys, colors, base.channels, picture_end);
+      std::copy_n(picture_end, 3 * count, pixels);
     }
   }
 }
 
 }  // namespace
 
-void write_solution(const MembraneSolver& solver, const Rect& window, Image<Bgr>& picture) {
-  for_rows(window.height, [&](Rows rows) { write(solver, window, nullptr, rows, picture); });
+void write_solution(const MembraneSolver& solver, const Membrane::View& window) {
+  for_rows(window.height, [&](Rows rows) { write(solver, {}, rows, window); });
 }
-void add_solution(const MembraneSolver& solver, const Rect& window, const Image<Bgra>& base,
-                  Image<Bgr>& picture) {
-  for_rows(window.height, [&](Rows rows) { write(solver, window, &base, rows, picture); });
+void add_solution(const MembraneSolver& solver, const Membrane::ConstView& base,
+                  const Membrane::View& window) {
+  for_rows(window.height, [&](Rows rows) { write(solver, base, rows, window); });
 }
 
 }  // namespace diminish

@@ -32,11 +32,6 @@ class MembraneSolver {
   static constexpr int channels = MembraneLevel::channels;
   using Values = float[channels];
 
-  MembraneSolver() = default;
-  virtual ~MembraneSolver() = default;
-  MembraneSolver(const MembraneSolver&) = delete;
-  MembraneSolver& operator=(const MembraneSolver&) = delete;
-
   /// Starts a problem inside a window of this size.
   void begin(int width, int height);
   /// The key of a pixel whose value is given.
@@ -67,11 +62,11 @@ class MembraneSolver {
   const std::vector<LooseRun>& take_out_loose_parts();
 
   /// Solves until the last correction's root mean square is below `tolerance`.
-  virtual void solve(float tolerance);
+  void solve(float tolerance);
 
   /// The solution in the pixels [32 * column, 32 * column + 32) of row y; `result` holds three
   /// channels of 32. Unspecified where there is no pixel of the set.
-  virtual void read_block(int y, int column, float* result) const;
+  void read_block(int y, int column, float* result) const;
 
   /// Which of these pixels are of the set, a bit each.
   std::uint32_t cells_in_block(int y, int column) const {
@@ -82,25 +77,13 @@ class MembraneSolver {
   /// Cycles on the finest grid that the last problem took.
   int cycles() const { return cycles_; }
 
- protected:
+ private:
   /// A fixed value or a source.
   struct Boundary {
     int x, y;
     float value[channels];
   };
 
-  int width() const { return width_; }
-  int height() const { return height_; }
-  /// Whether a pixel of the window is to be solved for.
-  bool is_unknown(int x, int y) const {
-    constexpr int bits = MembraneLevel::tile_width;
-    const auto word = static_cast<std::size_t>(word_index(y) + x / bits);
-    return (cells_[word] >> (x % bits) & 1U) != 0;
-  }
-  const std::vector<Boundary>& fixed_values() const { return fixed_values_; }
-  const std::vector<Boundary>& sources() const { return sources_; }
-
- private:
   template <class Visit>
   void for_each_pixel(const std::vector<std::uint32_t>& words, const Visit& visit) const {
     for (int y = 0; y < height_; ++y) {

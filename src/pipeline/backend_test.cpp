@@ -240,7 +240,7 @@ TEST_P(WholeFrames, OfTheGpuAreThoseOfTheCpuWithOtherOptions) {
        {"remove_shadows", "with shadows", "whole_view", "harmonic", "none", "surroundings_px"}) {
     const std::string name = what;
     Options options;
-    options.inpaint = name == "harmonic" ? "harmonic_reference" : "none";
+    options.inpaint = name == "harmonic" ? "harmonic" : "none";
     options.remove_shadows = name == "remove_shadows";
     options.lift_shadows = name != "with shadows";
     options.whole_view = name == "whole_view";

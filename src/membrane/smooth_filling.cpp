@@ -1,4 +1,4 @@
-#include "inpaint/smooth_filling.h"
+#include "membrane/smooth_filling.h"
 
 #include <algorithm>
 
