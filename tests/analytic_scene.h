@@ -102,22 +102,37 @@ inline RigidTransform look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d&
 }
 
 /// Cameras with lenses, a baseline and a rotation between depth and colour sensor.
-inline Rig small_rig(int rgbd_count = 1) {
+inline Rig small_rig(int rgbd_count = 1, LensModel model = LensModel::plumb_bob) {
   Rig rig;
   rig.color = {320, 256, 283, 282, 161, 127, {-0.11, 0.09, 0.0006, -0.0004, 0}};
+  RgbdCamera camera;
+  camera.color = {480, 270, 265, 265, 239, 135, {0.041, -0.045, -0.0003, 0.0005, 0}};
+  camera.depth = {256, 212, 183, 183, 127.5, 103, {0.0893, -0.268, 0, 0, 0.089}};
+  if (model == LensModel::rational) {
+    rig.color.distortion = {0.3, 0.1, 0.0006, -0.0004, 0.02, 0.55, 0.12, 0.03};
+    camera.color.distortion = {0.46, 0.05, -0.0003, 0.0005, 0.01, 0.6, 0.1, 0.01};
+    camera.depth.distortion = {0.1, 0.2, 0.0002, 0.0001, 0.03, 0.2, 0.3, 0.02};
+  } else if (model == LensModel::fisheye) {
+    rig.color.fx = rig.color.fy = 230;
+    rig.color.distortion = {0.02, -0.01, 0.003, -0.001};
+    camera.color.fx = camera.color.fy = 310;
+    camera.color.distortion = {-0.03, 0.02, -0.01, 0.002};
+    camera.depth.fx = camera.depth.fy = 200;
+    camera.depth.distortion = {-0.008, 0.045, -0.043, 0.008};
+  }
+  for (Intrinsics* sensor : {&rig.color, &camera.color, &camera.depth}) sensor->lens_model = model;
+  camera.depth_unit_m = 0.0001;
+  camera.color_from_depth.rotation =
+      Eigen::AngleAxisd(0.01, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+  camera.color_from_depth.translation = {0.052, -0.0006, -0.0013};
   for (int k = 0; k < rgbd_count; ++k) {
-    RgbdCamera camera;
     camera.name = "rgbd" + std::to_string(k);
-    camera.color = {480, 270, 265, 265, 239, 135, {0.041, -0.045, -0.0003, 0.0005, 0}};
-    camera.depth = {256, 212, 183, 183, 127.5, 103, {0.0893, -0.268, 0, 0, 0.089}};
-    camera.depth_unit_m = 0.0001;
-    camera.color_from_depth.rotation =
-        Eigen::AngleAxisd(0.01, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
-    camera.color_from_depth.translation = {0.052, -0.0006, -0.0013};
     rig.rgbd.push_back(camera);
   }
   return rig;
 }
+
+constexpr LensModel lens_models[] = {LensModel::plumb_bob, LensModel::rational, LensModel::fisheye};
 
 /// The cameras' poses and images in the scene.
 struct AnalyticFrame {
@@ -125,8 +140,9 @@ struct AnalyticFrame {
   Poses poses;
   FrameSet frame;
 
-  AnalyticFrame(const AnalyticScene& scene, const std::vector<Eigen::Vector3d>& rgbd_eyes)
-      : rig(small_rig(static_cast<int>(rgbd_eyes.size()))) {
+  AnalyticFrame(const AnalyticScene& scene, const std::vector<Eigen::Vector3d>& rgbd_eyes,
+                LensModel model = LensModel::plumb_bob)
+      : rig(small_rig(static_cast<int>(rgbd_eyes.size()), model)) {
     poses.color_from_world = look_at({0.05, 0.02, 1.2}, {0, 0, 0});
     frame.name = "000000";
     frame.color = scene.color_image(Lens(rig.color), *poses.color_from_world);

@@ -31,6 +31,7 @@ struct CalibrateIntrinsicsCommand {
   std::filesystem::path plot;
   std::string camera = "color";
   std::string board;
+  std::string lens = "plumb_bob";
   std::size_t frames = 300;
 
   int execute() const;
@@ -107,18 +108,17 @@ void print_result(const IntrinsicsCalibration& result) {
   }
   fmt::print("{:<40} {:>10.3f}\n\n", fmt::format("all {} used", used), result.error_px);
   const Intrinsics& camera = result.intrinsics;
-  const std::array<double, 9> values = {camera.fx,
-                                        camera.fy,
-                                        camera.cx,
-                                        camera.cy,
-                                        camera.distortion[0],
-                                        camera.distortion[1],
-                                        camera.distortion[2],
-                                        camera.distortion[3],
-                                        camera.distortion[4]};
-  constexpr const char* names[] = {"fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3"};
+  std::vector<double> values = {camera.fx, camera.fy, camera.cx, camera.cy};
+  std::vector<const char*> names = {"fx", "fy", "cx", "cy", "k1", "k2",
+                                    "p1", "p2", "k3", "k4", "k5", "k6"};
+  if (camera.lens_model == LensModel::fisheye) {
+    names = {"fx", "fy", "cx", "cy", "k1", "k2", "k3", "k4"};
+  }
+  const std::size_t count = coefficient_count(camera.lens_model);
+  values.insert(values.end(), camera.distortion.begin(),
+                camera.distortion.begin() + static_cast<std::ptrdiff_t>(count));
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (i == 8 && result.deviations[i] == 0) continue;
+    if (result.deviations[i] == 0) continue;  // was not fitted
     fmt::print("{}  {:>10.{}f} +- {:.{}f}\n", names[i], values[i], i < 4 ? 2 : 5,
                result.deviations[i], i < 4 ? 2 : 5);
   }
@@ -131,7 +131,7 @@ int CalibrateIntrinsicsCommand::execute() const {
   stop_on_signals();
   const std::unique_ptr<BoardImages> source = open();
   const ViewCollection views = collect(*source, detector);
-  const IntrinsicsCalibration result = calibrate_intrinsics(views);
+  const IntrinsicsCalibration result = calibrate_intrinsics(views, find_lens_model(lens).value());
   print_result(result);
   if (!plot.empty()) write_png(plot, as_mat(coverage_picture(views, result)));
   rig.set_intrinsics(camera, result.intrinsics);
@@ -166,6 +166,11 @@ void add_calibrate_intrinsics(CLI::App& calibrate, int& exit_code) {
                   "Which camera: color, or an RGB-D camera's sensor: rgbd0_color, rgbd0_depth "
                   "(infrared images)")
       ->capture_default_str();
+  sub->add_option("--lens", command->lens,
+                  "Lens model to fit: plumb_bob (k1, k2, p1, p2, k3), rational (also k4, k5, k6: "
+                  "wide-angle lenses) or fisheye (up to 85 degrees off the axis)")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"plumb_bob", "rational", "fisheye"}));
   sub->add_option("--frames", command->frames, "Most images to use from a recording")
       ->capture_default_str()
       ->check(CLI::Range(1, 100000))

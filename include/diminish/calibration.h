@@ -77,8 +77,8 @@ struct IntrinsicsCalibration {
   };
 
   Intrinsics intrinsics;
-  /// Standard deviations of fx, fy, cx, cy, k1, k2, p1, p2, k3; 0 of what was not fitted.
-  std::array<double, 9> deviations{};
+  /// Standard deviations of fx, fy, cx, cy and the lens's coefficients; 0 of what was not fitted.
+  std::array<double, 12> deviations{};
   double error_px = 0;  ///< root mean square over the corners of the views used
   std::vector<View> views;
   /// Each corner's reprojection error by view, pixels: seen minus computed.
@@ -87,9 +87,11 @@ struct IntrinsicsCalibration {
   std::vector<std::string> warnings;
 };
 
-/// Calibrates a camera (Zhang 2000, by cv::calibrateCamera). Views whose error stands out are left
-/// out. k3 is fitted only if it is more than three standard deviations from 0. Throws Error with
-/// fewer than three views, or if no camera explains them. Cost: some seconds for a hundred views.
-IntrinsicsCalibration calibrate_intrinsics(const ViewCollection& views);
+/// Calibrates a camera (Zhang 2000, by cv::calibrateCamera or cv::fisheye::calibrate). Views whose
+/// error stands out are left out. A plumb-bob lens's k3 is fitted only if it is more than three
+/// standard deviations from 0. Throws Error with fewer than three views, or if no camera explains
+/// them. Cost: some seconds for a hundred views.
+IntrinsicsCalibration calibrate_intrinsics(const ViewCollection& views,
+                                           LensModel model = LensModel::plumb_bob);
 
 }  // namespace diminish

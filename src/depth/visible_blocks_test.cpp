@@ -54,7 +54,8 @@ TEST(VisibleBlocks, HoldWhateverIsSeen) {
   int kept = 0;
   int all = 0;
   for (int trial = 0; trial < 40; ++trial) {
-    const AnalyticFrame frame(scene, {{0.7 * unit(random), 0.5 * unit(random), 1.1}});
+    const AnalyticFrame frame(scene, {{0.7 * unit(random), 0.5 * unit(random), 1.1}},
+                              testing::lens_models[trial % 3]);
     Image<std::uint16_t> depth = frame.frame.rgbd[0].depth;
     for (std::uint16_t& value : depth) value = random() % 9 == 0 ? std::uint16_t{0} : value;
     RigidTransform pose = *frame.poses.color_from_depth[0];

@@ -1,16 +1,19 @@
 #pragma once
 
+#include <array>
+
 #include "diminish/intrinsics.h"
 #include "diminish/rigid_transform.h"
+#include "geometry/distortion.h"
 
 namespace diminish {
 
-/// `Lens` in single precision for per-pixel work: plain expressions in a fixed order, so that a
-/// vectorised version can compute the same bits.
+/// `Lens` in single precision for per-pixel work.
 struct Projection {
   float fx = 0, fy = 0, cx = 0, cy = 0;
-  float k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0;
+  std::array<float, 8> distortion{};  ///< as `model` orders them
   float max_radius_squared = 0;
+  LensModel model = LensModel::plumb_bob;
 
   Projection() = default;
   explicit Projection(const Lens& lens)
@@ -18,25 +21,25 @@ struct Projection {
         fy(static_cast<float>(lens.intrinsics().fy)),
         cx(static_cast<float>(lens.intrinsics().cx)),
         cy(static_cast<float>(lens.intrinsics().cy)),
-        k1(static_cast<float>(lens.intrinsics().distortion[0])),
-        k2(static_cast<float>(lens.intrinsics().distortion[1])),
-        p1(static_cast<float>(lens.intrinsics().distortion[2])),
-        p2(static_cast<float>(lens.intrinsics().distortion[3])),
-        k3(static_cast<float>(lens.intrinsics().distortion[4])),
-        max_radius_squared(static_cast<float>(lens.max_radius_squared())) {}
+        max_radius_squared(static_cast<float>(lens.max_radius_squared())),
+        model(lens.intrinsics().lens_model) {
+    for (std::size_t i = 0; i < distortion.size(); ++i) {
+      distortion[i] = static_cast<float>(lens.intrinsics().distortion[i]);
+    }
+  }
 
-  /// The pixel of the ray (x, y, 1); false beyond the distortion polynomial's valid radius.
+  /// The pixel of the ray (x, y, 1); false beyond the lens's valid radius.
   bool distort(float x, float y, float& u, float& v) const {
-    const float xx = x * x;
-    const float yy = y * y;
-    const float xy = x * y;
-    const float r2 = xx + yy;
+    const float r2 = x * x + y * y;
     if (!(r2 < max_radius_squared)) return false;
-    const float radial = 1.F + r2 * (k1 + r2 * (k2 + r2 * k3));
-    const float xd = x * radial + (2.F * p1 * xy + p2 * (r2 + 2.F * xx));
-    const float yd = y * radial + (p1 * (r2 + 2.F * yy) + 2.F * p2 * xy);
-    u = fx * xd + cx;
-    v = fy * yd + cy;
+    float distorted_x = 0;
+    float distorted_y = 0;
+    with_lens_model(model, [&](auto chosen) {
+      plain::distort_ray<decltype(chosen)::value>(
+          distortion, [](float value) { return value; }, x, y, r2, distorted_x, distorted_y);
+    });
+    u = fx * distorted_x + cx;
+    v = fy * distorted_y + cy;
     return true;
   }
 };

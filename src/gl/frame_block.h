@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 
 #include "geometry/projection.h"
@@ -10,8 +12,9 @@ namespace diminish::gl {
 
 struct LensBlock {
   float fx, fy, cx, cy;
-  float k1, k2, p1, p2;
-  float k3, max_radius_squared, padding[2];
+  float distortion[8];
+  float max_radius_squared;
+  std::uint32_t model, padding[2];
 
   LensBlock() = default;
   explicit LensBlock(const Projection& p)
@@ -19,13 +22,11 @@ struct LensBlock {
         fy(p.fy),
         cx(p.cx),
         cy(p.cy),
-        k1(p.k1),
-        k2(p.k2),
-        p1(p.p1),
-        p2(p.p2),
-        k3(p.k3),
         max_radius_squared(p.max_radius_squared),
-        padding{} {}
+        model(static_cast<std::uint32_t>(p.model)),
+        padding{} {
+    std::copy(p.distortion.begin(), p.distortion.end(), distortion);
+  }
 };
 
 struct TransformBlock {
@@ -49,7 +50,7 @@ struct FrameBlock {
   std::uint32_t tiles_at;
   std::uint32_t most_blended, padding[3];
 };
-static_assert(sizeof(FrameBlock) == 112);
+static_assert(sizeof(FrameBlock) == 128);
 
 struct CameraBlock {
   LensBlock rgbd_color;
@@ -61,7 +62,7 @@ struct CameraBlock {
   std::uint32_t source;
   std::uint32_t layer;
 };
-static_assert(sizeof(CameraBlock) == 192);
+static_assert(sizeof(CameraBlock) == 208);
 
 /// A camera's place in the colour camera's frame (blending.glsl): CameraPlace.
 struct CameraPlaceBlock {

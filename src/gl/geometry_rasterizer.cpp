@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "gl/lens_files.h"
 #include "gl/reconstructor.h"
 
 namespace diminish::gl {
@@ -28,10 +29,10 @@ class GeometryRasterizer : public Rasterizer {
  public:
   GeometryRasterizer(const Rig& rig, const FrameUpload& /*upload*/)
       : picture_(rig.color),
-        program_(
-            {{GL_VERTEX_SHADER, {"frame.glsl", "sdct.glsl", "rule1.glsl", "geometry.vert"}, {}},
-             {GL_GEOMETRY_SHADER, {"frame.glsl", "sdct.glsl", "geometry.geom"}, {}},
-             {GL_FRAGMENT_SHADER, {"frame.glsl", "texture.glsl", "geometry.frag"}, {}}}) {
+        lens_files_(lens_files(rig)),
+        program_({{GL_VERTEX_SHADER, finding_vertices(), {}},
+                  {GL_GEOMETRY_SHADER, {"frame.glsl", "sdct.glsl", "geometry.geom"}, {}},
+                  {GL_FRAGMENT_SHADER, {"frame.glsl", "texture.glsl", "geometry.frag"}, {}}}) {
     const GLsizei layers = static_cast<GLsizei>(std::max<std::size_t>(rig.rgbd.size(), 1));
     glCreateTextures(GL_TEXTURE_2D_ARRAY, 1, &seen_.value);
     glTextureStorage3D(seen_.value, 1, GL_RG32UI, picture_.width, picture_.height, layers);
@@ -50,7 +51,9 @@ class GeometryRasterizer : public Rasterizer {
   }
 
   std::vector<std::string> seen_files() const override {
-    return {"rule1.glsl", "seen_fragments.glsl"};
+    std::vector<std::string> files = lens_files_;
+    files.insert(files.end(), {"rule1.glsl", "seen_fragments.glsl"});
+    return files;
   }
 
   void draw(const FrameUpload& upload, const Rect& region, const Buffer& /*work*/,
@@ -112,7 +115,15 @@ class GeometryRasterizer : public Rasterizer {
     glDrawElements(GL_TRIANGLES, indices.count, GL_UNSIGNED_INT, nullptr);
   }
 
+  std::vector<std::string> finding_vertices() const {
+    std::vector<std::string> files = lens_files_;
+    files.insert(files.begin(), {"frame.glsl", "sdct.glsl"});
+    files.insert(files.end(), {"rule1.glsl", "geometry.vert"});
+    return files;
+  }
+
   Intrinsics picture_;
+  std::vector<std::string> lens_files_;
   Program program_;
   std::vector<Indices> indices_;  ///< one for each of the rig's cameras
   Name<&glDeleteTextures> seen_;

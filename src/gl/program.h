@@ -50,7 +50,7 @@ inline Program compute_program(std::vector<std::string> files, std::string defin
 /// Whether src/gl/shaders has a file of this name.
 bool has_shader_file(const std::string& name);
 
-/// The beginning of every shader: the version and the constants of sdct.h.
+/// The beginning of every shader: the version and constants of the CPU's code.
 std::string shader_prologue();
 
 }  // namespace diminish::gl

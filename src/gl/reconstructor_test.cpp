@@ -200,6 +200,23 @@ TEST_P(ThreeCameras, InSmallRegions) {
   }
 }
 
+// Whatever is bent by what: the RGB-D cameras' lenses may also be other than the user's.
+TEST_P(ThreeCameras, ThroughEveryLens) {
+  for (const LensModel users : testing::lens_models) {
+    for (const LensModel others : testing::lens_models) {
+      SCOPED_TRACE(std::string(name_of(users)) + " and " + name_of(others));
+      scene = testing::AnalyticFrame({}, on_circle(3), others);
+      scene.rig.color = testing::small_rig(0, users).color;
+      for (const char* merge : {"choose", "blend"}) {
+        options.merge_cameras = merge;
+        const Difference difference = beside_the_processors();
+        expect_alike(difference);
+        EXPECT_GT(difference.drawn, difference.pixels / 2);
+      }
+    }
+  }
+}
+
 class NineCameras : public ManyCameras {
  protected:
   NineCameras() : ManyCameras(9) {}

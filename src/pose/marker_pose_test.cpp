@@ -9,6 +9,17 @@ namespace {
 
 const Intrinsics color{1280, 1024, 1131.4, 1130.7, 645.2, 507.8, {-0.11, 0.09, 0.0006, -0.0004, 0}};
 
+const Intrinsics wide{1280,
+                      1024,
+                      700,
+                      700,
+                      645.2,
+                      507.8,
+                      {0.3, 0.1, 0.0006, -0.0004, 0.02, 0.55, 0.12, 0.03},
+                      LensModel::rational};
+const Intrinsics fisheye{
+    1280, 1024, 600, 600, 645.2, 507.8, {0.02, -0.01, 0.003, -0.001}, LensModel::fisheye};
+
 /// A marker that faces the camera (its z towards it), then turned.
 RigidTransform facing(double tilt_rad, const Eigen::Vector3d& axis, const Eigen::Vector3d& at) {
   const Eigen::Matrix3d flip =
@@ -25,15 +36,17 @@ std::array<Eigen::Vector2d, 4> project_corners(const RigidTransform& camera_from
 }
 
 TEST(EstimateMarkerPose, IsExactOnExactCorners) {
-  const Lens lens(color);
-  for (const double tilt : {0.0, 1e-6, 1e-3, 0.3, 0.8, 1.2}) {
-    const RigidTransform truth = facing(tilt, {0.3, 1, 0.2}, {-0.2, 0.1, 1.5});
-    const auto pose = estimate_marker_pose(project_corners(truth, 0.2, lens), 0.2, lens);
-    ASSERT_TRUE(pose);
-    EXPECT_LT((pose->camera_from_marker.translation - truth.translation).norm(), 1e-5);
-    EXPECT_LT(rotation_difference_deg(pose->camera_from_marker.rotation, truth.rotation), 1e-3);
-    EXPECT_LT(pose->error_px, 1e-4);
-    EXPECT_LT(pose->ambiguity, 0.05);
+  for (const Intrinsics& intrinsics : {color, wide, fisheye}) {
+    const Lens lens(intrinsics);
+    for (const double tilt : {0.0, 1e-6, 1e-3, 0.3, 0.8, 1.2}) {
+      const RigidTransform truth = facing(tilt, {0.3, 1, 0.2}, {-0.2, 0.1, 1.5});
+      const auto pose = estimate_marker_pose(project_corners(truth, 0.2, lens), 0.2, lens);
+      ASSERT_TRUE(pose);
+      EXPECT_LT((pose->camera_from_marker.translation - truth.translation).norm(), 1e-5);
+      EXPECT_LT(rotation_difference_deg(pose->camera_from_marker.rotation, truth.rotation), 1e-3);
+      EXPECT_LT(pose->error_px, 1e-4);
+      EXPECT_LT(pose->ambiguity, 0.05);
+    }
   }
 }
 

@@ -108,18 +108,15 @@ std::size_t PoseRefinement::linearise(const RigidTransform& correction) {
     const Lanes inverse_z = 1 / pz;
     const Lanes x = px * inverse_z;
     const Lanes y = py * inverse_z;
-    // Projection::distort
-    const Lanes xx = x * x;
-    const Lanes yy = y * y;
-    const Lanes xy = x * y;
-    const Lanes r2 = xx + yy;
-    const Lanes radial = 1 + r2 * (lens.k1 + r2 * (lens.k2 + r2 * lens.k3));
-    const Lanes column =
-        (lens.fx * (x * radial + (2 * lens.p1 * xy + lens.p2 * (r2 + 2 * xx))) + lens.cx - center) *
-        scale;
-    const Lanes row =
-        (lens.fy * (y * radial + (lens.p1 * (r2 + 2 * yy) + 2 * lens.p2 * xy)) + lens.cy - center) *
-        scale;
+    const Lanes r2 = x * x + y * y;
+    Lanes distorted_x;
+    Lanes distorted_y;
+    with_lens_model(lens.model, [&](auto model) {
+      plain::distort_ray<decltype(model)::value>(
+          lens.distortion, [](float value) { return value; }, x, y, r2, distorted_x, distorted_y);
+    });
+    const Lanes column = (lens.fx * distorted_x + lens.cx - center) * scale;
+    const Lanes row = (lens.fy * distorted_y + lens.cy - center) * scale;
     Lanes dx = Lanes::Zero();
     Lanes dy = Lanes::Zero();
     points.seen.setZero();

@@ -71,6 +71,19 @@ TEST_F(PoseRefinementTest, FindsBackToTheTruePose) {
             1e-9);
 }
 
+TEST_F(PoseRefinementTest, FindsBackThroughEveryLens) {
+  for (const LensModel model : {LensModel::rational, LensModel::fisheye}) {
+    SCOPED_TRACE(name_of(model));
+    frame = AnalyticFrame({}, {Eigen::Vector3d(-0.45, 0.3, 0.9)}, model);
+    Poses poses = frame.poses;
+    poses.color_from_depth[0] = small_motion() * *poses.color_from_depth[0];
+    const double before = error_px(poses);
+    ASSERT_GT(before, 1);
+    ASSERT_TRUE(refine(poses));
+    EXPECT_LT(error_px(poses), before / 4);
+  }
+}
+
 // Gain and offset may differ between cameras.
 TEST_F(PoseRefinementTest, DoesNotMindAnotherExposure) {
   for (Bgr& pixel : frame.frame.rgbd[0].color) {

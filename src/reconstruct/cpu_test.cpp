@@ -107,6 +107,24 @@ TEST(VectorizedReconstructor, BlendsAsThePlainVersionDoes) {
   compare_on("workbench", "blend");
 }
 
+TEST(VectorizedReconstructor, DrawsThroughEveryLensWhatThePlainVersionDraws) {
+  for (const LensModel model : testing::lens_models) {
+    SCOPED_TRACE(name_of(model));
+    const testing::AnalyticFrame frame({}, {{-0.45, 0.3, 0.9}, {0.5, 0.3, 0.9}}, model);
+    const OcclusionMasks masks = testing::empty_masks(frame.rig);
+    Options options;
+    options.merge_cameras = "choose";
+    Reconstruction a;
+    Reconstruction b;
+    for (const auto& [backend, result] : {std::pair{"cpu", &a}, std::pair{"reference", &b}}) {
+      Registry<Reconstructor>::get(backend)(frame.rig)->reconstruct(
+          frame.frame, testing::depths_of(frame.frame), frame.poses, masks,
+          frame.rig.color.bounds(), options, *result);
+    }
+    expect_same(a, b);
+  }
+}
+
 // A camera so near that each cell covers hundreds of pixels.
 TEST(VectorizedReconstructor, DrawsLargeCells) {
   const testing::AnalyticScene scene;

@@ -9,6 +9,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "geometry/distortion_vectors-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace diminish::HWY_NAMESPACE {
 namespace {
@@ -32,30 +34,24 @@ HWY_INLINE Vector Apply(const FloatTransform& t, int axis, Vector x, Vector y, V
                  Set(t.t[axis]));
 }
 /// Projection::distort; the mask of lanes inside the valid radius.
+template <LensModel model>
 HWY_INLINE LaneMask Distort(const Projection& p, Vector x, Vector y, Vector& u, Vector& v) {
-  const Vector xx = hn::Mul(x, x);
-  const Vector yy = hn::Mul(y, y);
-  const Vector xy = hn::Mul(x, y);
-  const Vector r2 = hn::Add(xx, yy);
-  const Vector two = Set(2.F);
-  const Vector radial = hn::Add(
-      Set(1.F),
-      hn::Mul(r2, hn::Add(Set(p.k1), hn::Mul(r2, hn::Add(Set(p.k2), hn::Mul(r2, Set(p.k3)))))));
-  const Vector xd = hn::Add(
-      hn::Mul(x, radial),
-      hn::Add(hn::Mul(Set(2.F * p.p1), xy), hn::Mul(Set(p.p2), hn::Add(r2, hn::Mul(two, xx)))));
-  const Vector yd = hn::Add(
-      hn::Mul(y, radial),
-      hn::Add(hn::Mul(Set(p.p1), hn::Add(r2, hn::Mul(two, yy))), hn::Mul(Set(2.F * p.p2), xy)));
-  u = hn::Add(hn::Mul(Set(p.fx), xd), Set(p.cx));
-  v = hn::Add(hn::Mul(Set(p.fy), yd), Set(p.cy));
+  const Vector r2 = hn::Add(hn::Mul(x, x), hn::Mul(y, y));
+  Vector distorted_x, distorted_y;
+  distort_ray<model>(
+      p.distortion, [](float value) HWY_ATTR { return Set(value); }, x, y, r2, distorted_x,
+      distorted_y);
+  u = hn::Add(hn::Mul(Set(p.fx), distorted_x), Set(p.cx));
+  v = hn::Add(hn::Mul(Set(p.fy), distorted_y), Set(p.cy));
   return hn::Lt(r2, Set(p.max_radius_squared));
 }
 
 /// One row; the arrays are padded to whole blocks.
-void ProjectRow(const VertexRows::Constants& constants, const FloatTransform& to_color,
-                const Rect& region, const std::uint8_t* visible, const std::uint16_t* depth,
-                const std::uint8_t* mask, const float* ray_x, const float* ray_y, VertexRow& row) {
+template <LensModel model>
+void ProjectRowBy(const VertexRows::Constants& constants, const FloatTransform& to_color,
+                  const Rect& region, const std::uint8_t* visible, const std::uint16_t* depth,
+                  const std::uint8_t* mask, const float* ray_x, const float* ray_y,
+                  VertexRow& row) {
   const Floats d;
   const Ints di;
   const hn::Rebind<std::uint16_t, Floats> d16;
@@ -109,7 +105,8 @@ void ProjectRow(const VertexRows::Constants& constants, const FloatTransform& to
       const Vector color_z = Apply(to_color, 2, x, y, z);
       valid = hn::And(valid, hn::Gt(color_z, Set(sdct::near_plane_m)));
       Vector px, py;
-      valid = hn::And(valid, Distort(constants.color, hn::Div(Apply(to_color, 0, x, y, z), color_z),
+      valid = hn::And(valid,
+                      Distort<model>(constants.color, hn::Div(Apply(to_color, 0, x, y, z), color_z),
                                      hn::Div(Apply(to_color, 1, x, y, z), color_z), px, py));
       const Vector limit = Set(sdct::max_coordinate_px);
       valid = hn::And(valid, hn::And(hn::Lt(hn::Abs(px), limit), hn::Lt(hn::Abs(py), limit)));
@@ -147,9 +144,20 @@ void ProjectRow(const VertexRows::Constants& constants, const FloatTransform& to
   }
 }
 
+void ProjectRow(const VertexRows::Constants& constants, const FloatTransform& to_color,
+                const Rect& region, const std::uint8_t* visible, const std::uint16_t* depth,
+                const std::uint8_t* mask, const float* ray_x, const float* ray_y, VertexRow& row) {
+  const auto project = [&](auto model) {
+    ProjectRowBy<decltype(model)::value>(constants, to_color, region, visible, depth, mask, ray_x,
+                                         ray_y, row);
+  };
+  with_lens_model(constants.color.model, project);
+}
+
 /// The places of the colours of one block.
-void FindColors(const VertexRows::Constants& constants, const float* ray_x, const float* ray_y,
-                const Mask& color_mask, int start, VertexRow& row) {
+template <LensModel model>
+void FindColorsBy(const VertexRows::Constants& constants, const float* ray_x, const float* ray_y,
+                  const Mask& color_mask, int start, VertexRow& row) {
   const Floats d;
   const Ints di;
   const auto lanes = static_cast<int>(hn::Lanes(d));
@@ -163,10 +171,10 @@ void FindColors(const VertexRows::Constants& constants, const float* ray_x, cons
     const Vector rgbd_z = Apply(constants.to_rgbd_color, 2, x, y, z);
     valid = hn::And(valid, hn::Gt(rgbd_z, Set(sdct::near_plane_m)));
     Vector u, v;
-    valid =
-        hn::And(valid, Distort(constants.rgbd_color,
-                               hn::Div(Apply(constants.to_rgbd_color, 0, x, y, z), rgbd_z),
-                               hn::Div(Apply(constants.to_rgbd_color, 1, x, y, z), rgbd_z), u, v));
+    valid = hn::And(
+        valid, Distort<model>(constants.rgbd_color,
+                              hn::Div(Apply(constants.to_rgbd_color, 0, x, y, z), rgbd_z),
+                              hn::Div(Apply(constants.to_rgbd_color, 1, x, y, z), rgbd_z), u, v));
     const Vector zero = hn::Zero(d);
     valid = hn::And(valid, hn::And(hn::And(hn::Ge(u, zero), hn::Le(u, Set(constants.last_column))),
                                    hn::And(hn::Ge(v, zero), hn::Le(v, Set(constants.last_row)))));
@@ -184,6 +192,14 @@ void FindColors(const VertexRows::Constants& constants, const float* ray_x, cons
     hn::StoreU(hn::Mul(u, kept), d, row.u_over_z.data() + i);
     hn::StoreU(hn::Mul(v, kept), d, row.v_over_z.data() + i);
   }
+}
+
+void FindColors(const VertexRows::Constants& constants, const float* ray_x, const float* ray_y,
+                const Mask& color_mask, int start, VertexRow& row) {
+  const auto find = [&](auto model) {
+    FindColorsBy<decltype(model)::value>(constants, ray_x, ray_y, color_mask, start, row);
+  };
+  with_lens_model(constants.rgbd_color.model, find);
 }
 
 }  // namespace

@@ -34,8 +34,33 @@ double read_principal_point(const Config& config, double value, int side) {
   return value;
 }
 
+LensModel read_lens_model(const Config& config) {
+  if (!config.exists()) return LensModel::plumb_bob;
+  const auto model = find_lens_model(config.text());
+  if (!model) {
+    config.fail("expected plumb_bob, rational or fisheye, got '" + printable(config.text()) + "'");
+  }
+  return *model;
+}
+
+void read_distortion(const Config& config, Intrinsics& intrinsics) {
+  const std::size_t count = coefficient_count(intrinsics.lens_model);
+  const std::size_t given = config.items().size();
+  if (given != count) {
+    config.fail(fmt::format("expected the {} numbers of a {} lens, got {}", count,
+                            name_of(intrinsics.lens_model), given));
+  }
+  const std::vector<double> numbers = config.numbers(count);
+  std::copy(numbers.begin(), numbers.end(), intrinsics.distortion.begin());
+  if (intrinsics.lens_model == LensModel::fisheye && !Lens(intrinsics).covers_picture()) {
+    config.fail(
+        "expected a fisheye lens whose picture, corners included, ends less than 85 "
+        "degrees off the axis");
+  }
+}
+
 Intrinsics read_intrinsics(const Config& config) {
-  config.expect_keys({"width", "height", "camera_matrix", "distortion"});
+  config.expect_keys({"width", "height", "camera_matrix", "distortion_model", "distortion"});
   Intrinsics intrinsics;
   intrinsics.width = config.at("width").integer(min_image_side, max_image_side);
   intrinsics.height = config.at("height").integer(min_image_side, max_image_side);
@@ -46,8 +71,8 @@ Intrinsics read_intrinsics(const Config& config) {
   intrinsics.fy = read_focal_length(places[1], k[1], intrinsics.height);
   intrinsics.cx = read_principal_point(places[2], k[2], intrinsics.width);
   intrinsics.cy = read_principal_point(places[3], k[3], intrinsics.height);
-  const std::vector<double> distortion = config.at("distortion").numbers(5);
-  std::copy(distortion.begin(), distortion.end(), intrinsics.distortion.begin());
+  intrinsics.lens_model = read_lens_model(config.find("distortion_model"));
+  read_distortion(config.at("distortion"), intrinsics);
   return intrinsics;
 }
 

@@ -108,6 +108,52 @@ TEST(Rig, EachWrongValueIsNamed) {
   }
 }
 
+TEST(Rig, ReadsLensesOfAllModels) {
+  const std::string usual = "distortion: [0.1, 0, 0, 0, 0]";
+  EXPECT_EQ(read(rig_with("", "")).color.lens_model, LensModel::plumb_bob);
+  for (const auto& [name, model] : {std::pair{"plumb_bob", LensModel::plumb_bob},
+                                    {"rational", LensModel::rational},
+                                    {"rational_polynomial", LensModel::rational},
+                                    {"fisheye", LensModel::fisheye},
+                                    {"equidistant", LensModel::fisheye}}) {
+    std::string numbers = "0.1, 0.2";
+    for (std::size_t i = 2; i < coefficient_count(model); ++i) numbers += ", 0.001";
+    const Rig rig = read(rig_with(
+        usual, std::string("distortion_model: ") + name + ", distortion: [" + numbers + "]"));
+    EXPECT_EQ(rig.color.lens_model, model);
+    EXPECT_EQ(rig.color.distortion[1], 0.2);
+    EXPECT_EQ(rig.color.distortion[coefficient_count(model) - 1], 0.001);
+    EXPECT_EQ(rig.rgbd[0].color.lens_model, LensModel::plumb_bob);
+  }
+}
+
+TEST(Rig, WrongLensesAreNamed) {
+  const std::string usual = "distortion: [0.1, 0, 0, 0, 0]";
+  const auto lens = [&](const std::string& replacement) { return complaint(usual, replacement); };
+  EXPECT_THAT(lens("distortion_model: fov, distortion: [1]"),
+              HasSubstr("rig.yaml:1: color.distortion_model: expected plumb_bob, rational or "
+                        "fisheye, got 'fov'"));
+  EXPECT_THAT(lens("distortion_model: [], distortion: [1]"), HasSubstr("color.distortion_model: "));
+  EXPECT_THAT(lens("distortion: [0, 0, 0, 0]"),
+              HasSubstr("rig.yaml:1: color.distortion: expected the 5 numbers of a plumb_bob lens, "
+                        "got 4"));
+  EXPECT_THAT(lens("distortion_model: rational, distortion: [0, 0, 0, 0, 0]"),
+              HasSubstr("expected the 8 numbers of a rational lens, got 5"));
+  EXPECT_THAT(lens("distortion_model: fisheye, distortion: [0, 0, nan, 0]"),
+              HasSubstr("rig.yaml:1: color.distortion[2]: expected a number, got 'nan'"));
+  EXPECT_THAT(lens("distortion_model: fisheye, distortion: 3"), HasSubstr("color.distortion: "));
+  // Corners 400 pixels off the axis: at 0.8 rad by 500 pixels of focal length, at 90 degrees by
+  // 255.
+  const std::string fisheye = "distortion_model: fisheye, distortion: [0, 0, 0, 0]";
+  EXPECT_NO_THROW(read(rig_with(usual, fisheye)));
+  EXPECT_THAT(complaint("[500, 501, 320, 240], " + usual, "[255, 255, 320, 240], " + fisheye),
+              HasSubstr("rig.yaml:1: color.distortion: expected a fisheye lens whose picture, "
+                        "corners included, ends less than 85 degrees off the axis"));
+  // Folds back at 0.58 rad.
+  EXPECT_THAT(lens("distortion_model: fisheye, distortion: [-1, 0, 0, 0]"),
+              HasSubstr("color.distortion: expected a fisheye lens"));
+}
+
 TEST(Rig, NamesAreUnique) {
   std::ifstream file(testing::recordings_dir() + "/workbench/rig.yaml");
   std::stringstream text;

@@ -95,8 +95,7 @@ class FieldOfView {
   /// The radius up to which the lens maps a ray to a pixel.
   static double valid_radius(const Lens& lens) {
     double valid = 0;
-    double invalid = 10;
-    if (lens.distort({invalid, 0})) return invalid;
+    double invalid = 12;  // no lens goes so far
     for (int halving = 0; halving < 50; ++halving) {
       const double middle = (valid + invalid) / 2;
       (lens.distort({middle, 0}) ? valid : invalid) = middle;

@@ -20,6 +20,18 @@ const Intrinsics pincushion{160, 120, 120, 120, 78.5, 61.2, {0.2, -0.25, -0.001,
 /// Folds back at a radius of 0.91, a little outside the picture.
 const Intrinsics folding{160, 120, 168, 168, 80, 60, {-0.4, 0, 0, 0, 0}};
 
+const Intrinsics rational{160,
+                          120,
+                          100,
+                          101,
+                          80,
+                          60,
+                          {0.3, 0.1, 0.001, -0.002, 0.02, 0.55, 0.12, 0.03},
+                          LensModel::rational};
+/// Of 73 degrees at the corners.
+const Intrinsics fisheye{
+    160, 120, 80, 79, 79.1, 60.4, {0.02, -0.01, 0.003, -0.001}, LensModel::fisheye};
+
 /// Whether the ray (x, y, 1) meets the triangle at least 1 cm in front of the camera's plane
 /// (Moeller & Trumbore 1997).
 bool ray_meets_triangle(const Eigen::Vector2d& ray, const Eigen::Vector3d& a,
@@ -99,7 +111,7 @@ const Case cases[] = {{"inside", {0, 0, 2}, 0.7},      {"partly outside", {0.9, 
 
 TEST(Silhouette, ConvexHullIsWhatRaysMeet) {
   std::mt19937 random(1);
-  for (const Intrinsics& intrinsics : {barrel, pincushion, folding}) {
+  for (const Intrinsics& intrinsics : {barrel, pincushion, folding, rational, fisheye}) {
     const Lens lens(intrinsics);
     for (const Case& shape : cases) {
       SCOPED_TRACE(shape.name);
@@ -118,7 +130,7 @@ TEST(Silhouette, ConvexHullIsWhatRaysMeet) {
 
 TEST(Silhouette, TrianglesAreWhatRaysMeet) {
   std::mt19937 random(2);
-  for (const Intrinsics& intrinsics : {barrel, pincushion, folding}) {
+  for (const Intrinsics& intrinsics : {barrel, pincushion, folding, rational, fisheye}) {
     const Lens lens(intrinsics);
     for (const Case& shape : cases) {
       SCOPED_TRACE(shape.name);

@@ -2,8 +2,9 @@
 
 struct Lens {
   vec4 pinhole;  // fx, fy, cx, cy
-  vec4 distortion;  // k1, k2, p1, p2
-  float k3, max_radius_squared;
+  vec4 distortion[2];  // as the model orders the coefficients
+  float max_radius_squared;
+  uint model;
 };
 
 // Rows of the rotation, each with its component of the translation.

@@ -7,22 +7,6 @@ float transformed(vec4 row, vec3 p) {
   return value;
 }
 
-// The pixel of the ray (x, y, 1); false beyond the distortion polynomial's valid radius.
-bool distort(Lens lens, float x, float y, out vec2 pixel) {
-  float k1 = lens.distortion.x, k2 = lens.distortion.y;
-  float p1 = lens.distortion.z, p2 = lens.distortion.w;
-  precise float xx = x * x;
-  precise float yy = y * y;
-  precise float xy = x * y;
-  precise float r2 = xx + yy;
-  precise float radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * lens.k3));
-  precise float xd = x * radial + (2.0 * p1 * xy + p2 * (r2 + 2.0 * xx));
-  precise float yd = y * radial + (p1 * (r2 + 2.0 * yy) + 2.0 * p2 * xy);
-  precise vec2 result = lens.pinhole.xy * vec2(xd, yd) + lens.pinhole.zw;
-  pixel = result;
-  return r2 < lens.max_radius_squared;
-}
-
 // The point's place in the picture of a camera at `camera_from_depth`.
 bool project(Lens lens, Transform camera_from_depth, vec3 point, out vec2 pixel, out float z) {
   z = transformed(camera_from_depth.rows[2], point);

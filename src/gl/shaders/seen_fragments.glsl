@@ -7,22 +7,10 @@ uint kept_inverse_z_at(uint which, ivec2 pixel) {
   return texelFetch(seen, ivec3(pixel, which), 0).y;
 }
 
-// The ray (x, y, 1) of a pixel of the colour camera. Its lens undistorts it by fixed-point iteration.
-vec2 ray_of(vec2 pixel) {
-  vec4 pinhole = color_lens.pinhole;
-  vec2 ray = (pixel - pinhole.zw) / pinhole.xy;
-  for (int i = 0; i < 6; ++i) {
-    vec2 distorted;
-    distort(color_lens, ray.x, ray.y, distorted);
-    ray += (pixel - distorted) / pinhole.xy;
-  }
-  return ray;
-}
-
 // Where a pixel lies in the colour image of the current turn's camera. Only the colour was drawn,
 // so this goes back from the point.
 vec2 seen_place(ivec2 pixel, float z) {
-  vec3 point = z * vec3(ray_of(vec2(pixel)), 1);
+  vec3 point = z * vec3(undistort(color_lens, vec2(pixel)), 1);
   vec4 rows[3] = color_from_depth.rows;
   mat3 depth_from_color = mat3(rows[0].xyz, rows[1].xyz, rows[2].xyz);
   vec3 of_depth = depth_from_color * (point - vec3(rows[0].w, rows[1].w, rows[2].w));

@@ -88,6 +88,20 @@ TEST_F(CalibrateProgram, TakesARecordingAndTheSameImagesGiveTheSameBytes) {
   EXPECT_EQ(read_text_file(path("a.yaml"), 1 << 20), read_text_file(path("b.yaml"), 1 << 20));
 }
 
+TEST_F(CalibrateProgram, FitsTheLensThatIsAskedFor) {
+  for (const char* lens : {"rational", "fisheye"}) {
+    const auto outcome = Program::run({"calibrate", "intrinsics", path("color"), "--board",
+                                       board_text, "--lens", lens, "--out", path("rig.yaml")});
+    EXPECT_TRUE(outcome.exit_code == 0 || outcome.exit_code == 3) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("\nk4 "));
+    const Config camera = load_rig_file().at("color");
+    EXPECT_EQ(camera.at("distortion_model").text(), lens);
+    EXPECT_NO_THROW(camera.at("distortion").numbers(lens == std::string("fisheye") ? 4 : 8));
+    const auto matrix = camera.at("camera_matrix").numbers(4);
+    EXPECT_NEAR(matrix[0], truth.fx, 0.03 * truth.fx) << lens;
+  }
+}
+
 TEST_F(CalibrateProgram, WatchesALiveCamera) {
   // A camera that shows the nine pictures again and again, in real time.
   folder.write("rig.yaml", R"(

@@ -2,30 +2,24 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/calib3d.hpp>
 
 #include "core/robust.h"
 #include "diminish/calibration.h"
 #include "diminish/error.h"
+#include "setup/calibrate/lens_fit.h"
 
 namespace diminish {
 namespace {
 
 constexpr std::size_t least_views = 3;
 
-struct Fit {
-  cv::Mat camera, distortion, deviations;
-  std::vector<cv::Mat> rotations, translations;
-  double error_px = 0;
-};
-
 class Calibrator {
  public:
-  explicit Calibrator(const ViewCollection& collection)
-      : collection_(collection), size_(collection.width(), collection.height()) {
+  Calibrator(const ViewCollection& collection, LensModel model)
+      : collection_(collection), model_(model), size_(collection.width(), collection.height()) {
     for (const BoardView& view : collection.views()) {
-      std::vector<cv::Point3f> points;
-      std::vector<cv::Point2f> pixels;
+      LensFit::Points points;
+      LensFit::Pixels pixels;
       for (std::size_t i = 0; i < view.ids.size(); ++i) {
         points.emplace_back(view.points_m[i].x(), view.points_m[i].y(), 0);
         pixels.emplace_back(view.pixels[i].x(), view.pixels[i].y());
@@ -37,41 +31,30 @@ class Calibrator {
   }
 
   IntrinsicsCalibration calibrate() {
-    Fit fit = fit_used(true);
+    LensFit fit = fit_used(true);
     constexpr int most_rounds = 5;
     for (int round = 0; round < most_rounds && leave_out_bad(fit); ++round) fit = fit_used(true);
-    const double k3 = fit.distortion.at<double>(4);
-    if (!(std::abs(k3) > 3 * fit.deviations.at<double>(8))) fit = fit_used(false);
+    if (model_ == LensModel::plumb_bob) {
+      const double k3 = fit.distortion.at<double>(4);
+      if (!(std::abs(k3) > 3 * fit.deviations[8])) fit = fit_used(false);
+    }
     return result(fit);
   }
 
  private:
-  Fit fit_used(bool with_k3) const {
-    std::vector<std::vector<cv::Point3f>> points;
-    std::vector<std::vector<cv::Point2f>> pixels;
+  LensFit fit_used(bool with_k3) const {
+    std::vector<LensFit::Points> points;
+    std::vector<LensFit::Pixels> pixels;
     for (std::size_t i = 0; i < points_.size(); ++i) {
       if (!used_[i]) continue;
       points.push_back(points_[i]);
       pixels.push_back(pixels_[i]);
     }
-    Fit fit;
-    try {
-      fit.error_px = cv::calibrateCamera(
-          points, pixels, size_, fit.camera, fit.distortion, fit.rotations, fit.translations,
-          fit.deviations, cv::noArray(), cv::noArray(), with_k3 ? 0 : cv::CALIB_FIX_K3,
-          {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 100, 1e-12});
-    } catch (const cv::Exception&) {
-      fit.error_px = std::numeric_limits<double>::quiet_NaN();
-    }
-    if (!std::isfinite(fit.error_px) || !cv::checkRange(fit.camera) ||
-        !(fit.camera.at<double>(0, 0) > 0)) {
-      throw Error("no camera explains the views of the board: are its squares counted right?");
-    }
-    return fit;
+    return LensFit::of(model_, with_k3, points, pixels, size_);
   }
 
   /// Every view's residuals. Views that were not used get their own pose.
-  std::vector<std::vector<Eigen::Vector2d>> residuals(const Fit& fit) const {
+  std::vector<std::vector<Eigen::Vector2d>> residuals(const LensFit& fit) const {
     std::vector<std::vector<Eigen::Vector2d>> all;
     std::size_t next = 0;
     for (std::size_t i = 0; i < points_.size(); ++i) {
@@ -81,10 +64,9 @@ class Calibrator {
         rotation = fit.rotations[next];
         translation = fit.translations[next++];
       } else {
-        cv::solvePnP(points_[i], pixels_[i], fit.camera, fit.distortion, rotation, translation);
+        fit.find_pose(points_[i], pixels_[i], rotation, translation);
       }
-      std::vector<cv::Point2f> computed;
-      cv::projectPoints(points_[i], rotation, translation, fit.camera, fit.distortion, computed);
+      const LensFit::Pixels computed = fit.project(points_[i], rotation, translation);
       std::vector<Eigen::Vector2d> view;
       for (std::size_t c = 0; c < computed.size(); ++c) {
         const cv::Point2f difference = pixels_[i][c] - computed[c];
@@ -102,7 +84,7 @@ class Calibrator {
   }
 
   /// Decides again which views to use. Returns whether anything changed.
-  bool leave_out_bad(const Fit& fit) {
+  bool leave_out_bad(const LensFit& fit) {
     std::vector<double> errors;
     for (const auto& view : residuals(fit)) errors.push_back(root_mean_square(view));
     std::vector<double> sorted = errors;
@@ -119,21 +101,10 @@ class Calibrator {
     return true;
   }
 
-  IntrinsicsCalibration result(const Fit& fit) const {
+  IntrinsicsCalibration result(const LensFit& fit) const {
     IntrinsicsCalibration result;
-    Intrinsics& camera = result.intrinsics;
-    camera.width = size_.width;
-    camera.height = size_.height;
-    camera.fx = fit.camera.at<double>(0, 0);
-    camera.fy = fit.camera.at<double>(1, 1);
-    camera.cx = fit.camera.at<double>(0, 2);
-    camera.cy = fit.camera.at<double>(1, 2);
-    for (int i = 0; i < 5; ++i) {
-      camera.distortion[static_cast<std::size_t>(i)] = fit.distortion.at<double>(i);
-    }
-    for (int i = 0; i < 9; ++i) {
-      result.deviations[static_cast<std::size_t>(i)] = fit.deviations.at<double>(i);
-    }
+    result.intrinsics = fit.intrinsics(size_);
+    std::copy(fit.deviations.begin(), fit.deviations.end(), result.deviations.begin());
     result.error_px = fit.error_px;
     result.residuals_px = residuals(fit);
     for (std::size_t i = 0; i < points_.size(); ++i) {
@@ -159,6 +130,13 @@ class Calibrator {
     if (focal_deviation > 0.005) {
       warn(fmt::format("the focal length is uncertain by {:.1f} %", 100 * focal_deviation));
     }
+    if (!Lens(result.intrinsics).covers_picture()) {
+      warn(
+          model_ == LensModel::fisheye
+              ? "corners of the picture are 85 degrees and more off the axis: the camera cannot be "
+                "used"
+              : "at the picture's corners the lens is not known: show the board there, too");
+    }
     if (result.error_px > 1) {
       warn(
           fmt::format("the reprojection error is {:.2f} pixels: is the board flat, the picture "
@@ -168,21 +146,22 @@ class Calibrator {
   }
 
   const ViewCollection& collection_;
+  LensModel model_;
   cv::Size size_;
-  std::vector<std::vector<cv::Point3f>> points_;
-  std::vector<std::vector<cv::Point2f>> pixels_;
+  std::vector<LensFit::Points> points_;
+  std::vector<LensFit::Pixels> pixels_;
   std::vector<bool> used_;
 };
 
 }  // namespace
 
-IntrinsicsCalibration calibrate_intrinsics(const ViewCollection& views) {
+IntrinsicsCalibration calibrate_intrinsics(const ViewCollection& views, LensModel model) {
   if (views.views().size() < least_views) {
     throw Error(fmt::format(
         "expected at least {} different views of the board, got {}: is --board what was printed?",
         least_views, views.views().size()));
   }
-  return Calibrator(views).calibrate();
+  return Calibrator(views, model).calibrate();
 }
 
 }  // namespace diminish

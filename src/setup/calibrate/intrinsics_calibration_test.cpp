@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include "diminish/calibration.h"
 #include "expect_error.h"
@@ -128,6 +129,82 @@ TEST(CalibrateIntrinsicsToo, IsExactForExactCornersAndFindsK3) {
   EXPECT_LT(result.error_px, 1e-3);
   EXPECT_LT(largest_difference_px(camera, result.intrinsics), 0.02);
   EXPECT_NEAR(result.intrinsics.distortion[4], 0.05, 0.02);
+}
+
+/// A board that leans in front of one of 30 parts of the picture, corners with errors of 0.05 px.
+BoardView leaning_view(int index, const Intrinsics& camera, std::mt19937& random) {
+  std::normal_distribution<double> error_px(0, 0.05);
+  const Lens lens(camera);
+  const Eigen::Vector2d middle((index % 6 + 0.5) / 6 * camera.width,
+                               (index / 6 + 0.5) / 5 * camera.height);
+  const Eigen::Vector3d direction = lens.undistort(middle).homogeneous().normalized();
+  const Eigen::Vector3d axis(std::cos(2.4 * index), std::sin(2.4 * index), 0);
+  RigidTransform camera_from_board;
+  camera_from_board.rotation =
+      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), direction) *
+      Eigen::AngleAxisd(0.5, axis).toRotationMatrix();
+  camera_from_board.translation = (0.2 + 0.02 * (index % 4)) * direction;
+  BoardView view;
+  view.name = std::to_string(index);
+  for (int i = 0; i < 54; ++i) {
+    const Eigen::Vector3d point((i % 9 - 4) * 0.025, (i / 9 - 2.5) * 0.025, 0);
+    const auto pixel = lens.project(camera_from_board * point);
+    if (!pixel || pixel->x() < 0 || pixel->y() < 0 || pixel->x() > camera.width - 1 ||
+        pixel->y() > camera.height - 1) {
+      continue;
+    }
+    view.ids.push_back(i);
+    view.points_m.push_back(point);
+    view.pixels.push_back(*pixel + Eigen::Vector2d(error_px(random), error_px(random)));
+  }
+  return view;
+}
+
+ViewCollection seen_through(const Intrinsics& camera) {
+  std::mt19937 random(7);
+  ViewCollection collection(camera.width, camera.height);
+  for (int i = 0; i < 30; ++i) collection.add(leaning_view(i, camera, random));
+  return collection;
+}
+
+TEST(CalibrateIntrinsicsToo, RecoversRationalLensesAndFisheyes) {
+  const Intrinsics cameras[] = {
+      {640,
+       480,
+       420,
+       421,
+       322.7,
+       236.1,
+       {0.3, 0.1, 0.0006, -0.0004, 0.02, 0.55, 0.12, 0.03},
+       LensModel::rational},
+      {640, 480, 380, 379, 318, 243, {0.02, -0.01, 0.003, -0.001}, LensModel::fisheye},
+      {640, 480, 340, 340, 318, 243, {-0.008, 0.045, -0.043, 0.008}, LensModel::fisheye}};
+  for (const Intrinsics& camera : cameras) {
+    SCOPED_TRACE(fmt::sprintf("%s %f", name_of(camera.lens_model), camera.fx));
+    const IntrinsicsCalibration result =
+        calibrate_intrinsics(seen_through(camera), camera.lens_model);
+    EXPECT_EQ(result.intrinsics.lens_model, camera.lens_model);
+    EXPECT_LT(result.error_px, 0.08);
+    EXPECT_LT(largest_difference_px(camera, result.intrinsics), 0.1);
+    const double errors[] = {result.intrinsics.fx - camera.fx, result.intrinsics.fy - camera.fy,
+                             result.intrinsics.cx - camera.cx, result.intrinsics.cy - camera.cy};
+    for (std::size_t i = 0; i < 4; ++i) {
+      EXPECT_GT(result.deviations[i], 0);
+      EXPECT_LT(std::abs(errors[i]), 5 * result.deviations[i]) << i;
+      EXPECT_LT(result.deviations[i], 1) << i;
+    }
+  }
+}
+
+TEST(CalibrateIntrinsicsToo, WarnsOfFisheyesThatSeeTooMuch) {
+  const Intrinsics camera{640, 480, 300, 300, 320, 240, {0, 0, 0, 0}, LensModel::fisheye};
+  ViewCollection collection = seen_through(camera);
+  const auto usable = calibrate_intrinsics(collection, LensModel::fisheye);
+  EXPECT_THAT(usable.warnings, ::testing::Not(::testing::Contains(HasSubstr("85 degrees"))));
+  Intrinsics wide = camera;
+  wide.fx = wide.fy = 250;
+  const auto unusable = calibrate_intrinsics(seen_through(wide), LensModel::fisheye);
+  EXPECT_THAT(unusable.warnings, ::testing::Contains(HasSubstr("85 degrees")));
 }
 
 TEST(CalibrateIntrinsicsToo, LeavesOutAViewThatDoesNotAgree) {

@@ -25,13 +25,16 @@ std::string number(double value) {
 
 std::string as_yaml(const Intrinsics& camera) {
   std::string distortion;
-  for (const double k : camera.distortion) {
-    distortion += (distortion.empty() ? "" : ", ") + fmt::format("{:.6g}", k);
+  for (std::size_t i = 0; i < coefficient_count(camera.lens_model); ++i) {
+    distortion += (i == 0 ? "" : ", ") + fmt::format("{:.6g}", camera.distortion[i]);
   }
+  const bool is_usual = camera.lens_model == LensModel::plumb_bob;
+  const std::string model =
+      is_usual ? "" : fmt::format("distortion_model: {}, ", name_of(camera.lens_model));
   return fmt::format(
-      "{{width: {}, height: {}, camera_matrix: [{:.3f}, {:.3f}, {:.3f}, {:.3f}], distortion: "
+      "{{width: {}, height: {}, camera_matrix: [{:.3f}, {:.3f}, {:.3f}, {:.3f}], {}distortion: "
       "[{}]}}",
-      camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy, distortion);
+      camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy, model, distortion);
 }
 
 std::string as_yaml(const RigidTransform& transform) {

@@ -61,6 +61,23 @@ TEST_F(RigFileTest, IsFilledStepByStep) {
   EXPECT_LT((rig.rgbd[1].color_from_depth.rotation - some_transform().rotation).norm(), 1e-7);
 }
 
+TEST_F(RigFileTest, WritesWhatIsReadOfEveryLens) {
+  for (const LensModel model : {LensModel::plumb_bob, LensModel::rational, LensModel::fisheye}) {
+    Intrinsics sensor = camera;
+    sensor.lens_model = model;
+    sensor.distortion = {};
+    for (std::size_t i = 0; i < coefficient_count(model); ++i) {
+      sensor.distortion[i] = 0.01 * static_cast<double>(i + 1);
+    }
+    RigFile rig = open(read_text_file(
+        std::filesystem::path(testing::recordings_dir()) / "workbench" / "rig.yaml", 1 << 20));
+    rig.set_intrinsics("rgbd0_color", sensor);
+    rig.write();
+    EXPECT_EQ(load().rgbd[0].color.lens_model, model);
+    EXPECT_EQ(load().rgbd[0].color.distortion, sensor.distortion);
+  }
+}
+
 TEST_F(RigFileTest, LeavesEverythingElseAsItIs) {
   const std::string text = read_text_file(
       std::filesystem::path(testing::recordings_dir()) / "workbench" / "rig.yaml", 1 << 20);

@@ -1,0 +1,74 @@
+#include "render/vertex_row.h"
+
+#include <gtest/gtest.h>
+#include <hwy/highway.h>
+#include <hwy/targets.h>
+
+#include "analytic_scene.h"
+#include "render/depth_mesh.h"
+
+namespace diminish {
+namespace {
+
+void expect_the_plain_versions_vertices() {
+  for (const LensModel model : testing::lens_models) {
+    SCOPED_TRACE(name_of(model));
+    const testing::AnalyticFrame scene({}, {Eigen::Vector3d(-0.45, 0.3, 0.9)}, model);
+    const RgbdCamera& camera = scene.rig.rgbd[0];
+    OcclusionMasks masks = testing::empty_masks(scene.rig);
+    masks.rgbd_depth[0].fill({30, 40, 37, 21}, 255);
+    masks.rgbd_color[0].fill({200, 90, 61, 50}, 255);
+    const Image<std::uint16_t>& depth = scene.frame.rgbd[0].depth;
+    const FloatTransform to_color(*scene.poses.color_from_depth[0]);
+
+    Image<MeshVertex> expected;
+    DepthMesh(camera, scene.rig.color)
+        .compute({depth, masks.rgbd_depth[0], masks.rgbd_color[0], to_color}, expected);
+
+    const Rect region = scene.rig.color.bounds();
+    VisibleBlocks visible(camera, scene.rig.color);
+    visible.find(depth, *scene.poses.color_from_depth[0], region);
+    const VertexRows rows(camera, scene.rig.color);
+    const VertexRows::Frame frame{
+        depth, masks.rgbd_depth[0], masks.rgbd_color[0], to_color, region, visible};
+    VertexRow row;
+    row.resize(depth.width());
+    int vertices = 0;
+    for (int y = 0; y < depth.height(); ++y) {
+      rows.project(frame, y, row);
+      for (int x = 0; x < depth.width(); ++x) {
+        const int block = x / VertexRow::block;
+        if (visible.row(y)[block] == 0) continue;
+        if (x % VertexRow::block == 0) rows.find_colors(frame, y, block, row);
+        const auto i = static_cast<std::size_t>(x);
+        const MeshVertex& vertex = expected(x, y);
+        ASSERT_EQ(row.inverse_z[i], vertex.inverse_z) << x << ' ' << y;
+        if (vertex.inverse_z == 0) continue;
+        ++vertices;
+        ASSERT_EQ(row.x[i], vertex.x) << x << ' ' << y;
+        ASSERT_EQ(row.y[i], vertex.y) << x << ' ' << y;
+        ASSERT_EQ(row.depth_m[i], vertex.depth_m) << x << ' ' << y;
+        ASSERT_EQ(row.u_over_z[i], vertex.u * vertex.inverse_z) << x << ' ' << y;
+        ASSERT_EQ(row.v_over_z[i], vertex.v * vertex.inverse_z) << x << ' ' << y;
+      }
+    }
+    EXPECT_GT(vertices, 20000);
+  }
+}
+
+// Through every lens, on every instruction set, to the bit.
+TEST(VertexRows, AreTheVerticesOfThePlainVersion) {
+  int targets = 0;
+  for (std::int64_t rest = hwy::SupportedTargets() & HWY_TARGETS; rest != 0; rest &= rest - 1) {
+    const std::int64_t target = rest & -rest;
+    SCOPED_TRACE(hwy::TargetName(target));
+    hwy::SetSupportedTargetsForTest(target);
+    expect_the_plain_versions_vertices();
+    hwy::SetSupportedTargetsForTest(0);
+    ++targets;
+  }
+  EXPECT_GE(targets, 1);
+}
+
+}  // namespace
+}  // namespace diminish
