@@ -31,7 +31,7 @@ endif()
 # diminish_sources(FILE...): adds FILEs to the library. diminish_tests(FILE...): adds them to the tests.
 function(diminish_sources)
   list(TRANSFORM ARGV PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
-  target_sources(diminish PRIVATE ${ARGV})
+  target_sources(diminish_objects PRIVATE ${ARGV})
 endfunction()
 function(diminish_tests)
   file(RELATIVE_PATH room ${PROJECT_SOURCE_DIR}/src ${CMAKE_CURRENT_SOURCE_DIR})

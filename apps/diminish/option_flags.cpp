@@ -28,7 +28,7 @@ void add_option_flags(CLI::App& command, Options& options) {
                        ->capture_default_str()
                        ->group("Options of the pipeline");
       if constexpr (std::is_same_v<Value, std::string>) {
-        const std::vector<std::string> methods = method_names(info.name);
+        const std::vector<std::string> methods = method_names(info);
         flag->type_name(methods.empty() ? info.unit : join(methods));
       } else {
         flag->type_name(info.unit);

@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "diminish/export.h"
+
 namespace diminish {
 
 /// A board that cameras are calibrated with.
@@ -18,9 +20,9 @@ struct Board {
 
 /// Reads "charuco:7x5:30:22:DICT_4X4_50" (squares, square and marker in millimetres, dictionary;
 /// without it DICT_4X4_50) or "checkerboard:9x6:25" (inner corners, square). Throws Error.
-Board parse_board(const std::string& text);
+DIMINISH_EXPORT Board parse_board(const std::string& text);
 
 /// The text that `parse_board` reads.
-std::string describe(const Board& board);
+DIMINISH_EXPORT std::string describe(const Board& board);
 
 }  // namespace diminish

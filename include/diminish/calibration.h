@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "diminish/board.h"
+#include "diminish/export.h"
 #include "diminish/image.h"
 #include "diminish/intrinsics.h"
 
@@ -22,7 +23,7 @@ struct BoardView {
 };
 
 /// Finds a board in images.
-class BoardDetector {
+class DIMINISH_EXPORT BoardDetector {
  public:
   /// Throws Error on boards that cannot be.
   explicit BoardDetector(const Board& board);
@@ -40,7 +41,7 @@ class BoardDetector {
 };
 
 /// Collects views of a board that help to calibrate a camera. Keeps some hundred at most.
-class ViewCollection {
+class DIMINISH_EXPORT ViewCollection {
  public:
   ViewCollection(int width, int height);
 
@@ -91,7 +92,7 @@ struct IntrinsicsCalibration {
 /// error stands out are left out. A plumb-bob lens's k3 is fitted only if it is more than three
 /// standard deviations from 0. Throws Error with fewer than three views, or if no camera explains
 /// them. Cost: some seconds for a hundred views.
-IntrinsicsCalibration calibrate_intrinsics(const ViewCollection& views,
+DIMINISH_EXPORT IntrinsicsCalibration calibrate_intrinsics(const ViewCollection& views,
                                            LensModel model = LensModel::plumb_bob);
 
 }  // namespace diminish

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "diminish/error.h"
+#include "diminish/export.h"
 #include "diminish/image.h"
 #include "diminish/intrinsics.h"
 #include "diminish/registry.h"
@@ -37,7 +39,7 @@ struct CameraImage {
 };
 
 /// What names a camera: "scheme:target?key=value&key".
-struct CameraUri {
+struct DIMINISH_EXPORT CameraUri {
   std::string text;                               ///< all of it, for messages
   std::string scheme;                             ///< which registered source it is for
   std::string target;                             ///< a path, a device, a pipeline
@@ -50,11 +52,12 @@ struct CameraUri {
   /// Complains of parameters that are not in `known`.
   void expect_parameters(const std::vector<std::string>& known) const;
   /// Throws Error with the URI in front.
-  [[noreturn]] void fail(const std::string& message) const;
+  [[noreturn]] void fail(const std::string& message,
+                         Error::Category category = Error::configuration) const;
 };
 
 /// Throws Error if there is no "scheme:" in front.
-CameraUri parse_camera_uri(const std::string& text);
+DIMINISH_EXPORT CameraUri parse_camera_uri(const std::string& text);
 
 /// For whom a camera is opened.
 struct CameraRequest {
@@ -72,9 +75,9 @@ struct CameraDevice {
 
 /// A camera, or what behaves like one. Registered by its URI's scheme, one file each.
 /// Used by one thread.
-class CameraSource {
+class DIMINISH_EXPORT CameraSource {
  public:
-  static constexpr const char* kind = "camera source";
+  static constexpr const char* kind = "kind of camera";
   struct Entry {
     /// Opens the camera. Throws Error that names the URI and what was expected.
     std::function<std::unique_ptr<CameraSource>(const CameraUri&, const CameraRequest&)> open;
@@ -82,6 +85,9 @@ class CameraSource {
     std::function<std::vector<CameraDevice>()> list;
     /// An example and what it is for: "v4l2:/dev/video0?size=1280x1024&fps=30: a webcam".
     std::string help;
+    /// Whether the URI's target is a text of its own, with any character: such as a pipeline. It
+    /// has no parameters then.
+    bool free_text = false;
   };
   using Factory = Entry;
 
@@ -102,6 +108,7 @@ class CameraSource {
 };
 
 /// Opens the camera that a URI names. Throws Error that names the URI.
-std::unique_ptr<CameraSource> open_camera(const std::string& uri, const CameraRequest& request);
+DIMINISH_EXPORT std::unique_ptr<CameraSource> open_camera(const std::string& uri,
+                                                          const CameraRequest& request);
 
 }  // namespace diminish

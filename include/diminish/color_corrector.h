@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "diminish/color_map.h"
+#include "diminish/export.h"
 #include "diminish/image.h"
 #include "diminish/reconstruction.h"
 #include "diminish/registry.h"
@@ -21,7 +22,7 @@ struct ColorInputs {
 
 /// Brings the reconstruction's colours to the colour camera's. Registered by name; the option
 /// `color_correct` chooses.
-class ColorCorrector {
+class DIMINISH_EXPORT ColorCorrector {
  public:
   static constexpr const char* kind = "colour correction";
   using Factory = std::function<std::unique_ptr<ColorCorrector>()>;

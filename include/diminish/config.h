@@ -7,12 +7,14 @@
 #include <string>
 #include <vector>
 
+#include "diminish/export.h"
+
 namespace diminish {
 
 /// A place in a YAML file that knows its file, line and key, so that every complaint names them:
 /// "scene.yaml:4: occluders[0].marker.size_m: expected a number above 0, got '-1'".
 /// All readers throw Error. Cheap to copy.
-class Config {
+class DIMINISH_EXPORT Config {
  public:
   /// Nothing: `exists()` is false.
   Config();

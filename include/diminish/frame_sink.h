@@ -1,12 +1,13 @@
 #pragma once
 
 #include "diminish/diminished_frame.h"
+#include "diminish/export.h"
 #include "diminish/frame_set.h"
 
 namespace diminish {
 
 /// Where frames go. Errors (a full disk) are thrown as Error and end the run.
-class FrameSink {
+class DIMINISH_EXPORT FrameSink {
  public:
   virtual ~FrameSink() = default;
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "diminish/export.h"
 #include "diminish/frame_set.h"
 #include "diminish/options.h"
 #include "diminish/rig.h"
@@ -12,7 +13,7 @@
 namespace diminish {
 
 /// Where frames come from.
-class FrameSource {
+class DIMINISH_EXPORT FrameSource {
  public:
   virtual ~FrameSource() = default;
 
@@ -35,10 +36,11 @@ struct Recording {
 };
 
 /// Reads a recording's rig.yaml and scene.yaml. Throws Error, naming file and key.
-Recording load_recording(const std::filesystem::path& folder);
+DIMINISH_EXPORT Recording load_recording(const std::filesystem::path& folder);
 
 /// The frames of a recording: for each colour image the RGB-D images nearest in time, within
 /// `options.sync_tolerance_s`. Throws Error if a stream's list is missing, malformed or empty.
-std::unique_ptr<FrameSource> open_recording(const Recording& recording, const Options& options);
+DIMINISH_EXPORT std::unique_ptr<FrameSource> open_recording(const Recording& recording,
+                                                            const Options& options);
 
 }  // namespace diminish

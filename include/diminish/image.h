@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "diminish/export.h"
+
 namespace diminish {
 
 /// 8-bit colour, in the order in which OpenCV stores it.
@@ -119,14 +121,14 @@ class Image {
 using Mask = Image<std::uint8_t>;
 
 /// The smallest rectangle that holds all non-zero pixels of `mask`. Cost: one pass.
-Rect bounding_box(const Mask& mask);
+DIMINISH_EXPORT Rect bounding_box(const Mask& mask);
 /// The same of the mask's part inside `part`, which must not reach beyond the mask.
-Rect bounding_box(const Mask& mask, const Rect& part);
+DIMINISH_EXPORT Rect bounding_box(const Mask& mask, const Rect& part);
 
 /// The number of pixels inside `part` that are `value`.
 std::size_t count_equal(const Image<std::uint8_t>& image, std::uint8_t value, const Rect& part);
 
 /// The number of non-zero pixels of `mask` inside `part`.
-std::size_t count_nonzero(const Mask& mask, const Rect& part);
+DIMINISH_EXPORT std::size_t count_nonzero(const Mask& mask, const Rect& part);
 
 }  // namespace diminish

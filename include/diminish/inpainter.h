@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 
+#include "diminish/export.h"
 #include "diminish/image.h"
 #include "diminish/options.h"
 #include "diminish/registry.h"
@@ -18,7 +19,7 @@ struct Holes {
 };
 
 /// Fills pixels that no camera sees. Registered by name; the option `inpaint` chooses.
-class Inpainter {
+class DIMINISH_EXPORT Inpainter {
  public:
   static constexpr const char* kind = "inpainting method";
   using Factory = std::function<std::unique_ptr<Inpainter>()>;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "diminish/export.h"
 #include "diminish/image.h"
 
 namespace diminish {
@@ -42,7 +43,7 @@ struct Intrinsics {
 };
 
 /// Projection with `Intrinsics`, with what can be computed once kept.
-class Lens {
+class DIMINISH_EXPORT Lens {
  public:
   Lens() = default;
   explicit Lens(const Intrinsics& intrinsics);

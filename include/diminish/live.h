@@ -11,6 +11,7 @@
 
 #include "diminish/camera_source.h"
 #include "diminish/diminished_frame.h"
+#include "diminish/export.h"
 #include "diminish/frame_set.h"
 #include "diminish/options.h"
 #include "diminish/rig.h"
@@ -98,7 +99,7 @@ struct LiveOptions {
 /// whoever looks has his own. The newest images are worked on, older ones are left out; nothing
 /// queues up. Cameras that fail are opened again and again; meanwhile the session goes on with what
 /// it has. All functions may be called from any thread.
-class LiveSession {
+class DIMINISH_EXPORT LiveSession {
  public:
   /// Starts. Throws Error on a configuration that cannot work; a camera that cannot be opened is
   /// none: it is lost until it can.

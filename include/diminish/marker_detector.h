@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "diminish/export.h"
 #include "diminish/image.h"
 #include "diminish/intrinsics.h"
 #include "diminish/poses.h"
@@ -11,7 +12,7 @@
 namespace diminish {
 
 /// Finds the square markers of one dictionary in an image.
-class MarkerDetector {
+class DIMINISH_EXPORT MarkerDetector {
  public:
   /// dictionary: OpenCV's name, such as DICT_4X4_50. Throws Error for an unknown one.
   explicit MarkerDetector(const std::string& dictionary);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "diminish/board.h"
+#include "diminish/export.h"
 
 namespace diminish {
 
@@ -23,19 +24,20 @@ struct Paper {
 };
 
 /// The known papers: A4, A3, letter.
-const std::vector<Paper>& papers();
+DIMINISH_EXPORT const std::vector<Paper>& papers();
 
 /// Throws Error that lists the known names.
-const Paper& find_paper(const std::string& name);
+DIMINISH_EXPORT const Paper& find_paper(const std::string& name);
 
 /// Writes the sheet at true size, with ids and size beneath each marker and a ruler to check the
 /// print. The format is the file's extension: svg, pdf or png. Markers that one page does not hold
 /// go to further pages, which only PDF has. Throws Error: an unknown dictionary, an id that it does
 /// not have, a marker that the paper does not hold, a file that cannot be written.
-void write_marker_sheet(const MarkerSheet& sheet, const Paper& paper,
-                        const std::filesystem::path& file);
+DIMINISH_EXPORT void write_marker_sheet(const MarkerSheet& sheet, const Paper& paper,
+                                        const std::filesystem::path& file);
 
 /// The same for a board: one page, with the text that `parse_board` reads beneath it.
-void write_board(const Board& board, const Paper& paper, const std::filesystem::path& file);
+DIMINISH_EXPORT void write_board(const Board& board, const Paper& paper,
+                                 const std::filesystem::path& file);
 
 }  // namespace diminish

@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 
+#include "diminish/export.h"
 #include "diminish/frame_set.h"
 #include "diminish/occlusion_masks.h"
 #include "diminish/options.h"
@@ -22,7 +23,7 @@ struct Observation {
 };
 
 /// Finds one object to remove. Registered by name; `detector` in scene.yaml chooses.
-class OccluderDetector {
+class DIMINISH_EXPORT OccluderDetector {
  public:
   static constexpr const char* kind = "detector";
   /// `spec.config` holds the detector's own settings. Throws Error on wrong ones.

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "diminish/export.h"
+
 namespace diminish {
 
 /// Everything about a run that can be chosen. Names, units, ranges and meanings are described once,
@@ -44,6 +46,10 @@ struct OptionInfo {
   const char* help;
   double min = 0;
   double max = std::numeric_limits<double>::max();
+  /// Of a text: the kind of the registered methods that it can name (Interface::kind), and words
+  /// that it can be besides. Neither: any text.
+  const char* kind = "";
+  std::vector<std::string> choices = {};
 };
 
 /// Calls `visit(info, value)` for each option, `value` being a reference into `options`.
@@ -106,8 +112,10 @@ void for_each_option(AnyOptions& options, Visit&& visit) {
   visit(OptionInfo{"depth_agreement_m", "metres",
                    "Surfaces of two RGB-D cameras closer than this are one surface", 0, 100},
         options.depth_agreement_m);
-  visit(OptionInfo{"merge_cameras", "method",
-                   "How what several RGB-D cameras see of one surface becomes one picture"},
+  visit(OptionInfo{.name = "merge_cameras",
+                   .unit = "method",
+                   .help = "How what several RGB-D cameras see of one surface becomes one picture",
+                   .choices = {"blend", "choose"}},
         options.merge_cameras);
   visit(OptionInfo{"surroundings_px", "pixels",
                    "How far around the mask the scene is reconstructed", 1, 10000},
@@ -115,35 +123,49 @@ void for_each_option(AnyOptions& options, Visit&& visit) {
   visit(OptionInfo{"whole_view", "",
                    "Reconstruct the whole picture, not just the mask's surroundings"},
         options.whole_view);
-  visit(OptionInfo{"color_correct", "method", "How the reconstruction's colours are corrected"},
+  visit(OptionInfo{.name = "color_correct",
+                   .unit = "method",
+                   .help = "How the reconstruction's colours are corrected",
+                   .kind = "colour correction"},
         options.color_correct);
-  visit(OptionInfo{"inpaint", "method", "How pixels that no RGB-D camera sees are filled"},
+  visit(OptionInfo{.name = "inpaint",
+                   .unit = "method",
+                   .help = "How pixels that no RGB-D camera sees are filled",
+                   .kind = "inpainting method"},
         options.inpaint);
   visit(OptionInfo{"inpaint_radius_px", "pixels", "Neighbourhood of telea and ns", 1, 100},
         options.inpaint_radius_px);
-  visit(OptionInfo{"mode", "method", "How the background is shown"}, options.mode);
+  visit(OptionInfo{.name = "mode",
+                   .unit = "method",
+                   .help = "How the background is shown",
+                   .kind = "view mode"},
+        options.mode);
   visit(OptionInfo{"keep", "names", "Objects to leave in the picture; commas between them"},
         options.keep);
   visit(OptionInfo{"transparency", "",
                    "Of the object, in the mode half: 0 shows it as it is, 1 not at all", 0, 1},
         options.transparency);
-  visit(OptionInfo{"backend", "method",
-                   "What makes the pixels: the reconstruction and, on a GPU, the rest"},
+  visit(OptionInfo{.name = "backend",
+                   .unit = "method",
+                   .help = "What makes the pixels: the reconstruction and, on a GPU, the rest",
+                   .kind = "reconstruction backend",
+                   .choices = {"auto"}},
         options.backend);
 }
 
 /// Throws Error that names the option and what was given, if a value is out of range or names no
 /// registered method.
-void check(const Options& options);
+DIMINISH_EXPORT void check(const Options& options);
 
 struct Scene;
 /// The same, and that what `keep` names is there.
-void check(const Options& options, const Scene& scene);
+DIMINISH_EXPORT void check(const Options& options, const Scene& scene);
 
-/// The methods that an option's text can name; empty where it names none.
-std::vector<std::string> method_names(const std::string& option);
+/// What an option's text can be, in the order in which it is offered; empty where it can be any.
+DIMINISH_EXPORT std::vector<std::string> method_names(const std::string& option);
+DIMINISH_EXPORT std::vector<std::string> method_names(const OptionInfo& option);
 
 /// The names in `options.keep`.
-std::vector<std::string> kept_objects(const Options& options);
+DIMINISH_EXPORT std::vector<std::string> kept_objects(const Options& options);
 
 }  // namespace diminish

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "diminish/diminished_frame.h"
+#include "diminish/export.h"
 #include "diminish/frame_set.h"
 #include "diminish/gl_texture.h"
 #include "diminish/options.h"
@@ -15,7 +16,7 @@ namespace diminish {
 /// The whole frame: a FrameSet in, a DiminishedFrame out. Nothing of a frame influences the next;
 /// what is kept between frames is memory and what follows from the configuration. One object may
 /// be used by one thread at a time.
-class Pipeline {
+class DIMINISH_EXPORT Pipeline {
  public:
   /// Throws Error on configurations that cannot work.
   Pipeline(const Rig& rig, const Scene& scene, const Options& options);

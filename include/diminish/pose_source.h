@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 
+#include "diminish/export.h"
 #include "diminish/frame_set.h"
 #include "diminish/poses.h"
 #include "diminish/registry.h"
@@ -12,7 +13,7 @@
 namespace diminish {
 
 /// Finds where the cameras are in a frame. Registered by name; `pose.source` in rig.yaml chooses.
-class PoseSource {
+class DIMINISH_EXPORT PoseSource {
  public:
   static constexpr const char* kind = "pose source";
   /// `rig.pose` holds the source's own settings. Throws Error on wrong ones.

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "diminish/export.h"
 #include "diminish/image.h"
 #include "diminish/tiled_region.h"
 
@@ -31,7 +32,7 @@ struct Reconstruction {
 /// edge-on than this, at this distance, is torn.
 /// distance_m: along the line of sight. pixel_angle_deg: between neighbouring depth pixels.
 /// threshold_m: the largest depth difference that is joined.
-double smallest_visible_surface_angle_deg(double distance_m, double pixel_angle_deg,
-                                          double threshold_m);
+DIMINISH_EXPORT double smallest_visible_surface_angle_deg(double distance_m, double pixel_angle_deg,
+                                                          double threshold_m);
 
 }  // namespace diminish

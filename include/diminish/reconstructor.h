@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "diminish/export.h"
 #include "diminish/frame_set.h"
 #include "diminish/gpu_pass.h"
 #include "diminish/occlusion_masks.h"
@@ -22,7 +23,7 @@ using DepthImages = std::vector<Image<std::uint16_t>>;
 
 /// Draws what the RGB-D cameras see, without the objects, from the colour camera's viewpoint.
 /// Registered by name: one per implementation ("reference", ...).
-class Reconstructor {
+class DIMINISH_EXPORT Reconstructor {
  public:
   static constexpr const char* kind = "reconstruction backend";
 

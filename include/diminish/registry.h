@@ -1,60 +1,79 @@
 #pragma once
 
-#include <functional>
-#include <map>
+#include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "diminish/error.h"
+#include "diminish/export.h"
 
 namespace diminish {
 
 namespace detail {
-/// Does nothing, in the library. A program that asks for nothing else there would be linked without
-/// it, and so without what registers itself in it.
-void need_library();
+// One table for the whole process, in the library: what a program or another shared object adds is
+// known to all. Methods are kept by their kind, so that whoever lists them need not know the
+// stages.
+DIMINISH_EXPORT bool add_method(std::string_view kind, const std::string& name,
+                                std::shared_ptr<const void> factory);
+/// Null if there is none.
+DIMINISH_EXPORT const void* find_method(std::string_view kind, const std::string& name);
+DIMINISH_EXPORT bool leave_out_method(std::string_view kind, const std::string& name,
+                                      const std::string& needed);
+/// What the method needs that this build was made without; empty if it is not one of those.
+DIMINISH_EXPORT std::string left_out_for(std::string_view kind, const std::string& name);
+/// "unknown KIND 'NAME', expected one of A, B"
+DIMINISH_EXPORT std::string unknown_method(std::string_view kind, const std::string& name);
 }  // namespace detail
 
-/// Implementations found by name. Each registers itself in its own file:
+/// The names of all methods of a kind ("inpainting method"), in alphabetical order.
+DIMINISH_EXPORT std::vector<std::string> registered_names(std::string_view kind);
+
+/// ", which this build is without (it was built without libepoxy and EGL)"; empty for methods that
+/// are there, and for those that nobody knows.
+DIMINISH_EXPORT std::string left_out_note(std::string_view kind, const std::string& name);
+
+/// Implementations found by name. Each registers itself in its own file, in the library or outside:
 ///   const bool registered = Registry<Inpainter>::add("telea", [] { return ...; });
-/// `Interface::kind` names what is registered ("inpainting method") in messages, and
-/// `Interface::Factory` is the function that makes one.
+/// `Interface::kind` names what is registered ("inpainting method"), and is unique to the
+/// interface. `Interface::Factory` is what makes one. Threads may add and look up at the same time.
 template <class Interface>
 class Registry {
  public:
   using Factory = typename Interface::Factory;
 
+  /// Whether the name was free.
   static bool add(const std::string& name, Factory factory) {
-    return entries().emplace(name, std::move(factory)).second;
+    return detail::add_method(Interface::kind, name,
+                              std::make_shared<const Factory>(std::move(factory)));
   }
-  static bool contains(const std::string& name) { return entries().count(name) != 0; }
+  /// Says of a method that this build is without it, and what it needs: "libepoxy and EGL".
+  static bool leave_out(const std::string& name, const std::string& needed) {
+    return detail::leave_out_method(Interface::kind, name, needed);
+  }
+  static bool contains(const std::string& name) {
+    return detail::find_method(Interface::kind, name) != nullptr;
+  }
+  static bool is_left_out(const std::string& name) {
+    return !detail::left_out_for(Interface::kind, name).empty();
+  }
   /// Throws Error that lists the known names.
   static const Factory& get(const std::string& name) {
-    const auto found = entries().find(name);
-    if (found == entries().end()) {
-      throw Error("unknown " + std::string(Interface::kind) + " '" + name + "', expected one of " +
-                  known());
-    }
-    return found->second;
+    const void* const factory = detail::find_method(Interface::kind, name);
+    if (factory == nullptr) throw Error(unknown(name));
+    return *static_cast<const Factory*>(factory);
   }
-  static std::vector<std::string> names() {
-    std::vector<std::string> result;
-    for (const auto& [name, factory] : entries()) result.push_back(name);
-    return result;
-  }
+  static std::vector<std::string> names() { return registered_names(Interface::kind); }
   /// "a, b, c"
   static std::string known() {
     std::string list;
-    for (const auto& [name, factory] : entries()) list += (list.empty() ? "" : ", ") + name;
+    for (const std::string& name : names()) list += (list.empty() ? "" : ", ") + name;
     return list;
   }
-
- private:
-  static std::map<std::string, Factory>& entries() {
-    detail::need_library();
-    static std::map<std::string, Factory> all;
-    return all;
+  /// "unknown inpainting method 'x', expected one of a, b, c"
+  static std::string unknown(const std::string& name) {
+    return detail::unknown_method(Interface::kind, name);
   }
 };
 

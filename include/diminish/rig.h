@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "diminish/config.h"
+#include "diminish/export.h"
 #include "diminish/intrinsics.h"
 #include "diminish/rigid_transform.h"
 
@@ -32,9 +33,9 @@ struct Rig {
 };
 
 /// Reads `rig.yaml`. Throws Error, naming file and key.
-Rig load_rig(const std::filesystem::path& file);
+DIMINISH_EXPORT Rig load_rig(const std::filesystem::path& file);
 /// The same for a file that has been read already.
-Rig read_rig(const Config& config);
+DIMINISH_EXPORT Rig read_rig(const Config& config);
 
 /// The name by which messages call an RGB-D camera's colour sensor: "rgbd0 color".
 inline std::string color_sensor_name(const RgbdCamera& camera) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "diminish/board.h"
+#include "diminish/export.h"
 #include "diminish/frame_set.h"
 #include "diminish/rig.h"
 #include "diminish/rigid_transform.h"
@@ -39,7 +40,7 @@ struct ColorFromRgbd {
 
 /// Calibrates the places of cameras and sensors by markers of known size (those of the scene) or by
 /// a board, seen in many frames. Keeps some hundred sightings for each camera.
-class RigCalibration {
+class DIMINISH_EXPORT RigCalibration {
  public:
   /// board: looked for instead of markers. Throws Error if nothing of known size can be looked for.
   RigCalibration(const Rig& rig, const Scene& scene, const std::optional<Board>& board);

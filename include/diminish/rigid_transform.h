@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "diminish/export.h"
+
 namespace diminish {
 
 /// A rigid transform between two frames, named `a_from_b`: it takes a point's coordinates in frame
@@ -25,6 +27,6 @@ struct RigidTransform {
 };
 
 /// The angle of the rotation between two orientations, in degrees.
-double rotation_difference_deg(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b);
+DIMINISH_EXPORT double rotation_difference_deg(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b);
 
 }  // namespace diminish

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <functional>
 
+#include "diminish/export.h"
 #include "diminish/frame_sink.h"
 #include "diminish/frame_source.h"
 #include "diminish/options.h"
@@ -25,7 +26,8 @@ struct RunnerOptions {
 /// Takes every frame from `source` through the pipeline to `sink`; the number of frames done.
 /// Throws what source and sink throw, once the frames before are delivered and those in work are
 /// over, and Error on a configuration that cannot work.
-std::size_t run(FrameSource& source, const Rig& rig, const Scene& scene, const Options& options,
-                FrameSink& sink, const RunnerOptions& runner_options);
+DIMINISH_EXPORT std::size_t run(FrameSource& source, const Rig& rig, const Scene& scene,
+                                const Options& options, FrameSink& sink,
+                                const RunnerOptions& runner_options);
 
 }  // namespace diminish

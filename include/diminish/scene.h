@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "diminish/config.h"
+#include "diminish/export.h"
 
 namespace diminish {
 
@@ -29,11 +30,11 @@ struct Scene {
 };
 
 /// Reads `scene.yaml`. Throws Error, naming file and key.
-Scene load_scene(const std::filesystem::path& file);
+DIMINISH_EXPORT Scene load_scene(const std::filesystem::path& file);
 /// The same for a file that has been read already.
-Scene read_scene(const Config& config);
+DIMINISH_EXPORT Scene read_scene(const Config& config);
 
 /// Reads `{id: .., size_m: ..}`.
-MarkerSpec read_marker(const Config& config);
+DIMINISH_EXPORT MarkerSpec read_marker(const Config& config);
 
 }  // namespace diminish

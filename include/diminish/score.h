@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "diminish/export.h"
+
 namespace diminish {
 
 /// How like the truth a set of pixels is.
@@ -83,14 +85,15 @@ struct Score {
 
 /// Compares the results in `run` (of `diminish run`) with `recording`/truth. Throws Error if either
 /// folder lacks what is needed.
-Score score_run(const std::filesystem::path& recording, const std::filesystem::path& run);
+DIMINISH_EXPORT Score score_run(const std::filesystem::path& recording,
+                                const std::filesystem::path& run);
 /// The same; also writes run/score/NAME.png, cut to the object's surroundings: input, result,
 /// truth; four times the error, provenance, and the causes of the error, each in its colour.
-Score score_run_with_pictures(const std::filesystem::path& recording,
-                              const std::filesystem::path& run);
+DIMINISH_EXPORT Score score_run_with_pictures(const std::filesystem::path& recording,
+                                              const std::filesystem::path& run);
 
 /// For a terminal.
-std::string score_table(const Score& score);
-std::string score_json(const Score& score);
+DIMINISH_EXPORT std::string score_table(const Score& score);
+DIMINISH_EXPORT std::string score_json(const Score& score);
 
 }  // namespace diminish

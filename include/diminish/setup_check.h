@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "diminish/export.h"
 #include "diminish/frame_source.h"
 #include "diminish/rig.h"
 #include "diminish/scene.h"
@@ -41,12 +42,12 @@ struct SetupReport {
 /// follows from a cause that was found is not complained of again. Keeps six frames in memory.
 /// Throws Error on configurations that cannot be read at all. Cost: as running the first
 /// stages, and some seconds.
-SetupReport check_setup(const Rig& rig, const Scene& scene, FrameSource& source,
-                        std::size_t most_frames = 300);
+DIMINISH_EXPORT SetupReport check_setup(const Rig& rig, const Scene& scene, FrameSource& source,
+                                        std::size_t most_frames = 300);
 
 /// For people.
-std::string setup_report_text(const SetupReport& report);
+DIMINISH_EXPORT std::string setup_report_text(const SetupReport& report);
 /// For programs: {"frames", "findings": [...], "figures": [...]}.
-std::string setup_report_json(const SetupReport& report);
+DIMINISH_EXPORT std::string setup_report_json(const SetupReport& report);
 
 }  // namespace diminish

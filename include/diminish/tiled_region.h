@@ -5,13 +5,14 @@
 #include <cstdint>
 #include <vector>
 
+#include "diminish/export.h"
 #include "diminish/image.h"
 
 namespace diminish {
 
 /// A part of the picture: a rectangle, or those of its tiles that are near an object. A slender
 /// object's bounding box is mostly empty.
-class TiledRegion : public Rect {
+class DIMINISH_EXPORT TiledRegion : public Rect {
  public:
   static constexpr int tile = 16;  ///< pixels; tiles begin at multiples of it in the picture
 

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "diminish/diminished_frame.h"
+#include "diminish/export.h"
 #include "diminish/image.h"
 #include "diminish/options.h"
 #include "diminish/registry.h"
@@ -12,7 +13,7 @@ namespace diminish {
 
 /// How the hidden background is shown: people look through objects for different reasons.
 /// Registered by name; the option `mode` chooses.
-class ViewMode {
+class DIMINISH_EXPORT ViewMode {
  public:
   static constexpr const char* kind = "view mode";
   using Factory = std::function<std::unique_ptr<ViewMode>()>;

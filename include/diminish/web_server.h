@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "diminish/export.h"
 #include "diminish/live.h"
 
 namespace diminish {
@@ -29,7 +30,7 @@ struct WebServerOptions {
 
 /// A live session on a web page, and behind it an HTTP API (docs/http-api.md). Has threads of its
 /// own. A picture is compressed once for all who look; those who are slow get fewer.
-class WebServer {
+class DIMINISH_EXPORT WebServer {
  public:
   /// Starts. Throws Error if the address cannot be used, or needs a token and has none.
   WebServer(LiveSession& session, const WebServerOptions& options);

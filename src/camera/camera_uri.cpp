@@ -32,8 +32,8 @@ void CameraUri::expect_parameters(const std::vector<std::string>& known) const {
   }
 }
 
-void CameraUri::fail(const std::string& message) const {
-  throw Error(printable(text) + ": " + message);
+void CameraUri::fail(const std::string& message, Error::Category category) const {
+  throw Error(category, printable(text) + ": " + message);
 }
 
 CameraUri parse_camera_uri(const std::string& text) {
@@ -46,8 +46,10 @@ CameraUri parse_camera_uri(const std::string& text) {
   }
   uri.scheme = text.substr(0, colon);
   uri.target = text.substr(colon + 1);
-  // These hold texts of their own, with any character.
-  if (uri.scheme == "gst" || uri.scheme == "faults" || uri.scheme == "clock") return uri;
+  using Sources = Registry<CameraSource>;
+  // What this build is without may be a text of its own, too; to open it fails in any case.
+  if (Sources::is_left_out(uri.scheme)) return uri;
+  if (Sources::contains(uri.scheme) && Sources::get(uri.scheme).free_text) return uri;
   const std::size_t question = uri.target.find('?');
   if (question == std::string::npos) return uri;
   std::string rest = uri.target.substr(question + 1);

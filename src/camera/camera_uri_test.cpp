@@ -23,6 +23,24 @@ TEST(CameraUri, APipelinesTextIsItsOwn) {
   EXPECT_EQ(parse_camera_uri("gst:" + pipeline).target, pipeline);
 }
 
+// Whether a target is free text is for the scheme to say.
+TEST(CameraUri, ASchemeDeclaresThatItsTargetIsFreeText) {
+  CameraSource::Entry entry;
+  Registry<CameraSource>::add("plain", entry);
+  entry.free_text = true;
+  Registry<CameraSource>::add("verbatim", entry);
+  Registry<CameraSource>::leave_out("telegraph", "a wire");
+  EXPECT_EQ(parse_camera_uri("plain:x?y=1").target, "x");
+  EXPECT_EQ(parse_camera_uri("verbatim:x?y=1").target, "x?y=1");
+  EXPECT_EQ(
+      error_of([] { open_camera("telegraph:x?=", {}); })
+          .rfind(
+              "telegraph:x?=: unknown kind "
+              "of camera 'telegraph', which this build is without (it was built without a wire), ",
+              0),
+      0U);
+}
+
 TEST(CameraUri, ComplaintsNameTheUriAndWhatWasExpected) {
   EXPECT_THAT(error_of([] { parse_camera_uri("/dev/video0"); }),
               AllOf(HasSubstr("/dev/video0: expected a camera"), HasSubstr("recording")));

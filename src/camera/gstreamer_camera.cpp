@@ -27,8 +27,8 @@ void initialize(const CameraUri& uri) {
   GError* raw = nullptr;
   if (gst_init_check(nullptr, nullptr, &raw) == TRUE) return;
   const Owned<GError> error(raw);
-  uri.fail(std::string("GStreamer does not start: ") +
-           (error ? error->message : "no reason given"));
+  uri.fail(std::string("GStreamer does not start: ") + (error ? error->message : "no reason given"),
+           Error::device);
 }
 
 /// Any GStreamer pipeline: BGR frames are colour images, GRAY16_LE frames are depth.
@@ -72,14 +72,14 @@ class GstreamerCamera : public CameraSource {
     const Owned<GstMessage> message(gst_bus_pop_filtered(bus_.get(), GST_MESSAGE_ERROR));
     if (message) throw_error(*message);
     gst_element_set_state(pipeline_.get(), GST_STATE_NULL);
-    uri_.fail(what);
+    uri_.fail(what, Error::device);
   }
   [[noreturn]] void throw_error(GstMessage& message) const {
     GError* raw = nullptr;
     gst_message_parse_error(&message, &raw, nullptr);
     const Owned<GError> error(raw);
     gst_element_set_state(pipeline_.get(), GST_STATE_NULL);
-    uri_.fail(error->message);
+    uri_.fail(error->message, Error::device);
   }
 
   /// When the buffer was made: its time on the pipeline's clock, if that is the monotonic one.
@@ -130,13 +130,13 @@ class GstreamerCamera : public CameraSource {
 };
 
 const bool registered = Registry<CameraSource>::add(
-    "gst",
-    {.open =
-         [](const CameraUri& uri, const CameraRequest& request) {
-           return std::make_unique<GstreamerCamera>(uri, request);
-         },
-     .list = {},
-     .help = "gst:PIPELINE  frames of a GStreamer pipeline: BGR is colour, GRAY16_LE depth"});
+    "gst", {.open =
+                [](const CameraUri& uri, const CameraRequest& request) {
+                  return std::make_unique<GstreamerCamera>(uri, request);
+                },
+            .list = {},
+            .help = "gst:PIPELINE  frames of a GStreamer pipeline: BGR is colour, GRAY16_LE depth",
+            .free_text = true});
 
 }  // namespace
 }  // namespace diminish

@@ -6,9 +6,7 @@ std::unique_ptr<CameraSource> open_camera(const std::string& uri_text,
                                           const CameraRequest& request) {
   const CameraUri uri = parse_camera_uri(uri_text);
   using Sources = Registry<CameraSource>;
-  if (!Sources::contains(uri.scheme)) {
-    uri.fail("unknown kind of camera '" + uri.scheme + "', expected one of " + Sources::known());
-  }
+  if (!Sources::contains(uri.scheme)) uri.fail(Sources::unknown(uri.scheme));
   return Sources::get(uri.scheme).open(uri, request);
 }
 

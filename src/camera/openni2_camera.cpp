@@ -32,7 +32,7 @@ class Library {
     if (openni::OpenNI::initialize() == openni::STATUS_OK) return;
     const std::string reason = last_error();
     --users();
-    throw Error("OpenNI2 does not start: " + reason);
+    throw Error(Error::device, "OpenNI2 does not start: " + reason);
   }
   ~Library() {
     const std::lock_guard lock(mutex());
@@ -61,12 +61,12 @@ class SensorStream {
                const Intrinsics* sensor) {
     const char* name = type == openni::SENSOR_DEPTH ? "depth" : "colour";
     if (stream_.create(device, type) != openni::STATUS_OK) {
-      uri.fail(fmt::format("no {} sensor: {}", name, last_error()));
+      uri.fail(fmt::format("no {} sensor: {}", name, last_error()), Error::device);
     }
     choose_mode(uri, type, sensor, name);
     stream_.setMirroringEnabled(false);
     if (stream_.start() != openni::STATUS_OK) {
-      uri.fail(fmt::format("the {} sensor does not start: {}", name, last_error()));
+      uri.fail(fmt::format("the {} sensor does not start: {}", name, last_error()), Error::device);
     }
   }
   ~SensorStream() {
@@ -94,7 +94,7 @@ class SensorStream {
   }
 
   void read(CameraImage& image) {
-    if (stream_.readFrame(&frame_) != openni::STATUS_OK) throw Error(last_error());
+    if (stream_.readFrame(&frame_) != openni::STATUS_OK) throw Error(Error::device, last_error());
     const double now_s = monotonic_now_s();
     const double driver_s = static_cast<double>(frame_.getTimestamp()) * 1e-6;
     clock_offset_s_ = std::min(clock_offset_s_, now_s - driver_s);
@@ -164,7 +164,7 @@ class OpenNi2Camera : public CameraSource {
     const RgbdCamera* camera = request.rig ? find_rgbd_camera(*request.rig, request.name) : nullptr;
     if (request.rig && !camera) uri.fail("expected to be used for an RGB-D camera");
     const char* device_uri = uri.target.empty() ? openni::ANY_DEVICE : uri.target.c_str();
-    if (device_.open(device_uri) != openni::STATUS_OK) uri.fail(last_error());
+    if (device_.open(device_uri) != openni::STATUS_OK) uri.fail(last_error(), Error::device);
     depth_.emplace(uri, device_, openni::SENSOR_DEPTH, camera ? &camera->depth : nullptr);
     // "color=no": another device has the colour sensor.
     if (uri.text_of("color", "yes") != "no") {
@@ -184,10 +184,10 @@ class OpenNi2Camera : public CameraSource {
     const openni::Status status = openni::OpenNI::waitForAnyStream(
         streams.data(), color_ ? 2 : 1, &ready, static_cast<int>(timeout.count()));
     if (status == openni::STATUS_TIME_OUT) {
-      if (!device_.isValid()) throw Error("the device is gone");
+      if (!device_.isValid()) throw Error(Error::device, "the device is gone");
       return Status::nothing;
     }
-    if (status != openni::STATUS_OK) throw Error(last_error());
+    if (status != openni::STATUS_OK) throw Error(Error::device, last_error());
     (ready == 0 ? *depth_ : *color_).read(image);
     return Status::image;
   }

@@ -36,9 +36,10 @@ class V4l2Camera : public CameraSource {
     uri.expect_parameters({"size", "fps", "fourcc"});
     std::error_code ignored;
     if (!std::filesystem::is_character_file(uri.target, ignored)) {
-      uri.fail("there is no such device");
+      uri.fail("there is no such device", Error::device);
     }
-    if (!capture_.open(uri.target, cv::CAP_V4L2)) uri.fail("cannot be opened as a camera");
+    if (!capture_.open(uri.target, cv::CAP_V4L2))
+      uri.fail("cannot be opened as a camera", Error::device);
     const std::string fourcc = uri.text_of("fourcc", "");
     if (!fourcc.empty()) {
       if (fourcc.size() != 4) uri.fail("fourcc: expected four letters, such as MJPG");
@@ -56,7 +57,7 @@ class V4l2Camera : public CameraSource {
   }
 
   Status read(CameraImage& image, std::chrono::milliseconds) override {
-    if (!capture_.grab()) throw Error("the camera delivers nothing any more");
+    if (!capture_.grab()) throw Error(Error::device, "the camera delivers nothing any more");
     const double now_s = monotonic_now_s();
     // The driver's buffer timestamp, where OpenCV passes it on: on the monotonic clock.
     const double driver_s = capture_.get(cv::CAP_PROP_POS_MSEC) / 1000;

@@ -7,12 +7,9 @@
 #include <type_traits>
 
 #include "core/text.h"
-#include "diminish/color_corrector.h"
 #include "diminish/error.h"
-#include "diminish/inpainter.h"
-#include "diminish/reconstructor.h"
+#include "diminish/registry.h"
 #include "diminish/scene.h"
-#include "diminish/view_mode.h"
 
 namespace diminish {
 namespace {
@@ -25,23 +22,11 @@ std::string allowed_range(const OptionInfo& info) {
   return fmt::format("{} to {}{}", info.min, info.max, unit);
 }
 
-void check_method(const char* option, const std::string& name) {
+void check_method(const OptionInfo& option, const std::string& name) {
   const std::vector<std::string> known = method_names(option);
   if (known.empty() || std::find(known.begin(), known.end(), name) != known.end()) return;
-  throw Error(
-      fmt::format("{}: expected one of {}, got '{}'", option, join(known), printable(name)));
-}
-
-void check_backend(const std::string& name) {
-  const std::vector<std::string> known = method_names("backend");
-  const bool is_left_out = name == "gl" || name == "gl_geometry";
-  if (is_left_out && std::find(known.begin(), known.end(), name) == known.end()) {
-    throw Error(
-        fmt::format("backend: expected one of {}, got '{}', which this build is without (it was "
-                    "built without libepoxy and EGL)",
-                    join(known), name));
-  }
-  check_method("backend", name);
+  throw Error(fmt::format("{}: expected one of {}, got '{}'{}", option.name, join(known),
+                          printable(name), left_out_note(option.kind, name)));
 }
 
 }  // namespace
@@ -55,11 +40,7 @@ void check(const Options& options) {
         throw Error(fmt::format("{}: expected {}, got {}", info.name, allowed_range(info), value));
       }
     } else if constexpr (std::is_same_v<Value, std::string>) {
-      if (&value == &options.backend) {
-        check_backend(value);
-      } else {
-        check_method(info.name, value);
-      }
+      check_method(info, value);
     }
   });
 }
@@ -75,17 +56,20 @@ void check(const Options& options, const Scene& scene) {
   }
 }
 
+std::vector<std::string> method_names(const OptionInfo& option) {
+  std::vector<std::string> names = option.choices;
+  const std::vector<std::string> registered = registered_names(option.kind);
+  names.insert(names.end(), registered.begin(), registered.end());
+  return names;
+}
+
 std::vector<std::string> method_names(const std::string& option) {
-  if (option == "color_correct") return Registry<ColorCorrector>::names();
-  if (option == "inpaint") return Registry<Inpainter>::names();
-  if (option == "mode") return Registry<ViewMode>::names();
-  if (option == "merge_cameras") return {"blend", "choose"};
-  if (option == "backend") {
-    std::vector<std::string> names = Registry<Reconstructor>::names();
-    names.insert(names.begin(), "auto");
-    return names;
-  }
-  return {};
+  const Options options;
+  std::vector<std::string> names;
+  for_each_option(options, [&](const OptionInfo& info, const auto&) {
+    if (option == info.name) names = method_names(info);
+  });
+  return names;
 }
 
 std::vector<std::string> kept_objects(const Options& options) {

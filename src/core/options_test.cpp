@@ -2,6 +2,10 @@
 
 #include <cmath>
 
+#include "diminish/color_corrector.h"
+#include "diminish/inpainter.h"
+#include "diminish/reconstructor.h"
+#include "diminish/view_mode.h"
 #include "expect_error.h"
 
 namespace diminish {
@@ -66,6 +70,27 @@ TEST_F(OptionsCheck, MethodsMustBeRegistered) {
   options_.backend = "gl";
   EXPECT_THAT(error_of([&] { check(options_); }), HasSubstr("without libepoxy and EGL"));
 #endif
+}
+
+TEST_F(OptionsCheck, SaysWhatABuildIsWithout) {
+  Registry<ViewMode>::leave_out("hologram", "a laser");
+  options_.mode = "hologram";
+  EXPECT_THAT(error_of([&] { check(options_); }),
+              AllOf(HasSubstr("mode: expected one of "),
+                    HasSubstr("got 'hologram', which this build is without (it was built without "
+                              "a laser)")));
+}
+
+// The kinds that options.h names are the interfaces' own.
+TEST(MethodNames, AreTheRegisteredOnesAndTheChoicesBesides) {
+  EXPECT_EQ(method_names("color_correct"), Registry<ColorCorrector>::names());
+  EXPECT_EQ(method_names("inpaint"), Registry<Inpainter>::names());
+  EXPECT_EQ(method_names("mode"), Registry<ViewMode>::names());
+  std::vector<std::string> backends = Registry<Reconstructor>::names();
+  backends.insert(backends.begin(), "auto");
+  EXPECT_EQ(method_names("backend"), backends);
+  EXPECT_EQ(method_names("merge_cameras"), (std::vector<std::string>{"blend", "choose"}));
+  EXPECT_THAT(method_names("keep"), ::testing::IsEmpty());
 }
 
 }  // namespace

@@ -52,11 +52,12 @@ std::string join(const std::vector<std::string>& words) {
 std::string read_text_file(const std::filesystem::path& file, std::size_t max_bytes) {
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored)) {
-    throw Error(file.string() + ": expected a file, got a folder");
+    throw Error(Error::io, file.string() + ": expected a file, got a folder");
   }
   std::ifstream stream(file, std::ios::binary);
   if (!stream) {
-    throw Error(file.string() + ": cannot be opened: " + std::generic_category().message(errno));
+    throw Error(Error::io,
+                file.string() + ": cannot be opened: " + std::generic_category().message(errno));
   }
   // In blocks, so that endless files (devices, pipes) end here too.
   std::string text;
@@ -64,10 +65,11 @@ std::string read_text_file(const std::filesystem::path& file, std::size_t max_by
   while (stream.read(piece.data(), piece.size()), stream.gcount() > 0) {
     text.append(piece.data(), static_cast<std::size_t>(stream.gcount()));
     if (text.size() > max_bytes) {
-      throw Error(fmt::format("{}: expected at most {} bytes", file.string(), max_bytes));
+      throw Error(Error::io,
+                  fmt::format("{}: expected at most {} bytes", file.string(), max_bytes));
     }
   }
-  if (stream.bad()) throw Error(file.string() + ": cannot be read");
+  if (stream.bad()) throw Error(Error::io, file.string() + ": cannot be read");
   return text;
 }
 

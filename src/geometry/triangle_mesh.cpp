@@ -21,7 +21,7 @@ struct Place {
   int line = 0;
 
   [[noreturn]] void fail(const std::string& message) const {
-    throw Error(fmt::format("{}:{}: {}", file.string(), line, message));
+    throw Error(Error::input, fmt::format("{}:{}: {}", file.string(), line, message));
   }
 };
 
@@ -81,7 +81,8 @@ TriangleMesh read_obj(std::istream& stream, const std::filesystem::path& file) {
     if (words[0] == "v") mesh.vertices.push_back(read_vertex(words, place));
     if (words[0] == "f") add_face(words, place, mesh);
   }
-  if (mesh.triangles.empty()) throw Error(file.string() + ": expected at least one face");
+  if (mesh.triangles.empty())
+    throw Error(Error::input, file.string() + ": expected at least one face");
   return mesh;
 }
 

@@ -16,6 +16,7 @@ void expect_limit(GLenum limit, std::size_t count, const char* things, const cha
   glGetInteger64v(limit, &most);
   if (count <= static_cast<std::size_t>(most)) return;
   throw Error(
+      Error::device,
       fmt::format("gl: expected a driver with {} of {} {}, this one has {}: the images are too "
                   "large for it",
                   things, count, unit, most));
@@ -49,7 +50,8 @@ void MappedBuffer::reserve(std::size_t bytes) {
   data_ = static_cast<std::byte*>(
       glMapNamedBufferRange(name_.get(), 0, static_cast<GLsizeiptr>(bytes), access));
   size_ = data_ ? bytes : 0;
-  if (!data_) throw Error("gl: memory for the transfer of images could not be mapped");
+  if (!data_)
+    throw Error(Error::device, "gl: memory for the transfer of images could not be mapped");
 }
 
 void wait_until_done() {
@@ -58,7 +60,7 @@ void wait_until_done() {
   const GLenum state = glClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, longest_ns);
   glDeleteSync(fence);
   if (state != GL_ALREADY_SIGNALED && state != GL_CONDITION_SATISFIED) {
-    throw Error("gl: the driver did not finish a frame within 10 s");
+    throw Error(Error::device, "gl: the driver did not finish a frame within 10 s");
   }
 }
 

@@ -62,7 +62,8 @@ std::unique_ptr<Context::State> make_state(const Display& display,
   state->display = display.display;
   state->context = make_context(display.display, shared);
   if (state->context == EGL_NO_CONTEXT) {
-    throw Error(fmt::format("gl: no OpenGL context could be made{} ({})",
+    throw Error(Error::device,
+                fmt::format("gl: no OpenGL context could be made{} ({})",
                             shared == EGL_NO_CONTEXT ? "" : " that shares with the given one",
                             egl_error_name(eglGetError())));
   }
@@ -85,12 +86,14 @@ Context Context::sharing_with(const GlSharing& application) {
   if (!application.egl_display || !application.egl_context ||
       eglQueryContext(application.egl_display, application.egl_context, EGL_CONTEXT_CLIENT_TYPE,
                       &api) != EGL_TRUE) {
-    throw Error(fmt::format("gl: expected an initialised EGLDisplay and an EGLContext made on it{}",
+    throw Error(Error::device,
+                fmt::format("gl: expected an initialised EGLDisplay and an EGLContext made on it{}",
                             application.egl_display && application.egl_context
                                 ? fmt::format(" ({})", egl_error_name(eglGetError()))
                                 : ", got null"));
   }
-  if (api != EGL_OPENGL_API) throw Error("gl: expected a context of OpenGL, got another API's");
+  if (api != EGL_OPENGL_API)
+    throw Error(Error::device, "gl: expected a context of OpenGL, got another API's");
   const bool software = draws_in_software(application.egl_display);
   return Context(make_state({application.egl_display, software}, application.egl_context));
 }
@@ -116,11 +119,13 @@ bool Context::shares_with(const Context& other) const {
 
 void Context::check(const char* doing) const {
   if (glGetGraphicsResetStatus() != GL_NO_ERROR) {
-    throw Error(fmt::format("gl: {}: the driver lost the context ({})", doing, driver().name));
+    throw Error(Error::device,
+                fmt::format("gl: {}: the driver lost the context ({})", doing, driver().name));
   }
   const GLenum error = glGetError();
   if (error == GL_NO_ERROR) return;
-  throw Error(fmt::format("gl: {}: {} ({})", doing, gl_error_name(error), driver().name));
+  throw Error(Error::device,
+              fmt::format("gl: {}: {} ({})", doing, gl_error_name(error), driver().name));
 }
 
 Current::Current(const Context& context)
@@ -132,7 +137,8 @@ Current::Current(const Context& context)
   eglBindAPI(EGL_OPENGL_API);
   if (eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context.state_->context) !=
       EGL_TRUE) {
-    throw Error(fmt::format("gl: the context cannot be used ({})", egl_error_name(eglGetError())));
+    throw Error(Error::device,
+                fmt::format("gl: the context cannot be used ({})", egl_error_name(eglGetError())));
   }
 }
 

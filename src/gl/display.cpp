@@ -55,7 +55,8 @@ std::string_view egl_error_name(EGLint error) {
 /// libepoxy aborts the program if there is no EGL library at all.
 void expect_egl_library() {
   static void* const library = dlopen("libEGL.so.1", RTLD_LAZY | RTLD_GLOBAL);
-  if (!library) throw Error("gl: expected an EGL library (libEGL.so.1), there is none");
+  if (!library)
+    throw Error(Error::device, "gl: expected an EGL library (libEGL.so.1), there is none");
 }
 
 bool draws_in_software(void* display) {
@@ -115,7 +116,8 @@ Display find_display() {
   expect_egl_library();
   const char* extensions = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
   if (!lists(extensions, "EGL_EXT_platform_base")) {
-    throw Error("gl: expected an EGL library with EGL_EXT_platform_base, this one has it not");
+    throw Error(Error::device,
+                "gl: expected an EGL library with EGL_EXT_platform_base, this one has it not");
   }
   std::optional<Display> found;
   const auto consider = [&](EGLDisplay display) {
@@ -142,10 +144,10 @@ Display find_display() {
     }
   }
   if (!found) {
-    throw Error(
-        fmt::format("gl: expected a driver with OpenGL {}.{} core and surfaceless EGL "
-                    "contexts, found none",
-                    major_version, minor_version));
+    throw Error(Error::device,
+                fmt::format("gl: expected a driver with OpenGL {}.{} core and surfaceless EGL "
+                            "contexts, found none",
+                            major_version, minor_version));
   }
   return *found;
 }

@@ -34,7 +34,7 @@ std::size_t bytes_of(const Intrinsics& intrinsics) {
 
 FrameUpload::FrameUpload(const Rig& rig, std::size_t most_added_bytes) {
   if (rig.rgbd.size() > most_cameras) {
-    throw Error(fmt::format("gl: expected at most {} RGB-D cameras", most_cameras));
+    throw Error(Error::device, fmt::format("gl: expected at most {} RGB-D cameras", most_cameras));
   }
   frame_.color = LensBlock(Projection(Lens(rig.color)));
   std::size_t bytes = block_at(1 + rig.rgbd.size());
@@ -51,8 +51,8 @@ FrameUpload::FrameUpload(const Rig& rig, std::size_t most_added_bytes) {
     const std::size_t pixels = static_cast<std::size_t>(camera.depth.width) *
                                static_cast<std::size_t>(camera.depth.height);
     if (pixels > most_depth_pixels_of_a_camera) {
-      throw Error(fmt::format("gl: {}: expected a depth image of at most {} pixels", camera.name,
-                              most_depth_pixels_of_a_camera));
+      throw Error(Error::device, fmt::format("gl: {}: expected a depth image of at most {} pixels",
+                                             camera.name, most_depth_pixels_of_a_camera));
     }
     depth_pixels_ += pixels;
     bytes += bytes_of<std::uint16_t>(camera.depth) + bytes_of<std::uint8_t>(camera.depth) +

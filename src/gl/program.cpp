@@ -41,7 +41,8 @@ std::string first_error(std::string_view log, const std::vector<std::string>& fi
 
 std::string_view shader_file(const std::string& name) {
   const auto found = shader_files().find(name);
-  if (found == shader_files().end()) throw Error("gl: there is no shader file '" + name + "'");
+  if (found == shader_files().end())
+    throw Error(Error::internal, "gl: there is no shader file '" + name + "'");
   return found->second;
 }
 
@@ -71,7 +72,7 @@ class ShaderObject {
     if (compiled == GL_TRUE) return;
     const std::string log = log_of(name_, glGetShaderiv, glGetShaderInfoLog);
     glDeleteShader(name_);
-    throw Error("gl: shader " + first_error(log, shader.files));
+    throw Error(Error::internal, "gl: shader " + first_error(log, shader.files));
   }
   ~ShaderObject() { glDeleteShader(name_); }
   ShaderObject(const ShaderObject&) = delete;
@@ -116,8 +117,8 @@ Program::Program(const std::vector<Shader>& shaders) : name_(glCreateProgram()) 
     glGetProgramiv(name_, GL_LINK_STATUS, &linked);
     if (linked != GL_TRUE) {
       const std::string log = log_of(name_, glGetProgramiv, glGetProgramInfoLog);
-      throw Error(fmt::format("gl: program of {}: {}", shaders.back().files.back(),
-                              log.substr(0, log.find('\n'))));
+      throw Error(Error::internal, fmt::format("gl: program of {}: {}", shaders.back().files.back(),
+                                               log.substr(0, log.find('\n'))));
     }
   } catch (...) {
     glDeleteProgram(name_);

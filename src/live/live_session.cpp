@@ -34,10 +34,8 @@ void check_cameras(const Rig& rig, const std::vector<LiveCamera>& cameras) {
     const bool is_known = camera.name == "color" || find_rgbd_camera(rig, camera.name);
     if (!is_known) throw Error(camera.name + ": the rig has no camera of this name");
     const CameraUri uri = parse_camera_uri(camera.uri);
-    if (!Registry<CameraSource>::contains(uri.scheme)) {
-      uri.fail("unknown kind of camera '" + uri.scheme + "', expected one of " +
-               Registry<CameraSource>::known());
-    }
+    using Sources = Registry<CameraSource>;
+    if (!Sources::contains(uri.scheme)) uri.fail(Sources::unknown(uri.scheme));
   }
   for (const RgbdCamera& rgbd : rig.rgbd) {
     if (!is_used(rgbd.name)) throw Error(rgbd.name + ": expected a camera (--rgbd)");

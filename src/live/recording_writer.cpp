@@ -20,17 +20,18 @@ constexpr int png_compression = 1;
 void make_folder(const std::filesystem::path& folder) {
   std::error_code error;
   if (std::filesystem::exists(folder, error) && !std::filesystem::is_empty(folder, error)) {
-    throw Error(folder.string() + ": expected an empty folder for the recording, or none");
+    throw Error(Error::io,
+                folder.string() + ": expected an empty folder for the recording, or none");
   }
   std::filesystem::create_directories(folder, error);
-  if (error) throw Error(folder.string() + ": cannot be made: " + error.message());
+  if (error) throw Error(Error::io, folder.string() + ": cannot be made: " + error.message());
 }
 
 void copy_to(const std::filesystem::path& from, const std::filesystem::path& to) {
   std::error_code error;
   std::filesystem::create_directories(to.parent_path(), error);
   std::filesystem::copy(from, to, std::filesystem::copy_options::recursive, error);
-  if (error) throw Error(from.string() + ": cannot be copied: " + error.message());
+  if (error) throw Error(Error::io, from.string() + ": cannot be copied: " + error.message());
 }
 
 /// Copies a file or folder that scene.yaml names to the same place beside the new scene.yaml.
@@ -107,13 +108,14 @@ RecordingWriter::Stream RecordingWriter::make_stream(const std::string& list,
                                                      const std::string& folder) const {
   std::error_code error;
   std::filesystem::create_directories(folder_ / folder, error);
-  if (error) throw Error((folder_ / folder).string() + ": cannot be made: " + error.message());
+  if (error)
+    throw Error(Error::io, (folder_ / folder).string() + ": cannot be made: " + error.message());
   const std::filesystem::path file = folder_ / (list + ".txt");
   Stream stream;
   stream.folder = folder;
   stream.list.open(file);
   stream.list << "# timestamp filename\n" << std::flush;
-  if (!stream.list) throw Error(file.string() + ": cannot be written");
+  if (!stream.list) throw Error(Error::io, file.string() + ": cannot be written");
   return stream;
 }
 
@@ -168,12 +170,12 @@ void RecordingWriter::write_image(Stream& stream, const Image<Pixel>& image, dou
       is_color ? std::vector<int>{cv::IMWRITE_JPEG_QUALITY, jpeg_quality}
                : std::vector<int>{cv::IMWRITE_PNG_COMPRESSION, png_compression};
   if (!cv::imencode(is_color ? ".jpg" : ".png", as_mat(image), bytes_, parameters)) {
-    throw Error((folder_ / name).string() + ": cannot be encoded");
+    throw Error(Error::io, (folder_ / name).string() + ": cannot be encoded");
   }
   write_file(folder_ / name, {reinterpret_cast<const char*>(bytes_.data()), bytes_.size()});
   stream.list << fmt::format("{:.6f} {}\n", stamp_s, name) << std::flush;
   if (!stream.list)
-    throw Error((folder_ / stream.folder).string() + ": its list cannot be written");
+    throw Error(Error::io, (folder_ / stream.folder).string() + ": its list cannot be written");
   stream.last_stamp_s = stamp_s;
   ++stream.images;
 }

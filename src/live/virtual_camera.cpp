@@ -27,7 +27,8 @@ VirtualCamera::VirtualCamera(const LiveSession& session, const std::string& targ
   const Intrinsics& color = session.rig().color;
   if (!writer_->video.open(pipeline_to(target), cv::CAP_GSTREAMER, 0, frames_per_second,
                            cv::Size(color.width, color.height))) {
-    throw Error(target + ": cannot be opened for writing video; is v4l2loopback loaded?");
+    throw Error(Error::device,
+                target + ": cannot be opened for writing video; is v4l2loopback loaded?");
   }
   thread_ = std::thread([this, &session] {
     constexpr std::chrono::milliseconds patience{100};

@@ -15,7 +15,7 @@ namespace diminish {
 
 std::vector<StampedPose> load_pose_list(const std::filesystem::path& file) {
   std::ifstream stream(file);
-  if (!stream) throw Error(file.string() + ": cannot be read, expected a list of poses");
+  if (!stream) throw Error(Error::io, file.string() + ": cannot be read, expected a list of poses");
   return read_pose_list(stream, file);
 }
 
@@ -24,7 +24,7 @@ std::vector<StampedPose> read_pose_list(std::istream& stream, const std::filesys
   std::string line;
   for (int number = 1; std::getline(stream, line); ++number) {
     const auto fail = [&](const char* what) {
-      throw Error(fmt::format("{}:{}: {}", file.string(), number, what));
+      throw Error(Error::input, fmt::format("{}:{}: {}", file.string(), number, what));
     };
     line.erase(std::find(line.begin(), line.end(), '#'), line.end());
     std::istringstream fields(line);
@@ -45,7 +45,7 @@ std::vector<StampedPose> read_pose_list(std::istream& stream, const std::filesys
     if (!poses.empty() && !(v[0] > poses.back().stamp_s)) fail("expected ascending timestamps");
     poses.push_back({v[0], {rotation.normalized().toRotationMatrix(), {v[1], v[2], v[3]}}});
   }
-  if (poses.empty()) throw Error(file.string() + ": expected at least one pose");
+  if (poses.empty()) throw Error(Error::input, file.string() + ": expected at least one pose");
   return poses;
 }
 

@@ -45,8 +45,8 @@ std::vector<CsvRow> parse_csv(const std::string& text, const std::filesystem::pa
   while (position < text.size()) {
     const std::vector<std::string> cells = parse_line(text, position);
     if (cells.size() != header.size()) {
-      throw Error(fmt::format("{}: row {}: expected {} cells, got {}", file.string(),
-                              rows.size() + 1, header.size(), cells.size()));
+      throw Error(Error::input, fmt::format("{}: row {}: expected {} cells, got {}", file.string(),
+                                            rows.size() + 1, header.size(), cells.size()));
     }
     CsvRow& row = rows.emplace_back();
     for (std::size_t i = 0; i < cells.size(); ++i) row[header[i]] = cells[i];

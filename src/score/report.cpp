@@ -107,7 +107,8 @@ std::vector<std::optional<double>> numbers_in(const std::vector<CsvRow>& rows,
     if (cell == row.end() || cell->second.empty()) continue;
     number = parse_number(cell->second);
     if (!number) {
-      throw Error(fmt::format("{}: row {}: {}: expected a number, got '{}'", file.string(),
+      throw Error(Error::input,
+                  fmt::format("{}: row {}: {}: expected a number, got '{}'", file.string(),
                               numbers.size(), column, printable(cell->second)));
     }
   }
@@ -191,7 +192,7 @@ nlohmann::json read_summary(const std::filesystem::path& file) {
   constexpr std::size_t most_bytes = 1 << 24;
   const nlohmann::json summary =
       nlohmann::json::parse(read_text_file(file, most_bytes), nullptr, false);
-  if (summary.is_discarded()) throw Error(file.string() + ": is not JSON");
+  if (summary.is_discarded()) throw Error(Error::input, file.string() + ": is not JSON");
   return summary;
 }
 
@@ -229,7 +230,8 @@ void write_report(const std::filesystem::path& recording, const std::filesystem:
     page += fmt::format("<h2>Options</h2><pre>{}</pre>\n",
                         html::escaped(summary.at("options").dump(2)));
   } catch (const nlohmann::json::exception& error) {
-    throw Error(fmt::format("{}: expected the summary that `diminish run` writes: {}",
+    throw Error(Error::input,
+                fmt::format("{}: expected the summary that `diminish run` writes: {}",
                             (run / "summary.json").string(), printable(error.what())));
   }
   write_file(file, page + script);

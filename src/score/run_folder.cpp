@@ -24,17 +24,18 @@ cv::Mat read_image(const fs::path& file, int flags) {
   std::error_code ignored;
   if (file.empty() || !fs::exists(file, ignored)) return {};
   cv::Mat image = cv::imread(file.string(), flags | cv::IMREAD_IGNORE_ORIENTATION);
-  if (image.empty()) throw Error(file.string() + ": cannot be decoded, expected an image");
+  if (image.empty())
+    throw Error(Error::input, file.string() + ": cannot be decoded, expected an image");
   return image;
 }
 
 nlohmann::json read_json(const fs::path& file) {
   std::ifstream stream(file);
-  if (!stream) throw Error(file.string() + ": cannot be read, expected JSON");
+  if (!stream) throw Error(Error::io, file.string() + ": cannot be read, expected JSON");
   try {
     return nlohmann::json::parse(stream);
   } catch (const nlohmann::json::exception& error) {
-    throw Error(file.string() + ": " + printable(error.what()));
+    throw Error(Error::input, file.string() + ": " + printable(error.what()));
   }
 }
 
@@ -74,7 +75,8 @@ RunFolder::RunFolder(fs::path recording, fs::path run)
     : recording_(std::move(recording)), run_(std::move(run)) {
   const fs::path background = recording_ / "truth" / "background";
   if (!fs::is_directory(background)) {
-    throw Error(background.string() + ": not found, expected the true pictures to compare with");
+    throw Error(Error::input,
+                background.string() + ": not found, expected the true pictures to compare with");
   }
   read_frames();
   read_summary();
@@ -88,7 +90,8 @@ void RunFolder::read_frames() {
     const auto name = row.find("name");
     const auto skipped = row.find("skipped");
     if (name == row.end() || skipped == row.end()) {
-      throw Error((run_ / "frames.csv").string() + ": expected the columns name and skipped");
+      throw Error(Error::input,
+                  (run_ / "frames.csv").string() + ": expected the columns name and skipped");
     }
     frames_.push_back(name->second);
     written.insert(name->second);
@@ -111,7 +114,7 @@ void RunFolder::read_summary() {
   try {
     mask_margin_px_ = read_json(file).at("options").at("mask_margin_px");
   } catch (const nlohmann::json::exception&) {
-    throw Error(file.string() + ": options.mask_margin_px: expected a number");
+    throw Error(Error::input, file.string() + ": options.mask_margin_px: expected a number");
   }
 }
 
@@ -137,14 +140,16 @@ void RunFolder::read_true_poses() {
       poses.merge(chained);
     }
   } catch (const nlohmann::json::exception& error) {
-    throw Error(file.string() + ": expected poses as 3x4 matrices: " + printable(error.what()));
+    throw Error(Error::input,
+                file.string() + ": expected poses as 3x4 matrices: " + printable(error.what()));
   }
 }
 
 void RunFolder::read_inputs() {
   const fs::path list = recording_ / "color.txt";
   std::ifstream stream(list);
-  if (!stream) throw Error(list.string() + ": cannot be read, expected the colour images' list");
+  if (!stream)
+    throw Error(Error::io, list.string() + ": cannot be read, expected the colour images' list");
   for (const StreamEntry& entry : read_stream_list(stream, list)) {
     // A video's frames are not decoded again: of those the input is unknown here.
     if (!is_video(entry.file)) inputs_[entry.file.stem().string()] = recording_ / entry.file;

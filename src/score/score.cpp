@@ -23,6 +23,7 @@ double ratio(const cv::Mat& part, const cv::Mat& whole) {
 void expect_same_size(const cv::Mat& image, const cv::Mat& other, const std::string& what) {
   if (!image.empty() && image.size() != other.size()) {
     throw Error(
+        Error::input,
         fmt::format("{}: its size and that of what it is compared with differ: {}x{}, {}x{}", what,
                     image.cols, image.rows, other.cols, other.rows));
   }

@@ -15,7 +15,7 @@ std::size_t number_in(std::string_view head, std::string_view name) {
     const char* first = head.data() + at + name.size();
     if (std::from_chars(first, head.data() + head.size(), number).ec == std::errc{}) return number;
   }
-  throw Error("picture stream: expected '" + std::string(name) + "' and a number");
+  throw Error(Error::input, "picture stream: expected '" + std::string(name) + "' and a number");
 }
 
 }  // namespace

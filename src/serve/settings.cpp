@@ -65,7 +65,7 @@ Json describe_settings(const LiveSession& session) {
       setting["min"] = info.min;
       if (info.max < std::numeric_limits<double>::max()) setting["max"] = info.max;
     }
-    const std::vector<std::string> methods = method_names(info.name);
+    const std::vector<std::string> methods = method_names(info);
     if (!methods.empty()) setting["choices"] = methods;
     list.push_back(std::move(setting));
   });

@@ -79,7 +79,7 @@ FramesCsv::FramesCsv(const std::filesystem::path& file, const Rig& rig)
   for (const TimeRow& row : time_rows()) header += fmt::format(",{}_ms", row.key);
   header += ",messages,faults\n";
   stream_ << header << std::flush;
-  if (!stream_) throw Error(file_.string() + ": cannot be written");
+  if (!stream_) throw Error(Error::io, file_.string() + ": cannot be written");
 }
 
 void FramesCsv::append(const DiminishedFrame& frame) {
@@ -103,7 +103,7 @@ void FramesCsv::append(const DiminishedFrame& frame) {
   row += fmt::format(",{},{}\n", joined(report.messages), joined(report.faults));
   // One write per row, so that an interrupted run leaves whole rows.
   stream_ << row << std::flush;
-  if (!stream_) throw Error(file_.string() + ": cannot be written");
+  if (!stream_) throw Error(Error::io, file_.string() + ": cannot be written");
 }
 
 }  // namespace diminish

@@ -21,7 +21,7 @@ struct PngImage : png_image {
 using Palette = std::array<Bgr, 256>;
 
 [[noreturn]] void fail(const std::filesystem::path& file, const std::string& what) {
-  throw Error(file.string() + ": " + what);
+  throw Error(Error::io, file.string() + ": " + what);
 }
 
 }  // namespace

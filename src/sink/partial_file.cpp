@@ -23,7 +23,7 @@ PartialFile::~PartialFile() {
 void PartialFile::commit() {
   std::error_code error;
   std::filesystem::rename(partial_, target_, error);
-  if (error) throw Error(target_.string() + ": cannot be written: " + error.message());
+  if (error) throw Error(Error::io, target_.string() + ": cannot be written: " + error.message());
   committed_ = true;
 }
 
@@ -33,7 +33,7 @@ void write_file(const std::filesystem::path& target, std::string_view bytes) {
   stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   // A full disk may show only now.
   stream.close();
-  if (!stream) throw Error(target.string() + ": cannot be written");
+  if (!stream) throw Error(Error::io, target.string() + ": cannot be written");
   file.commit();
 }
 
@@ -41,7 +41,7 @@ void write_png(const std::filesystem::path& target, const cv::Mat& picture) {
   std::vector<std::uint8_t> bytes;
   // Level 1 takes a tenth of the time for a tenth more bytes.
   if (!cv::imencode(".png", picture, bytes, {cv::IMWRITE_PNG_COMPRESSION, 1})) {
-    throw Error(target.string() + ": cannot be encoded");
+    throw Error(Error::io, target.string() + ": cannot be encoded");
   }
   write_file(target, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }

@@ -24,7 +24,7 @@ constexpr std::array files = {"frames.csv", "summary.json", "result.mp4", "score
 void make_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error) throw Error(folder.string() + ": cannot be made: " + error.message());
+  if (error) throw Error(Error::io, folder.string() + ": cannot be made: " + error.message());
 }
 
 void remove_pictures(const fs::path& folder) {
@@ -48,11 +48,11 @@ void ResultWriter::prepare_folder(bool force) const {
   std::error_code error;
   const bool exists = fs::exists(folder_, error);
   if (exists && !fs::is_directory(folder_, error)) {
-    throw Error(folder_.string() + ": expected a folder for the results, got a file");
+    throw Error(Error::io, folder_.string() + ": expected a folder for the results, got a file");
   }
   if (exists && !fs::is_empty(folder_, error)) {
     if (!force) {
-      throw Error(folder_.string() + ": not empty; --force replaces the results in it");
+      throw Error(Error::io, folder_.string() + ": not empty; --force replaces the results in it");
     }
     for (const char* name : picture_folders) remove_pictures(folder_ / name);
     remove_pictures(folder_ / preview_folder);

@@ -31,14 +31,14 @@ bool is_cut_short(const std::vector<std::uint8_t>& bytes) {
 }
 
 cv::Mat decode_with(const std::vector<std::uint8_t>& bytes, int flags) {
-  if (bytes.empty()) throw Error("the file is empty");
-  if (is_cut_short(bytes)) throw Error("the file is cut short");
+  if (bytes.empty()) throw Error(Error::input, "the file is empty");
+  if (is_cut_short(bytes)) throw Error(Error::input, "the file is cut short");
   cv::Mat image;
   try {
     image = cv::imdecode(bytes, flags);
   } catch (const cv::Exception&) {
   }
-  if (image.empty()) throw Error("cannot be decoded");
+  if (image.empty()) throw Error(Error::input, "cannot be decoded");
   return image;
 }
 
@@ -56,14 +56,15 @@ std::string format_text(const cv::Mat& image) {
 
 std::vector<std::uint8_t> read_bytes(const std::filesystem::path& file) {
   std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored)) throw Error("there is no such file");
+  if (!std::filesystem::is_regular_file(file, ignored))
+    throw Error(Error::input, "there is no such file");
   std::ifstream stream(file, std::ios::binary | std::ios::ate);
   const std::streamoff size = stream.tellg();
-  if (!stream || size < 0) throw Error("cannot be opened");
+  if (!stream || size < 0) throw Error(Error::io, "cannot be opened");
   std::vector<std::uint8_t> bytes(static_cast<std::size_t>(size));
   stream.seekg(0);
   if (size > 0 && !stream.read(reinterpret_cast<char*>(bytes.data()), size)) {
-    throw Error("cannot be read");
+    throw Error(Error::io, "cannot be read");
   }
   return bytes;
 }
@@ -81,21 +82,22 @@ cv::Mat decode<std::uint16_t>(const std::vector<std::uint8_t>& bytes) {
 template <>
 void expect_format<Bgr>(const cv::Mat& image, const Intrinsics& camera) {
   if (image.cols == camera.width && image.rows == camera.height && image.type() == CV_8UC3) return;
-  throw Error(fmt::format("expected {}x{}, got {}", camera.width, camera.height, size_text(image)));
+  throw Error(Error::input,
+              fmt::format("expected {}x{}, got {}", camera.width, camera.height, size_text(image)));
 }
 
 template <>
 void expect_format<std::uint16_t>(const cv::Mat& image, const Intrinsics& camera) {
   if (image.cols == camera.width && image.rows == camera.height && image.type() == CV_16UC1) return;
-  throw Error(fmt::format("expected 16-bit one-channel {}x{}, got {}", camera.width, camera.height,
-                          format_text(image)));
+  throw Error(Error::input, fmt::format("expected 16-bit one-channel {}x{}, got {}", camera.width,
+                                        camera.height, format_text(image)));
 }
 
 void read_mask(const std::filesystem::path& file, const Intrinsics& camera, Mask& mask) {
   const cv::Mat image = decode_with(read_bytes(file), cv::IMREAD_UNCHANGED);
   if (image.cols != camera.width || image.rows != camera.height) {
-    throw Error(
-        fmt::format("expected {}x{}, got {}", camera.width, camera.height, size_text(image)));
+    throw Error(Error::input, fmt::format("expected {}x{}, got {}", camera.width, camera.height,
+                                          size_text(image)));
   }
   mask.resize(camera.width, camera.height, 0);
   cv::Mat target = as_mat(mask);

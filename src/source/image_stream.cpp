@@ -34,7 +34,8 @@ void ImageStream<Pixel>::check_first(const std::filesystem::path& list) {
     return std::filesystem::is_regular_file(folder_ / entry.file, ignored);
   });
   if (first == entries_.end()) {
-    throw Error(fmt::format("{}: none of its {} images exist, the first being {}", list.string(),
+    throw Error(Error::input,
+                fmt::format("{}: none of its {} images exist, the first being {}", list.string(),
                             entries_.size(), describe(entries_.front())));
   }
   const std::string name = (folder_ / describe(*first)).string();
@@ -45,12 +46,13 @@ void ImageStream<Pixel>::check_first(const std::filesystem::path& list) {
     // One bad file is its frame's fault. A video that fails at its start fails for all frames.
     if (!first->frame) return;
     const bool depth = video_content<Pixel> == VideoReader::Content::packets;
-    throw Error(name + ": " + error.what() + (depth ? ", expected a video of 16-bit PNGs" : ""));
+    throw Error(Error::input,
+                name + ": " + error.what() + (depth ? ", expected a video of 16-bit PNGs" : ""));
   }
   try {
     expect_format<Pixel>(image, camera_);
   } catch (const Error& error) {
-    throw Error(name + ": " + error.what());
+    throw Error(Error::input, name + ": " + error.what());
   }
 }
 
@@ -76,7 +78,7 @@ void ImageStream<Pixel>::read(std::size_t index, Image<Pixel>& image) {
     copy_from(decoded, image);
   } catch (const Error& error) {
     image.resize(0, 0);
-    throw Error(describe(entry) + ": " + error.what());
+    throw Error(Error::input, describe(entry) + ": " + error.what());
   }
 }
 

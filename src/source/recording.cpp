@@ -26,7 +26,8 @@ void expect_unique_names(const std::vector<StreamEntry>& entries,
     const std::string name = entry_name(entries[i], i);
     const auto [same, added] = lines.emplace(name, entries[i].line);
     if (added) continue;
-    throw Error(fmt::format("{}:{}: expected another name than '{}', which line {} has too",
+    throw Error(Error::input,
+                fmt::format("{}:{}: expected another name than '{}', which line {} has too",
                             list.string(), entries[i].line, name, same->second));
   }
 }
@@ -135,7 +136,7 @@ class RecordingSource final : public FrameSource {
 Recording load_recording(const std::filesystem::path& folder) {
   std::error_code ignored;
   if (!std::filesystem::is_directory(folder, ignored)) {
-    throw Error(folder.string() + ": expected a recording's folder");
+    throw Error(Error::input, folder.string() + ": expected a recording's folder");
   }
   return {folder, load_rig(folder / "rig.yaml"), load_scene(folder / "scene.yaml")};
 }

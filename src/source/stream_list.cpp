@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t max_list_bytes = 256 << 20;
 
 [[noreturn]] void fail(const std::filesystem::path& list, int line, const std::string& message) {
-  throw Error(fmt::format("{}:{}: {}", list.string(), line, message));
+  throw Error(Error::input, fmt::format("{}:{}: {}", list.string(), line, message));
 }
 
 std::string_view trim(std::string_view text) {
@@ -89,7 +89,8 @@ std::vector<StreamEntry> read_stream_list(std::istream& stream, const std::files
     entries.push_back(read_entry(content, line, file));
   }
   if (entries.empty() && empty == EmptyList::is_error) {
-    throw Error(file.string() + ": expected at least one line of \"timestamp filename\"");
+    throw Error(Error::input,
+                file.string() + ": expected at least one line of \"timestamp filename\"");
   }
   expect_increasing(entries, file);
   number_frames(entries);

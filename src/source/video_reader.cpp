@@ -11,7 +11,8 @@ namespace {
 
 cv::VideoCapture open(const std::filesystem::path& file, VideoReader::Content content) {
   std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored)) throw Error("there is no such file");
+  if (!std::filesystem::is_regular_file(file, ignored))
+    throw Error(Error::input, "there is no such file");
   // With OpenCV before 4.7, 16-bit pixels are only possible if we decode them.
   std::vector<int> parameters;
   if (content == VideoReader::Content::packets) parameters = {cv::CAP_PROP_FORMAT, -1};
@@ -20,7 +21,7 @@ cv::VideoCapture open(const std::filesystem::path& file, VideoReader::Content co
     capture.open(file.string(), cv::CAP_FFMPEG, parameters);
   } catch (const cv::Exception&) {
   }
-  if (!capture.isOpened()) throw Error("cannot be opened as a video");
+  if (!capture.isOpened()) throw Error(Error::input, "cannot be opened as a video");
   // As the sensor made it, without orientation.
   capture.set(cv::CAP_PROP_ORIENTATION_AUTO, 0);
   return capture;
@@ -34,13 +35,14 @@ VideoLength measure_video(const std::filesystem::path& file) {
     const cv::VideoCapture capture = open(file, VideoReader::Content::pictures);
     const double frames = capture.get(cv::CAP_PROP_FRAME_COUNT);
     const double frames_per_second = capture.get(cv::CAP_PROP_FPS);
-    if (!(frames >= 1 && frames <= max_frames)) throw Error("does not say how many frames it has");
+    if (!(frames >= 1 && frames <= max_frames))
+      throw Error(Error::input, "does not say how many frames it has");
     if (!(frames_per_second > 0 && std::isfinite(frames_per_second))) {
-      throw Error("does not say its frame rate");
+      throw Error(Error::input, "does not say its frame rate");
     }
     return {static_cast<int>(frames), frames_per_second};
   } catch (const Error& error) {
-    throw Error(file.string() + ": " + error.what());
+    throw Error(Error::input, file.string() + ": " + error.what());
   }
 }
 
@@ -58,11 +60,11 @@ const cv::Mat& VideoReader::read(int frame) {
     }
     if (!more || !capture_.retrieve(current_) || current_.empty()) {
       current_.release();
-      throw Error("cannot be decoded");
+      throw Error(Error::input, "cannot be decoded");
     }
   } catch (const cv::Exception&) {
     current_.release();
-    throw Error("cannot be decoded");
+    throw Error(Error::input, "cannot be decoded");
   }
   return current_;
 }

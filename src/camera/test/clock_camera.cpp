@@ -29,7 +29,8 @@ const bool registered = Registry<CameraSource>::add(
                     return std::make_unique<ClockCamera>(open_camera(uri.target, request));
                   },
               .list = {},
-              .help = "clock:CAMERA  another camera with the time drawn into its pictures"});
+              .help = "clock:CAMERA  another camera with the time drawn into its pictures",
+              .free_text = true});
 
 }  // namespace
 }  // namespace diminish

@@ -35,14 +35,14 @@ class FaultCamera : public CameraSource {
     static std::atomic<unsigned> openings = 0;
     const unsigned opening = openings++;
     random_.seed(static_cast<unsigned>(settings.number("seed", 1, 0, 1e9)) + opening);
-    if (faults_.unplug > 0 && opening % 3 == 1) settings.fail("unplugged");
+    if (faults_.unplug > 0 && opening % 3 == 1) settings.fail("unplugged", Error::device);
     camera_ = open_camera(uri, request);
   }
 
   Status read(CameraImage& image, std::chrono::milliseconds timeout) override {
     const Status status = camera_->read(image, timeout);
     if (status != Status::image) return status;
-    if (happens(faults_.unplug)) throw Error("unplugged");
+    if (happens(faults_.unplug)) throw Error(Error::device, "unplugged");
     if (happens(faults_.stall)) {
       std::this_thread::sleep_for(std::chrono::duration<double>(faults_.stall_s));
     }
@@ -92,7 +92,8 @@ const bool registered = Registry<CameraSource>::add(
            return std::make_unique<FaultCamera>(settings, uri.target.substr(end + 1), request);
          },
      .list = {},
-     .help = "faults:drop=0.1&stall=0.01;CAMERA  another camera, with faults, for trials"});
+     .help = "faults:drop=0.1&stall=0.01;CAMERA  another camera, with faults, for trials",
+     .free_text = true});
 
 }  // namespace
 }  // namespace diminish

@@ -69,26 +69,27 @@ struct Statistics {
 
 cv::Mat read_image(const fs::path& file, int mode) {
   cv::Mat image = cv::imread(file.string(), mode);
-  if (image.empty()) throw Error(file.string() + ": expected an image");
+  if (image.empty()) throw Error(Error::input, file.string() + ": expected an image");
   return image;
 }
 
 void add_image(const fs::path& file, Statistics& statistics) {
   const fs::path mask_file = file.parent_path() / (file.stem().string() + "_mask.png");
   if (!fs::exists(mask_file)) {
-    throw Error(mask_file.string() + ": expected the mask of " + file.filename().string() +
-                ", there is no such file");
+    throw Error(Error::input, mask_file.string() + ": expected the mask of " +
+                                  file.filename().string() + ", there is no such file");
   }
   const cv::Mat image = read_image(file, cv::IMREAD_COLOR);
   cv::Mat mask = read_image(mask_file, cv::IMREAD_GRAYSCALE);
   if (mask.size() != image.size()) {
-    throw Error(fmt::format("{}: expected {}'s size {} x {}, got {} x {}", mask_file.string(),
-                            file.filename().string(), image.cols, image.rows, mask.cols,
-                            mask.rows));
+    throw Error(Error::input, fmt::format("{}: expected {}'s size {} x {}, got {} x {}",
+                                          mask_file.string(), file.filename().string(), image.cols,
+                                          image.rows, mask.cols, mask.rows));
   }
   mask = mask > 127;
   const int area = cv::countNonZero(mask);
-  if (area == 0) throw Error(mask_file.string() + ": expected pixels of 255 on the object");
+  if (area == 0)
+    throw Error(Error::input, mask_file.string() + ": expected pixels of 255 on the object");
   statistics.smallest_area =
       std::min(statistics.smallest_area, area / static_cast<double>(image.total()));
 
@@ -119,7 +120,8 @@ std::vector<fs::path> training_images(const fs::path& folder) {
     if (image && !entry.path().stem().string().ends_with("_mask")) files.push_back(entry.path());
   }
   if (error || files.empty()) {
-    throw Error(folder.string() + ": expected training images NAME.jpg with NAME_mask.png");
+    throw Error(Error::input,
+                folder.string() + ": expected training images NAME.jpg with NAME_mask.png");
   }
   std::sort(files.begin(), files.end());
   return files;

@@ -32,11 +32,12 @@ StoredBoardImages::StoredBoardImages(const std::vector<std::filesystem::path>& f
     for (const auto& entry : std::filesystem::directory_iterator(path, ignored)) {
       if (is_image(entry.path())) files.push_back(entry.path());
     }
-    if (files.empty()) throw Error(path.string() + ": expected images in this folder");
+    if (files.empty())
+      throw Error(Error::input, path.string() + ": expected images in this folder");
     std::sort(files.begin(), files.end());
     for (const auto& file : files) entries_.push_back({0, file, std::nullopt, 0});
   }
-  if (entries_.empty()) throw Error("expected images of the board, or --recording");
+  if (entries_.empty()) throw Error(Error::input, "expected images of the board, or --recording");
 }
 
 StoredBoardImages::StoredBoardImages(const std::filesystem::path& recording,

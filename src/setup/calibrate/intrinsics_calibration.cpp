@@ -157,9 +157,9 @@ class Calibrator {
 
 IntrinsicsCalibration calibrate_intrinsics(const ViewCollection& views, LensModel model) {
   if (views.views().size() < least_views) {
-    throw Error(fmt::format(
-        "expected at least {} different views of the board, got {}: is --board what was printed?",
-        least_views, views.views().size()));
+    throw Error(Error::input, fmt::format("expected at least {} different views of the board, got "
+                                          "{}: is --board what was printed?",
+                                          least_views, views.views().size()));
   }
   return Calibrator(views, model).calibrate();
 }

@@ -29,7 +29,8 @@ bool LiveBoardImages::next() {
     const bool is_color = status == CameraSource::Status::image && image_.sensor == Sensor::color;
     if (is_color && image_.stamp_s > asked_s - newest_s) return true;
     if (!is_color && now_s - asked_s > longest_silence_s) {
-      throw Error(fmt::format("{}: no colour image for {} s", uri_, longest_silence_s));
+      throw Error(Error::device,
+                  fmt::format("{}: no colour image for {} s", uri_, longest_silence_s));
     }
   }
   return false;
@@ -40,7 +41,7 @@ std::string LiveBoardImages::name() const {
 }
 
 void LiveBoardImages::read(Image<Bgr>& image) {
-  if (!image_.fault.empty()) throw Error(image_.fault);
+  if (!image_.fault.empty()) throw Error(Error::input, image_.fault);
   std::swap(image, image_.color);
 }
 

@@ -50,7 +50,8 @@ RigCalibration::RigCalibration(const Rig& rig, const Scene& scene,
                                const std::optional<Board>& board) {
   const auto sizes = known_marker_sizes(scene);
   if (!board && sizes.empty()) {
-    throw Error("scene.yaml: expected a marker of known size (world_marker), or --board");
+    throw Error(Error::input,
+                "scene.yaml: expected a marker of known size (world_marker), or --board");
   }
   implementation_ = std::make_unique<Implementation>(Implementation{
       rig, Lens(rig.color), TargetFinder(scene.marker_dictionary, sizes, board), {}});
@@ -87,9 +88,11 @@ void RigCalibration::add(const FrameSet& frame) {
 DepthToColor RigCalibration::depth_to_color(std::size_t index) const {
   const Camera& camera = implementation_->cameras[index];
   if (camera.depth.size() == 0) {
-    throw Error(camera.rgbd.name +
-                ": expected markers, or the board, in its colour images, with depth measured on "
-                "them: there are none");
+    throw Error(
+        Error::input,
+        camera.rgbd.name +
+            ": expected markers, or the board, in its colour images, with depth measured on "
+            "them: there are none");
   }
   const DepthAlignment::Result solved = camera.depth.solve();
   DepthToColor result{solved.color_from_depth,
@@ -125,10 +128,10 @@ ColorFromRgbd RigCalibration::color_from_rgbd(std::size_t index, const RigidTran
   const Camera& camera = implementation_->cameras[index];
   const auto solved = camera.fixed.solve();
   if (!solved) {
-    throw Error(
-        fmt::format("{}: expected a marker of known size, or the board, that this camera "
-                    "and the colour camera see at the same time: there is none",
-                    camera.rgbd.name));
+    throw Error(Error::input,
+                fmt::format("{}: expected a marker of known size, or the board, that this camera "
+                            "and the colour camera see at the same time: there is none",
+                            camera.rgbd.name));
   }
   ColorFromRgbd result{
       solved->first_from_second * own, camera.fixed.size(), solved->agreeing,      solved->error_px,

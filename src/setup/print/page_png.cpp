@@ -74,7 +74,7 @@ std::vector<std::uint8_t> page_as_png(const Page& page) {
   for (const Page::Text& text : page.texts) draw_text(picture, text, scale);
   std::vector<std::uint8_t> png;
   if (!cv::imencode(".png", picture, png, {cv::IMWRITE_PNG_BILEVEL, 1})) {
-    throw Error("the sheet cannot be encoded as PNG");
+    throw Error(Error::internal, "the sheet cannot be encoded as PNG");
   }
   // After the signature (8 bytes) and the header chunk (25).
   const std::vector<std::uint8_t> chunk = physical_size_chunk(dots_per_metre);
