@@ -13,3 +13,11 @@ write_basic_package_version_file(diminish-config-version.cmake COMPATIBILITY Sam
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/diminish-config.cmake
               ${CMAKE_CURRENT_BINARY_DIR}/diminish-config-version.cmake
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/diminish)
+
+file(RELATIVE_PATH prefix_from_pc /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
+configure_file(cmake/diminish.pc.in diminish.pc @ONLY)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/diminish.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+if(DIMINISH_BUILD_TESTS)
+  add_test(NAME library_as_installed COMMAND ${PROJECT_SOURCE_DIR}/scripts/check-library ${PROJECT_BINARY_DIR})
+  set_tests_properties(library_as_installed PROPERTIES TIMEOUT 600)
+endif()

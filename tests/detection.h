@@ -48,8 +48,11 @@ struct Detection {
 inline std::unique_ptr<OccluderDetector> make_detector(
     const std::string& yaml, const Rig& rig, const std::filesystem::path& file = "s.yaml") {
   const Config config = Config::parse(yaml, file);
-  const OccluderSpec spec{config.at("name").text(), config.at("detector").text(), config};
-  return Registry<OccluderDetector>::get(spec.detector)(spec, rig);
+  const std::string detector = config.at("detector").text();
+  const OccluderDetector::Entry& entry = Registry<OccluderDetector>::get(detector);
+  const OccluderSpec spec{config.at("name").text(), detector, entry.read(config), config};
+  spec.settings->check(config, &rig);
+  return entry.make(spec, rig);
 }
 
 inline bool any_set(const Mask& mask) {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "diminish/live.h"
-#include "live/recording_writer.h"
-#include "live/virtual_camera.h"
+#include "diminish/recording_writer.h"
+#include "diminish/virtual_camera.h"
 
 namespace diminish {
 

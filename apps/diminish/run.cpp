@@ -10,9 +10,7 @@
 
 #include "commands.h"
 #include "diminish/diminish.h"
-#include "diminish/runner.h"
 #include "option_flags.h"
-#include "sink/result_writer.h"
 
 namespace diminish {
 namespace {
@@ -66,10 +64,10 @@ int RunCommand::execute() const {
   const std::string video_problem = writer.finish(stop_requested);
   if (!video_problem.empty()) fmt::print(stderr, "diminish: {}\n", video_problem);
 
-  fmt::print("{}\n", writer.statistics().table());
+  fmt::print("{}\n", writer.table());
   fmt::print("Written to {}\n", out.string());
   if (stop_requested) return interrupted;
-  return writer.statistics().faulty() > 0 ? some_frames_faulty : 0;
+  return writer.faulty_frames() > 0 ? some_frames_faulty : 0;
 }
 
 }  // namespace

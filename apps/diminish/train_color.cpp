@@ -8,6 +8,7 @@
 #include "detect/color_blob/color_model.h"
 #include "diminish/error.h"
 #include "diminish/frame_source.h"
+#include "diminish/occluder_settings.h"
 
 namespace diminish {
 namespace {
@@ -27,9 +28,10 @@ void train_all(const std::filesystem::path& folder) {
   const Recording recording = load_recording(folder);
   bool any = false;
   for (const OccluderSpec& occluder : recording.scene.occluders) {
-    if (occluder.detector != "color_blob") continue;
+    const auto* const settings = dynamic_cast<const ColorBlobSettings*>(occluder.settings.get());
+    if (settings == nullptr) continue;
     any = true;
-    const std::filesystem::path training = occluder.config.at("training").path();
+    const std::filesystem::path& training = settings->training;
     train(training_folder(training, "color"), occluder.name + " in color");
     for (const RgbdCamera& camera : recording.rig.rgbd) {
       const std::filesystem::path own = training_folder(training, camera.name);

@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 
+#include "diminish/error.h"
 #include "diminish/export.h"
 #include "diminish/frame_set.h"
 #include "diminish/occlusion_masks.h"
@@ -26,9 +27,15 @@ struct Observation {
 class DIMINISH_EXPORT OccluderDetector {
  public:
   static constexpr const char* kind = "detector";
-  /// `spec.config` holds the detector's own settings. Throws Error on wrong ones.
-  using Factory =
-      std::function<std::unique_ptr<OccluderDetector>(const OccluderSpec& spec, const Rig& rig)>;
+  struct Entry {
+    /// Reads the detector's settings from its object's place in scene.yaml, which also has the keys
+    /// `name` and `detector`. Throws Error, naming file and key. What the settings themselves
+    /// check, it need not.
+    std::function<std::shared_ptr<const OccluderSettings>(const Config& place)> read;
+    /// Makes the detector. Throws Error on settings that cannot work.
+    std::function<std::unique_ptr<OccluderDetector>(const OccluderSpec& spec, const Rig& rig)> make;
+  };
+  using Factory = Entry;
 
   virtual ~OccluderDetector() = default;
 
@@ -39,5 +46,13 @@ class DIMINISH_EXPORT OccluderDetector {
   /// sizes. Cameras without images in this frame are left alone too.
   virtual OccluderReport detect(const Observation& observation, OcclusionMasks& masks) = 0;
 };
+
+/// The object's settings as its detector's own type. Throws Error if they are of another.
+template <class Settings>
+const Settings& settings_of(const OccluderSpec& spec) {
+  const auto* const settings = dynamic_cast<const Settings*>(spec.settings.get());
+  if (settings != nullptr) return *settings;
+  throw Error(spec.name + ": expected the settings of the detector " + spec.detector);
+}
 
 }  // namespace diminish

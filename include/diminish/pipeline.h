@@ -16,6 +16,11 @@ namespace diminish {
 /// The whole frame: a FrameSet in, a DiminishedFrame out. Nothing of a frame influences the next;
 /// what is kept between frames is memory and what follows from the configuration. One object may
 /// be used by one thread at a time.
+///
+/// Threads are the caller's: `process` shares its work among those of the oneTBB arena that it is
+/// called in (oneapi::tbb::task_arena), and starts none itself. Outside any arena that is one of
+/// all cores, within the process's oneapi::tbb::global_control. The result does not depend on it.
+/// What a frame uses of OpenCV runs in the calling thread.
 class DIMINISH_EXPORT Pipeline {
  public:
   /// Throws Error on configurations that cannot work.

@@ -13,7 +13,8 @@ namespace diminish {
 
 /// How a run uses the machine.
 struct RunnerOptions {
-  /// Frames in work at a time, each by one thread. The output does not depend on it.
+  /// Frames in work at a time, each by one thread: those of a oneTBB arena that `run` makes for
+  /// itself, the calling thread being one of them. The output does not depend on it.
   int threads = 1;
   /// Whether the sink looks at DiminishedFrame::reconstruction (Pipeline::want_reconstruction).
   bool reconstructions = true;

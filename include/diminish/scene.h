@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,17 +11,37 @@
 
 namespace diminish {
 
+struct Rig;
+
 /// A square fiducial. Its frame: origin at the centre, x right, y up, z out of the marker.
 struct MarkerSpec {
   int id = 0;
   double size_m = 0;  ///< side of the black square
 };
 
-/// An object to remove: which detector finds it, and that detector's own settings.
+/// What a detector must know of its object. Each detector has a type of its own
+/// (occluder_settings.h).
+class DIMINISH_EXPORT OccluderSettings {
+ public:
+  virtual ~OccluderSettings() = default;
+
+  /// Throws Error on settings that cannot work, by `place.find(KEY).fail(..)`: of a file, the place
+  /// is the occluder's in it. rig: null where it is not known.
+  virtual void check(const Config& /*place*/, const Rig* /*rig*/) const {}
+  /// The marker on the object, if there is one.
+  virtual std::optional<MarkerSpec> marker_on_it() const { return std::nullopt; }
+  /// Whether the pose of the world is needed to find the object.
+  virtual bool needs_world() const { return false; }
+  /// Files and folders that a copy of the scene needs beside it.
+  virtual std::vector<std::filesystem::path> files() const { return {}; }
+};
+
+/// An object to remove.
 struct OccluderSpec {
   std::string name;
-  std::string detector;
-  Config config;
+  std::string detector;  ///< the name of a registered `OccluderDetector`
+  std::shared_ptr<const OccluderSettings> settings;  ///< of the detector's own type
+  Config place = {};  ///< where it was read, for messages; nothing if it was not
 };
 
 /// What is in front of the cameras: a recording's `scene.yaml`.

@@ -5,6 +5,7 @@
 #include "detect/silhouette/disc_dilation.h"
 #include "detect/silhouette/silhouette.h"
 #include "diminish/occluder_detector.h"
+#include "diminish/occluder_settings.h"
 #include "geometry/triangle_mesh.h"
 
 namespace diminish {
@@ -15,13 +16,11 @@ class BoxOccluder : public OccluderDetector {
  public:
   BoxOccluder(const OccluderSpec& spec, const Rig& rig)
       : name_(spec.name), rig_(rig), color_drawer_(Lens(rig.color)) {
-    const Config& config = spec.config;
-    config.expect_keys({"name", "detector", "frame", "min", "max"});
-    read_frame(config.at("frame"));
-    min_ = config.at("min").vector3();
-    max_ = config.at("max").vector3();
-    if ((min_.array() >= max_.array()).any()) {
-      config.at("max").fail("expected three numbers, each above min's");
+    const auto& settings = settings_of<BoxSettings>(spec);
+    min_ = settings.min_m;
+    max_ = settings.max_m;
+    for (std::size_t k = 0; k < rig.rgbd.size(); ++k) {
+      if (rig.rgbd[k].name == settings.frame) frame_camera_ = k;
     }
     for (const RgbdCamera& camera : rig.rgbd) {
       rgbd_drawers_.emplace_back(Lens(camera.color));
@@ -66,20 +65,6 @@ class BoxOccluder : public OccluderDetector {
   }
 
  private:
-  void read_frame(const Config& config) {
-    const std::string frame = config.text();
-    if (frame == "world") return;
-    std::string known = "world";
-    for (std::size_t k = 0; k < rig_.rgbd.size(); ++k) {
-      if (rig_.rgbd[k].name == frame) {
-        frame_camera_ = k;
-        return;
-      }
-      known += ", " + rig_.rgbd[k].name;
-    }
-    config.fail("expected one of " + known + ", got '" + frame + "'");
-  }
-
   /// box_from_depth of camera k.
   std::optional<RigidTransform> find_box(std::size_t k, const Poses& poses) const {
     if (!frame_camera_) {
@@ -200,10 +185,19 @@ class BoxOccluder : public OccluderDetector {
   DiscDilation dilation_;
 };
 
-const bool registered =
-    Registry<OccluderDetector>::add("box", [](const OccluderSpec& spec, const Rig& rig) {
-      return std::make_unique<BoxOccluder>(spec, rig);
-    });
+std::shared_ptr<const OccluderSettings> read_settings(const Config& place) {
+  place.expect_keys({"name", "detector", "frame", "min", "max"});
+  auto settings = std::make_shared<BoxSettings>();
+  settings->frame = place.at("frame").text();
+  settings->min_m = place.at("min").vector3();
+  settings->max_m = place.at("max").vector3();
+  return settings;
+}
+
+const bool registered = Registry<OccluderDetector>::add(
+    "box", {.read = read_settings, .make = [](const OccluderSpec& spec, const Rig& rig) {
+              return std::make_unique<BoxOccluder>(spec, rig);
+            }});
 
 }  // namespace
 }  // namespace diminish

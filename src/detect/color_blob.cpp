@@ -6,6 +6,7 @@
 
 #include "detect/color_blob/color_blob_finder.h"
 #include "diminish/occluder_detector.h"
+#include "diminish/occluder_settings.h"
 
 namespace diminish {
 namespace {
@@ -13,12 +14,10 @@ namespace {
 class ColorBlobDetector : public OccluderDetector {
  public:
   ColorBlobDetector(const OccluderSpec& spec, const Rig& rig) : name_(spec.name) {
-    spec.config.expect_keys({"name", "detector", "training", "shape"});
-    const std::filesystem::path training = spec.config.at("training").path();
-    const Config shape = spec.config.find("shape");
-    const bool round = shape.exists() && shape.choice({"circle", "any"}) == "circle";
+    const auto& settings = settings_of<ColorBlobSettings>(spec);
+    const bool round = settings.shape == ColorBlobSettings::Shape::circle;
     const auto make = [&](const std::string& camera) {
-      return ColorBlobFinder(load_color_model(training_folder(training, camera)), round);
+      return ColorBlobFinder(load_color_model(training_folder(settings.training, camera)), round);
     };
     color_.emplace(make("color"));
     for (const RgbdCamera& camera : rig.rgbd) rgbd_.push_back(make(camera.name));
@@ -53,10 +52,21 @@ class ColorBlobDetector : public OccluderDetector {
   std::vector<ColorBlobFinder> rgbd_;
 };
 
-const bool registered =
-    Registry<OccluderDetector>::add("color_blob", [](const OccluderSpec& spec, const Rig& rig) {
-      return std::make_unique<ColorBlobDetector>(spec, rig);
-    });
+std::shared_ptr<const OccluderSettings> read_settings(const Config& place) {
+  place.expect_keys({"name", "detector", "training", "shape"});
+  auto settings = std::make_shared<ColorBlobSettings>();
+  settings->training = place.at("training").path();
+  const Config shape = place.find("shape");
+  if (shape.exists() && shape.choice({"circle", "any"}) == "circle") {
+    settings->shape = ColorBlobSettings::Shape::circle;
+  }
+  return settings;
+}
+
+const bool registered = Registry<OccluderDetector>::add(
+    "color_blob", {.read = read_settings, .make = [](const OccluderSpec& spec, const Rig& rig) {
+                     return std::make_unique<ColorBlobDetector>(spec, rig);
+                   }});
 
 }  // namespace
 }  // namespace diminish

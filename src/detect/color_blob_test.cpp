@@ -19,7 +19,7 @@ class ColorBlobOnBall : public ::testing::Test {
   const Recording recording = load_recording(recordings / "ball");
   const OccluderSpec& spec = recording.scene.occluders.at(0);
   const std::unique_ptr<OccluderDetector> detector =
-      Registry<OccluderDetector>::get("color_blob")(spec, recording.rig);
+      Registry<OccluderDetector>::get("color_blob").make(spec, recording.rig);
   Detection detection{recording.rig};
 };
 

@@ -1,10 +1,10 @@
-#include <Eigen/QR>
 #include <algorithm>
 #include <vector>
 
 #include "detect/marker_views.h"
 #include "detect/shape_detector.h"
 #include "detect/silhouette/silhouette.h"
+#include "diminish/occluder_settings.h"
 #include "geometry/triangle_mesh.h"
 #include "pose/known_markers.h"
 #include "pose/marker_pose.h"
@@ -12,34 +12,23 @@
 namespace diminish {
 namespace {
 
-std::vector<Eigen::Vector3d> read_vertices(const Config& config) {
-  std::vector<Eigen::Vector3d> vertices;
-  for (const Config& item : config.items()) vertices.push_back(item.vector3());
-  if (vertices.size() < 4) config.fail("expected at least 4 points");
-  Eigen::Matrix3Xd edges(3, vertices.size());
-  for (std::size_t i = 0; i < vertices.size(); ++i) edges.col(i) = vertices[i] - vertices[0];
-  if (edges.colPivHouseholderQr().rank() < 2) {
-    config.fail("expected points that are not all on one line");
-  }
-  return vertices;
+TriangleMesh shape_of(const MarkerSettings& settings) {
+  if (!settings.mesh.empty()) return load_obj(settings.mesh);
+  return {settings.vertices, settings.triangles};
 }
 
 /// An object with a marker on it, whose shape in the marker's frame is known.
 class MarkerOccluder : public ShapeDetector {
  public:
   MarkerOccluder(const OccluderSpec& spec, const Rig& rig)
-      : name_(spec.name), rig_(rig), color_lens_(rig.color), in_color_(color_lens_) {
-    const Config& config = spec.config;
-    config.expect_keys({"name", "detector", "marker", "vertices", "mesh"});
-    marker_ = read_marker(config.at("marker"));
-    const Config vertices = config.find("vertices");
-    const Config mesh = config.find("mesh");
-    if (vertices.exists() == mesh.exists()) config.fail("expected either vertices or mesh");
-    if (vertices.exists()) {
-      shape_.vertices = read_vertices(vertices);
-    } else {
-      shape_ = load_obj(mesh.path());
-    }
+      : MarkerOccluder(spec.name, settings_of<MarkerSettings>(spec), rig) {}
+  MarkerOccluder(const std::string& name, const MarkerSettings& settings, const Rig& rig)
+      : name_(name),
+        rig_(rig),
+        marker_(settings.marker),
+        shape_(shape_of(settings)),
+        color_lens_(rig.color),
+        in_color_(color_lens_) {
     for (const RgbdCamera& camera : rig.rgbd) {
       rgbd_color_lenses_.emplace_back(camera.color);
       in_rgbd_color_.emplace_back(rgbd_color_lenses_.back());
@@ -130,10 +119,23 @@ class MarkerOccluder : public ShapeDetector {
   std::vector<std::optional<RigidTransform>> camera_from_marker_;  ///< of each view
 };
 
-const bool registered =
-    Registry<OccluderDetector>::add("marker", [](const OccluderSpec& spec, const Rig& rig) {
-      return std::make_unique<MarkerOccluder>(spec, rig);
-    });
+std::shared_ptr<const OccluderSettings> read_settings(const Config& place) {
+  place.expect_keys({"name", "detector", "marker", "vertices", "mesh"});
+  auto settings = std::make_shared<MarkerSettings>();
+  settings->marker = read_marker(place.at("marker"));
+  const Config vertices = place.find("vertices");
+  if (vertices.exists()) {
+    for (const Config& item : vertices.items()) settings->vertices.push_back(item.vector3());
+    if (settings->vertices.empty()) vertices.fail("expected at least 4 points");
+  }
+  if (const Config mesh = place.find("mesh"); mesh.exists()) settings->mesh = mesh.path();
+  return settings;
+}
+
+const bool registered = Registry<OccluderDetector>::add(
+    "marker", {.read = read_settings, .make = [](const OccluderSpec& spec, const Rig& rig) {
+                 return std::make_unique<MarkerOccluder>(spec, rig);
+               }});
 
 }  // namespace
 }  // namespace diminish

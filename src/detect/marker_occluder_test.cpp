@@ -43,7 +43,7 @@ TEST_P(MarkerOccluderOnRecordings, DrawsTheTruth) {
   const Recording recording = load_recording(recordings / name);
   const TruthPoses truth(recording.folder);
   const OccluderSpec& spec = recording.scene.occluders.at(0);
-  const auto detector = Registry<OccluderDetector>::get(spec.detector)(spec, recording.rig);
+  const auto detector = Registry<OccluderDetector>::get(spec.detector).make(spec, recording.rig);
   EXPECT_TRUE(detector->needs_markers());
   Detection detection(recording.rig);
   const RgbdCamera& first = recording.rig.rgbd[0];

@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "diminish/occluder_detector.h"
-#include "source/mask_folders.h"
+#include "diminish/occluder_settings.h"
 
 namespace diminish {
 namespace {
@@ -21,8 +21,8 @@ bool add(const Mask& given, Mask& mask) {
 /// An object whose masks another program made; the frame source reads them.
 class MaskOccluder : public OccluderDetector {
  public:
-  MaskOccluder(const OccluderSpec& spec, const Rig& rig) : name_(spec.name) {
-    parse_mask_folders(spec, rig);
+  explicit MaskOccluder(const OccluderSpec& spec) : name_(spec.name) {
+    settings_of<MaskSettings>(spec);
   }
 
   OccluderReport detect(const Observation& observation, OcclusionMasks& masks) override {
@@ -47,10 +47,21 @@ class MaskOccluder : public OccluderDetector {
   std::string name_;
 };
 
-const bool registered =
-    Registry<OccluderDetector>::add("mask", [](const OccluderSpec& spec, const Rig& rig) {
-      return std::make_unique<MaskOccluder>(spec, rig);
-    });
+/// Which keys are cameras' names, the rig tells (MaskSettings::check).
+std::shared_ptr<const OccluderSettings> read_settings(const Config& place) {
+  auto settings = std::make_shared<MaskSettings>();
+  settings->color = place.at("color").path();
+  for (const std::string& key : place.keys()) {
+    if (key == "name" || key == "detector" || key == "color") continue;
+    settings->rgbd[key] = place.at(key).path();
+  }
+  return settings;
+}
+
+const bool registered = Registry<OccluderDetector>::add(
+    "mask", {.read = read_settings, .make = [](const OccluderSpec& spec, const Rig&) {
+               return std::make_unique<MaskOccluder>(spec);
+             }});
 
 }  // namespace
 }  // namespace diminish

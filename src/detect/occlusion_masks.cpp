@@ -18,11 +18,7 @@ int depth_margin_px(const RgbdCamera& camera, int margin_px) {
 OccluderStage::OccluderStage(const Rig& rig, const Scene& scene) : rig_(rig) {
   using Detectors = Registry<OccluderDetector>;
   for (const OccluderSpec& spec : scene.occluders) {
-    if (!Detectors::contains(spec.detector)) {
-      spec.config.at("detector")
-          .fail("expected one of " + Detectors::known() + ", got '" + spec.detector + "'");
-    }
-    detectors_.push_back(Detectors::get(spec.detector)(spec, rig));
+    detectors_.push_back(Detectors::get(spec.detector).make(spec, rig));
     names_.push_back(spec.name);
   }
   drawings_.resize(1 + 2 * rig.rgbd.size());

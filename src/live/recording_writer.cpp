@@ -1,10 +1,17 @@
-#include "live/recording_writer.h"
+#include "diminish/recording_writer.h"
 
 #include <fmt/format.h>
 
+#include <condition_variable>
+#include <deque>
+#include <fstream>
+#include <mutex>
 #include <opencv2/imgcodecs.hpp>
+#include <set>
 #include <system_error>
+#include <thread>
 #include <type_traits>
+#include <vector>
 
 #include "core/mat.h"
 #include "diminish/error.h"
@@ -13,6 +20,7 @@
 namespace diminish {
 namespace {
 
+constexpr std::size_t most_waiting = 8;
 constexpr int jpeg_quality = 95;
 /// Half the size of the raw image, in a third of the time of level 6.
 constexpr int png_compression = 1;
@@ -35,34 +43,66 @@ void copy_to(const std::filesystem::path& from, const std::filesystem::path& to)
 }
 
 /// Copies a file or folder that scene.yaml names to the same place beside the new scene.yaml.
-void copy_named(const Config& name, const std::filesystem::path& folder) {
-  const std::filesystem::path relative = std::filesystem::path(name.text()).lexically_normal();
-  if (relative.is_absolute() || *relative.begin() == "..") {
-    name.fail("expected a path inside the file's folder, so that a recording can hold it");
+void copy_named(const std::filesystem::path& named, const std::filesystem::path& scene_file,
+                const std::filesystem::path& folder) {
+  const std::filesystem::path relative =
+      named.lexically_normal().lexically_relative(scene_file.parent_path().lexically_normal());
+  if (relative.empty() || *relative.begin() == "..") {
+    throw Error(scene_file.string() + ": " + named.string() +
+                ": expected a path inside the file's folder, so that a recording can hold it");
   }
-  copy_to(name.path(), folder / relative);
+  copy_to(named, folder / relative);
 }
+
+/// A sensor's folder and list.
+struct Stream {
+  std::string folder;  ///< relative: "rgbd0/depth"
+  std::ofstream list;
+  double last_stamp_s = -1;
+  std::size_t images = 0;
+};
 
 }  // namespace
 
-RecordingWriter::RecordingWriter(std::filesystem::path folder,
-                                 const std::filesystem::path& rig_file, const Rig& rig,
-                                 const std::filesystem::path& scene_file, const Scene& scene)
+struct RecordingWriter::Implementation {
+  Implementation(std::filesystem::path folder, const std::filesystem::path& rig_file,
+                 const Rig& rig, const std::filesystem::path& scene_file, const Scene& scene);
+
+  Stream make_stream(const std::string& list, const std::string& folder) const;
+  void offer(std::shared_ptr<const LiveFrame> frame);
+  void finish();
+  void work();
+  void write(const LiveFrame& frame);
+  template <class Pixel>
+  void write_image(Stream& stream, const Image<Pixel>& image, double stamp_s);
+
+  std::filesystem::path folder_;
+  Stream color_;
+  std::vector<Stream> rgbd_color_, rgbd_depth_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<std::shared_ptr<const LiveFrame>> waiting_;
+  RecordingStatus status_;
+  bool ending_ = false;
+  std::vector<std::uint8_t> bytes_;
+  std::thread thread_;
+};
+
+RecordingWriter::Implementation::Implementation(std::filesystem::path folder,
+                                                const std::filesystem::path& rig_file,
+                                                const Rig& rig,
+                                                const std::filesystem::path& scene_file,
+                                                const Scene& scene)
     : folder_(std::move(folder)) {
   make_folder(folder_);
   copy_to(rig_file, folder_ / "rig.yaml");
   copy_to(scene_file, folder_ / "scene.yaml");
-  std::vector<std::string> copied;
+  std::set<std::filesystem::path> named;
   for (const OccluderSpec& occluder : scene.occluders) {
-    for (const char* key : {"mesh", "training"}) {
-      const Config name = occluder.config.find(key);
-      if (!name.exists() || std::find(copied.begin(), copied.end(), name.text()) != copied.end()) {
-        continue;
-      }
-      copy_named(name, folder_);
-      copied.push_back(name.text());
-    }
+    if (!occluder.settings) continue;
+    for (const std::filesystem::path& path : occluder.settings->files()) named.insert(path);
   }
+  for (const std::filesystem::path& path : named) copy_named(path, scene_file, folder_);
   color_ = make_stream("color", "color");
   for (const RgbdCamera& camera : rig.rgbd) {
     rgbd_color_.push_back(make_stream(camera.name + "_color", camera.name + "/color"));
@@ -73,11 +113,7 @@ RecordingWriter::RecordingWriter(std::filesystem::path folder,
   thread_ = std::thread([this] { work(); });
 }
 
-RecordingWriter::~RecordingWriter() {
-  finish();
-}
-
-void RecordingWriter::finish() {
+void RecordingWriter::Implementation::finish() {
   {
     const std::lock_guard lock(mutex_);
     ending_ = true;
@@ -86,7 +122,7 @@ void RecordingWriter::finish() {
   if (thread_.joinable()) thread_.join();
 }
 
-void RecordingWriter::offer(std::shared_ptr<const LiveFrame> frame) {
+void RecordingWriter::Implementation::offer(std::shared_ptr<const LiveFrame> frame) {
   {
     const std::lock_guard lock(mutex_);
     if (ending_ || !status_.active) return;
@@ -99,13 +135,8 @@ void RecordingWriter::offer(std::shared_ptr<const LiveFrame> frame) {
   changed_.notify_all();
 }
 
-RecordingStatus RecordingWriter::status() const {
-  const std::lock_guard lock(mutex_);
-  return status_;
-}
-
-RecordingWriter::Stream RecordingWriter::make_stream(const std::string& list,
-                                                     const std::string& folder) const {
+Stream RecordingWriter::Implementation::make_stream(const std::string& list,
+                                                    const std::string& folder) const {
   std::error_code error;
   std::filesystem::create_directories(folder_ / folder, error);
   if (error)
@@ -119,7 +150,7 @@ RecordingWriter::Stream RecordingWriter::make_stream(const std::string& list,
   return stream;
 }
 
-void RecordingWriter::work() {
+void RecordingWriter::Implementation::work() {
   while (true) {
     std::shared_ptr<const LiveFrame> frame;
     {
@@ -148,7 +179,7 @@ void RecordingWriter::work() {
   status_.active = false;
 }
 
-void RecordingWriter::write(const LiveFrame& frame) {
+void RecordingWriter::Implementation::write(const LiveFrame& frame) {
   const FrameSet& input = frame.input;
   for (std::size_t k = 0; k < input.rgbd.size(); ++k) {
     const RgbdFrame& rgbd = input.rgbd[k];
@@ -160,7 +191,8 @@ void RecordingWriter::write(const LiveFrame& frame) {
 }
 
 template <class Pixel>
-void RecordingWriter::write_image(Stream& stream, const Image<Pixel>& image, double stamp_s) {
+void RecordingWriter::Implementation::write_image(Stream& stream, const Image<Pixel>& image,
+                                                  double stamp_s) {
   // Two frames may share an RGB-D image, and the timestamps in a list must increase.
   if (stamp_s <= stream.last_stamp_s) return;
   constexpr bool is_color = std::is_same_v<Pixel, Bgr>;
@@ -178,6 +210,29 @@ void RecordingWriter::write_image(Stream& stream, const Image<Pixel>& image, dou
     throw Error(Error::io, (folder_ / stream.folder).string() + ": its list cannot be written");
   stream.last_stamp_s = stamp_s;
   ++stream.images;
+}
+
+RecordingWriter::RecordingWriter(std::filesystem::path folder,
+                                 const std::filesystem::path& rig_file, const Rig& rig,
+                                 const std::filesystem::path& scene_file, const Scene& scene)
+    : implementation_(
+          std::make_unique<Implementation>(std::move(folder), rig_file, rig, scene_file, scene)) {}
+
+RecordingWriter::~RecordingWriter() {
+  finish();
+}
+
+void RecordingWriter::offer(std::shared_ptr<const LiveFrame> frame) {
+  implementation_->offer(std::move(frame));
+}
+
+RecordingStatus RecordingWriter::status() const {
+  const std::lock_guard lock(implementation_->mutex_);
+  return implementation_->status_;
+}
+
+void RecordingWriter::finish() {
+  implementation_->finish();
 }
 
 }  // namespace diminish

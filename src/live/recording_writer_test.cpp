@@ -1,4 +1,4 @@
-#include "live/recording_writer.h"
+#include "diminish/recording_writer.h"
 
 #include <gmock/gmock.h>
 

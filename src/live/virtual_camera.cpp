@@ -1,6 +1,8 @@
-#include "live/virtual_camera.h"
+#include "diminish/virtual_camera.h"
 
+#include <atomic>
 #include <opencv2/videoio.hpp>
+#include <thread>
 
 #include "core/mat.h"
 #include "diminish/error.h"
@@ -17,35 +19,38 @@ std::string pipeline_to(const std::string& target) {
 
 }  // namespace
 
-struct VirtualCamera::Writer {
+struct VirtualCamera::Implementation {
   cv::VideoWriter video;
+  std::atomic<bool> stopped = false;
+  std::thread thread;
 };
 
 VirtualCamera::VirtualCamera(const LiveSession& session, const std::string& target,
                              double frames_per_second)
-    : writer_(std::make_unique<Writer>()) {
+    : implementation_(std::make_unique<Implementation>()) {
+  Implementation& self = *implementation_;
   const Intrinsics& color = session.rig().color;
-  if (!writer_->video.open(pipeline_to(target), cv::CAP_GSTREAMER, 0, frames_per_second,
-                           cv::Size(color.width, color.height))) {
+  if (!self.video.open(pipeline_to(target), cv::CAP_GSTREAMER, 0, frames_per_second,
+                       cv::Size(color.width, color.height))) {
     throw Error(Error::device,
                 target + ": cannot be opened for writing video; is v4l2loopback loaded?");
   }
-  thread_ = std::thread([this, &session] {
+  self.thread = std::thread([&self, &session] {
     constexpr std::chrono::milliseconds patience{100};
     std::size_t number = 0;
-    while (!stopped_) {
+    while (!self.stopped) {
       const auto frame = session.wait_for_frame(number, patience);
       if (!frame) continue;
       number = frame->number;
-      writer_->video.write(as_mat(frame->result.picture));
+      self.video.write(as_mat(frame->result.picture));
     }
-    writer_->video.release();
+    self.video.release();
   });
 }
 
 VirtualCamera::~VirtualCamera() {
-  stopped_ = true;
-  thread_.join();
+  implementation_->stopped = true;
+  implementation_->thread.join();
 }
 
 }  // namespace diminish

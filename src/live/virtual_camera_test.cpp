@@ -1,4 +1,4 @@
-#include "live/virtual_camera.h"
+#include "diminish/virtual_camera.h"
 
 #include <gmock/gmock.h>
 

@@ -7,6 +7,7 @@
 #include "composite/compositor.h"
 #include "depth/depth_stage.h"
 #include "detect/occlusion_masks.h"
+#include "diminish/validate.h"
 #include "pipeline/backend.h"
 #include "pipeline/frame_check.h"
 #include "pipeline/frame_texture.h"
@@ -132,8 +133,10 @@ struct Pipeline::Implementation {
   FrameTexture texture;
 };
 
-Pipeline::Pipeline(const Rig& rig, const Scene& scene, const Options& options)
-    : implementation_(std::make_unique<Implementation>(rig, scene)) {
+Pipeline::Pipeline(const Rig& rig, const Scene& scene, const Options& options) {
+  validate(rig);
+  validate(scene, rig);
+  implementation_ = std::make_unique<Implementation>(rig, scene);
   set_options(options);
 }
 Pipeline::~Pipeline() = default;

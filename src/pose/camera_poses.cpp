@@ -3,10 +3,6 @@
 namespace diminish {
 
 CameraPoses::CameraPoses(const Rig& rig, const Scene& scene) : rgbd_count_(rig.rgbd.size()) {
-  if (!Registry<PoseSource>::contains(rig.pose_source)) {
-    rig.pose.at("source").fail("expected one of " + Registry<PoseSource>::known() + ", got '" +
-                               rig.pose_source + "'");
-  }
   source_ = Registry<PoseSource>::get(rig.pose_source)(rig, scene);
 }
 

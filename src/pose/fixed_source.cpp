@@ -29,8 +29,7 @@ class FixedSource : public PoseSource {
     world_needed_ = world_marker_.size_m > 0 &&
                     std::any_of(scene.occluders.begin(), scene.occluders.end(),
                                 [](const OccluderSpec& occluder) {
-                                  const Config frame = occluder.config.find("frame");
-                                  return frame.exists() && frame.text() == "world";
+                                  return occluder.settings && occluder.settings->needs_world();
                                 });
   }
 

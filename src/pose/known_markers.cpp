@@ -14,10 +14,8 @@ std::map<int, double> known_marker_sizes(const Scene& scene) {
   std::map<int, double> sizes;
   if (scene.world_marker.size_m > 0) sizes[scene.world_marker.id] = scene.world_marker.size_m;
   for (const OccluderSpec& occluder : scene.occluders) {
-    const Config marker = occluder.config.find("marker");
-    if (!marker.exists()) continue;
-    const MarkerSpec spec = read_marker(marker);
-    sizes[spec.id] = spec.size_m;
+    if (!occluder.settings) continue;
+    if (const auto marker = occluder.settings->marker_on_it()) sizes[marker->id] = marker->size_m;
   }
   return sizes;
 }

@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "diminish/error.h"
-#include "live/recording_writer.h"
+#include "diminish/recording_writer.h"
 #include "page_files.h"
 #include "serve/access.h"
 #include "serve/picture_encoder.h"

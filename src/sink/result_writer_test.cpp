@@ -1,4 +1,4 @@
-#include "sink/result_writer.h"
+#include "diminish/result_writer.h"
 
 #include <gmock/gmock.h>
 

@@ -2,16 +2,18 @@
 
 #include <system_error>
 
+#include "core/text.h"
 #include "diminish/error.h"
+#include "diminish/occluder_settings.h"
 #include "source/image_file.h"
 
 namespace diminish {
 namespace {
 
-void expect_folder(const Config& config) {
+void expect_folder(const std::filesystem::path& folder, const Config& place) {
   std::error_code ignored;
-  if (std::filesystem::is_directory(config.path(), ignored)) return;
-  config.fail("expected a folder, got '" + config.text() + "'");
+  if (std::filesystem::is_directory(folder, ignored)) return;
+  place.fail("expected a folder, got '" + printable(folder.string()) + "'");
 }
 
 void read_or_report(const std::filesystem::path& file, const Intrinsics& camera, Mask& mask,
@@ -26,27 +28,18 @@ void read_or_report(const std::filesystem::path& file, const Intrinsics& camera,
 
 }  // namespace
 
-MaskFolders parse_mask_folders(const OccluderSpec& spec, const Rig& rig) {
-  std::vector<std::string> known = {"name", "detector", "color"};
-  for (const RgbdCamera& camera : rig.rgbd) known.push_back(camera.name);
-  spec.config.expect_keys(known);
-  MaskFolders folders{spec.name, spec.config.at("color").path(), {}};
-  for (const RgbdCamera& camera : rig.rgbd) {
-    const Config folder = spec.config.find(camera.name);
-    folders.rgbd.push_back(folder.exists() ? folder.path() : std::filesystem::path());
-  }
-  return folders;
-}
-
 std::vector<MaskFolders> find_mask_folders(const Scene& scene, const Rig& rig) {
   std::vector<MaskFolders> all;
   for (const OccluderSpec& spec : scene.occluders) {
-    if (spec.detector != "mask") continue;
-    all.push_back(parse_mask_folders(spec, rig));
-    expect_folder(spec.config.at("color"));
+    const auto* const settings = dynamic_cast<const MaskSettings*>(spec.settings.get());
+    if (settings == nullptr || settings->color.empty()) continue;
+    expect_folder(settings->color, spec.place.find("color"));
+    MaskFolders& folders = all.emplace_back(MaskFolders{spec.name, settings->color, {}});
     for (const RgbdCamera& camera : rig.rgbd) {
-      const Config folder = spec.config.find(camera.name);
-      if (folder.exists()) expect_folder(folder);
+      const auto given = settings->rgbd.find(camera.name);
+      const bool is_given = given != settings->rgbd.end();
+      if (is_given) expect_folder(given->second, spec.place.find(camera.name));
+      folders.rgbd.push_back(is_given ? given->second : std::filesystem::path());
     }
   }
   return all;

@@ -17,11 +17,8 @@ struct MaskFolders {
   std::vector<std::filesystem::path> rgbd;  ///< one per RGB-D camera; empty where there are none
 };
 
-/// Reads the settings of such an occluder. Throws Error that names file and key. Does not access
-/// the folders.
-MaskFolders parse_mask_folders(const OccluderSpec& spec, const Rig& rig);
-
-/// The folders of all such occluders in the scene. Also throws Error if a folder does not exist.
+/// The folders of all occluders in the scene that have such masks. Throws Error if a folder does
+/// not exist.
 std::vector<MaskFolders> find_mask_folders(const Scene& scene, const Rig& rig);
 
 /// Reads one frame's masks, FOLDER/NAME.png. NAME is the frame's name, or for an RGB-D camera

@@ -6,6 +6,7 @@
 
 #include "diminish/error.h"
 #include "diminish/frame_source.h"
+#include "diminish/validate.h"
 #include "source/image_stream.h"
 #include "source/mask_folders.h"
 
@@ -138,7 +139,9 @@ Recording load_recording(const std::filesystem::path& folder) {
   if (!std::filesystem::is_directory(folder, ignored)) {
     throw Error(Error::input, folder.string() + ": expected a recording's folder");
   }
-  return {folder, load_rig(folder / "rig.yaml"), load_scene(folder / "scene.yaml")};
+  Recording recording{folder, load_rig(folder / "rig.yaml"), load_scene(folder / "scene.yaml")};
+  validate(recording.scene, recording.rig);
+  return recording;
 }
 
 std::unique_ptr<FrameSource> open_recording(const Recording& recording, const Options& options) {

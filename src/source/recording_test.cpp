@@ -301,7 +301,8 @@ TEST(Recording, MaskFoldersMustExist) {
   recording.write("scene.yaml", occluder + "color: nowhere}]\n");
   EXPECT_EQ(error_of([&] { recording.open(); }),
             recording.path("scene.yaml").string() +
-                ":1: occluders[0].color: expected a folder, got 'nowhere'");
+                ":1: occluders[0].color: expected a folder, got '" +
+                recording.path("nowhere").string() + "'");
   recording.write("scene.yaml", occluder + "color: color, rgbd1: color}]\n");
   EXPECT_THAT(error_of([&] { recording.open(); }),
               HasSubstr("occluders[0].rgbd1: unknown key, expected one of name, detector, color, "

@@ -1,16 +1,18 @@
 #include "diminish/scene.h"
 
-#include <algorithm>
+#include "diminish/occluder_detector.h"
+#include "source/configuration_checks.h"
 
 namespace diminish {
 namespace {
 
-constexpr int max_marker_id = 65535;
-
-std::string read_name(const Config& config) {
-  std::string name = config.text();
-  if (name.empty()) config.fail("expected a name, got ''");
-  return name;
+OccluderSpec read_occluder(const Config& config) {
+  using Detectors = Registry<OccluderDetector>;
+  OccluderSpec spec{config.at("name").text(), config.at("detector").text(), nullptr, config};
+  // An unknown one is complained of with all else that is wrong.
+  if (Detectors::contains(spec.detector))
+    spec.settings = Detectors::get(spec.detector).read(config);
+  return spec;
 }
 
 }  // namespace
@@ -31,16 +33,10 @@ Scene read_scene(const Config& config) {
   if (dictionary.exists()) scene.marker_dictionary = dictionary.text();
   const Config world_marker = config.find("world_marker");
   if (world_marker.exists()) scene.world_marker = read_marker(world_marker);
-  const Config occluders = config.at("occluders");
-  for (const Config& item : occluders.items()) {
-    OccluderSpec occluder{read_name(item.at("name")), read_name(item.at("detector")), item};
-    const auto same = [&](const OccluderSpec& other) { return other.name == occluder.name; };
-    if (std::any_of(scene.occluders.begin(), scene.occluders.end(), same)) {
-      item.at("name").fail("there are two occluders called '" + occluder.name + "'");
-    }
-    scene.occluders.push_back(std::move(occluder));
+  for (const Config& item : config.at("occluders").items()) {
+    scene.occluders.push_back(read_occluder(item));
   }
-  if (scene.occluders.empty()) occluders.fail("expected at least one occluder");
+  check_scene(scene, nullptr, config);
   return scene;
 }
 

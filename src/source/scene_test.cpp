@@ -1,5 +1,7 @@
 #include "diminish/scene.h"
 
+#include "diminish/occluder_detector.h"
+#include "diminish/occluder_settings.h"
 #include "expect_error.h"
 #include "paths.h"
 
@@ -20,13 +22,13 @@ TEST(Scene, ReadsTheBundledScenes) {
   ASSERT_EQ(scene.occluders.size(), 1U);
   EXPECT_EQ(scene.occluders[0].name, "lamp");
   EXPECT_EQ(scene.occluders[0].detector, "marker");
-  const Config& config = scene.occluders[0].config;
-  EXPECT_EQ(read_marker(config.at("marker")).id, 2);
-  EXPECT_EQ(config.at("mesh").path(), testing::recordings_dir() + "/workbench/lamp.obj");
+  const auto& settings = settings_of<MarkerSettings>(scene.occluders[0]);
+  EXPECT_EQ(settings.marker.id, 2);
+  EXPECT_EQ(settings.mesh, testing::recordings_dir() + "/workbench/lamp.obj");
 }
 
 TEST(Scene, MarkersMayBeLeftOut) {
-  const Scene scene = read("occluders: [{name: a, detector: mask}]\n");
+  const Scene scene = read("occluders: [{name: a, detector: mask, color: a}]\n");
   EXPECT_EQ(scene.marker_dictionary, "DICT_4X4_50");
   EXPECT_EQ(scene.world_marker.size_m, 0);
 }
@@ -37,9 +39,10 @@ TEST(Scene, EachWrongValueIsNamed) {
       {"world_marker: {id: 0, size_m: 1}\n", "scene.yaml:1: missing key 'occluders'"},
       {"occluders: [{detector: a}]\n", "scene.yaml:1: occluders[0]: missing key 'name'"},
       {"occluders:\n  - name: a\n", "scene.yaml:2: occluders[0]: missing key 'detector'"},
-      {"occluders: [{name: '', detector: a}]\n", "occluders[0].name: expected a name, got ''"},
+      {"occluders: [{name: '', detector: mask, color: a}]\n",
+       "occluders[0].name: expected a name, got ''"},
       {"occluders: [{name: a, detector: }]\n", "occluders[0].detector: expected a text"},
-      {"occluders:\n- {name: a, detector: b}\n- {name: a, detector: c}\n",
+      {"occluders:\n- {name: a, detector: mask, color: a}\n- {name: a, detector: mask, color: a}\n",
        "scene.yaml:3: occluders[1].name: there are two occluders called 'a'"},
       {"occluders: {name: a}\n", "scene.yaml:1: occluders: expected a list, got a map"},
       {"world_marker: {id: -1, size_m: 1}\noccluders: []\n", "world_marker.id: expected a whole"},
@@ -47,6 +50,9 @@ TEST(Scene, EachWrongValueIsNamed) {
       {"world_marker: {id: 1}\noccluders: []\n", "world_marker: missing key 'size_m'"},
       {"world_marker: {id: 1, size: 1}\noccluders: []\n", "world_marker.size: unknown key"},
       {"marker_dictionary: [4]\noccluders: []\n", "marker_dictionary: expected a text"},
+      {"occluders: [{name: a, detector: nose}]\n",
+       "scene.yaml:1: occluders[0].detector: expected one of box, color_blob, "},
+      {"occluders: [{name: a, detector: mask}]\n", "occluders[0]: missing key 'color'"},
       {"occluder: []\n", "scene.yaml:1: occluder: unknown key, expected one of"},
   };
   for (const auto& [yaml, message] : cases) {

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 
+#include "diminish/validate.h"
 #include "setup/check/setup_checks.h"
 
 namespace diminish {
 
 SetupReport check_setup(const Rig& rig, const Scene& scene, FrameSource& source,
                         std::size_t most_frames) {
+  validate(rig);
+  validate(scene, rig);
   Diagnosis setup(rig, scene, survey_setup(rig, scene, source, most_frames));
   check_streams(setup);
   check_exposure(setup);

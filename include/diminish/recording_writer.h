@@ -1,15 +1,11 @@
 #pragma once
 
-#include <condition_variable>
-#include <deque>
+#include <cstddef>
 #include <filesystem>
-#include <fstream>
 #include <memory>
-#include <mutex>
 #include <string>
-#include <thread>
-#include <vector>
 
+#include "diminish/export.h"
 #include "diminish/live.h"
 
 namespace diminish {
@@ -25,7 +21,7 @@ struct RecordingStatus {
 /// Writes a live session's input as a recording (docs/recording-format.md): lossless depth, colour
 /// as JPEG. Works in its own thread. Frames for which it has no time are dropped and counted. The
 /// folder holds a complete recording at any moment.
-class RecordingWriter {
+class DIMINISH_EXPORT RecordingWriter {
  public:
   /// Makes the folder and copies rig.yaml, scene.yaml and the files that scene.yaml names into it.
   /// Throws Error if the folder is not empty or a file cannot be copied.
@@ -42,32 +38,8 @@ class RecordingWriter {
   void finish();
 
  private:
-  /// A sensor's folder and list.
-  struct Stream {
-    std::string folder;  ///< relative: "rgbd0/depth"
-    std::ofstream list;
-    double last_stamp_s = -1;
-    std::size_t images = 0;
-  };
-
-  Stream make_stream(const std::string& list, const std::string& folder) const;
-  void work();
-  void write(const LiveFrame& frame);
-  template <class Pixel>
-  void write_image(Stream& stream, const Image<Pixel>& image, double stamp_s);
-
-  static constexpr std::size_t most_waiting = 8;
-
-  std::filesystem::path folder_;
-  Stream color_;
-  std::vector<Stream> rgbd_color_, rgbd_depth_;
-  mutable std::mutex mutex_;
-  std::condition_variable changed_;
-  std::deque<std::shared_ptr<const LiveFrame>> waiting_;
-  RecordingStatus status_;
-  bool ending_ = false;
-  std::vector<std::uint8_t> bytes_;
-  std::thread thread_;
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
 };
 
 }  // namespace diminish

@@ -1,0 +1,74 @@
+#include "diminish/occluder_settings.h"
+
+#include <Eigen/QR>
+#include <algorithm>
+
+#include "core/text.h"
+#include "source/configuration_checks.h"
+#include "source/find_camera.h"
+
+namespace diminish {
+namespace {
+
+void check_vertices(const std::vector<Eigen::Vector3d>& vertices, const Config& place) {
+  if (vertices.size() < 4) place.fail("expected at least 4 points");
+  Eigen::Matrix3Xd edges(3, vertices.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    if (!vertices[i].allFinite()) item_of(place, i).fail("expected three numbers");
+    edges.col(static_cast<Eigen::Index>(i)) = vertices[i] - vertices[0];
+  }
+  if (edges.colPivHouseholderQr().rank() < 2) {
+    place.fail("expected points that are not all on one line");
+  }
+}
+
+void check_triangles(const MarkerSettings& settings, const Config& place) {
+  const auto is_vertex = [&](int index) {
+    return index >= 0 && static_cast<std::size_t>(index) < settings.vertices.size();
+  };
+  for (const std::array<int, 3>& corners : settings.triangles) {
+    if (std::all_of(corners.begin(), corners.end(), is_vertex)) continue;
+    place.fail("expected indices of the vertices");
+  }
+}
+
+}  // namespace
+
+void MarkerSettings::check(const Config& place, const Rig*) const {
+  check_marker(marker, place.find("marker"));
+  if (vertices.empty() == mesh.empty()) place.fail("expected either vertices or mesh");
+  if (mesh.empty()) check_vertices(vertices, place.find("vertices"));
+  check_triangles(*this, place.find("triangles"));
+}
+
+std::vector<std::filesystem::path> MarkerSettings::files() const {
+  if (mesh.empty()) return {};
+  return {mesh};
+}
+
+void ColorBlobSettings::check(const Config& place, const Rig*) const {
+  if (training.empty()) place.find("training").fail("expected a path, got ''");
+}
+
+void MaskSettings::check(const Config& place, const Rig* rig) const {
+  if (rig == nullptr) return;
+  for (const auto& [name, folder] : rgbd) {
+    if (find_rgbd_camera(*rig, name) != nullptr) continue;
+    std::vector<std::string> known = {"name", "detector", "color"};
+    for (const RgbdCamera& camera : rig->rgbd) known.push_back(camera.name);
+    place.find(name).fail("unknown key, expected one of " + join(known));
+  }
+}
+
+void BoxSettings::check(const Config& place, const Rig* rig) const {
+  if (!min_m.allFinite()) place.find("min").fail("expected three numbers");
+  if (!max_m.allFinite() || (min_m.array() >= max_m.array()).any()) {
+    place.find("max").fail("expected three numbers, each above min's");
+  }
+  if (rig == nullptr || frame == "world" || find_rgbd_camera(*rig, frame) != nullptr) return;
+  std::vector<std::string> known = {"world"};
+  for (const RgbdCamera& camera : rig->rgbd) known.push_back(camera.name);
+  place.find("frame").fail("expected one of " + join(known) + ", got '" + printable(frame) + "'");
+}
+
+}  // namespace diminish
