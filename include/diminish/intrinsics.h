@@ -25,9 +25,9 @@ constexpr std::size_t coefficient_count(LensModel model) {
 }
 
 /// "plumb_bob", "rational" or "fisheye".
-const char* name_of(LensModel model);
+DIMINISH_EXPORT const char* name_of(LensModel model);
 /// The model of this name, or of ROS's name for it (rational_polynomial, equidistant).
-std::optional<LensModel> find_lens_model(const std::string& name);
+DIMINISH_EXPORT std::optional<LensModel> find_lens_model(const std::string& name);
 
 /// A camera's pinhole and lens, for images as the sensor made them: distorted.
 /// Camera frame: x right, y down, z forward. Pixel centres at integer coordinates.

@@ -1,7 +1,10 @@
 #include "diminish/rig.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
+#include "core/text.h"
 #include "source/configuration_checks.h"
 #include "source/read_rigid_transform.h"
 
