@@ -16,8 +16,8 @@ INSTANTIATE_TEST_SUITE_P(Recordings, VectorTargets,
                          ::testing::Values("calendar", "ball", "workbench"),
                          [](const auto& test) { return std::string(test.param); });
 
-// On every instruction set that this CPU has the same pixels are seen, by the same cameras, and
-// colours differ by rounding only.
+// On every instruction set that this CPU has, and in plain C++, the same pixels are seen, by the
+// same cameras, and colours differ by rounding only.
 TEST_P(VectorTargets, AgreeOnWholeFrames) {
   const testing::FirstFrame first(GetParam());
   const DiminishedFrame& expected = first.result;
@@ -37,9 +37,11 @@ TEST_P(VectorTargets, AgreeOnWholeFrames) {
         others += difference > 2 ? 1U : 0U;
       }
     }
-    // A seen pixel may be rounded otherwise, and then what is filled from it, once more; where a
-    // shadow is lifted, by a multiple.
-    EXPECT_LE(worst, 4);
+    // A seen pixel may be rounded otherwise, and then what is filled from it once more; where a
+    // shadow is lifted, by a multiple; and at an edge of what is filled, as far as its sides
+    // differ.
+    EXPECT_LE(others * 1000, expected.report.mask_pixels);
+    EXPECT_LE(worst, 10);
   });
 }
 
