@@ -59,8 +59,8 @@ TEST(ConnectedRegions, AreOpenCvsComponents) {
     for (const Pixels pixels : {Pixels::set, Pixels::clear}) {
       for (const Connectivity connectivity : {Connectivity::four, Connectivity::eight}) {
         regions.find(mask, pixels, connectivity);
-        expect_components(regions, (as_mat(mask) != 0) == (pixels == Pixels::set ? 255 : 0),
-                          connectivity);
+        const cv::Mat set = as_mat(mask);
+        expect_components(regions, pixels == Pixels::set ? set : cv::Mat(set == 0), connectivity);
       }
     }
   }

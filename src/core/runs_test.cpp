@@ -49,7 +49,7 @@ TEST(Runs, OfBytesAreThoseFoundByteByByte) {
                       return (bytes[static_cast<std::size_t>(x)] != 0) == (pixels == Pixels::set);
                     }));
         }
-        for (const std::uint8_t value : {0, 1, 255}) {
+        for (const auto value : {std::uint8_t{0}, std::uint8_t{1}, std::uint8_t{255}}) {
           const auto from = bytes.begin() + begin;
           EXPECT_EQ(find_equal(bytes.data(), begin, count, value),
                     std::find(from, bytes.end(), value) - bytes.begin());

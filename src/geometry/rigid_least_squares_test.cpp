@@ -3,9 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <Eigen/QR>
+#include <cmath>
 #include <limits>
 #include <random>
 #include <vector>
+
+#include "geometry/ideal_camera.h"
 
 namespace diminish {
 namespace {
@@ -24,9 +28,8 @@ Motion random_motion(std::mt19937& random, double reach) {
 TEST(RigidLeastSquares, DerivativesAreTheNumericOnes) {
   std::mt19937 random(1);
   constexpr double h = 1e-6;
-  const auto pixel = [](const Eigen::Vector3d& p) {
-    return Eigen::Vector2d(700 * p.x() / p.z(), 650 * p.y() / p.z());
-  };
+  const Lens lens({640, 480, 700, 650, 320, 240, {}});
+  const IdealCamera camera(lens);
   for (int trial = 0; trial < 20; ++trial) {
     const Eigen::Vector3d p = random_point(random, 1) + Eigen::Vector3d(0, 0, 2);
     for (int i = 0; i < 6; ++i) {
@@ -37,12 +40,19 @@ TEST(RigidLeastSquares, DerivativesAreTheNumericOnes) {
       if (i >= 3) continue;
       EXPECT_LT((derivative_by_rotation(p).col(i) - moved).norm(), 1e-8);
       const Eigen::Vector3d aside = h * Eigen::Vector3d::Unit(i);
-      EXPECT_LT(
-          (pixel_derivative(700, 650, p).col(i) - (pixel(p + aside) - pixel(p - aside)) / (2 * h))
-              .norm(),
-          1e-5);
+      const Eigen::Vector2d by_point =
+          (camera.project(p + aside) - camera.project(p - aside)) / (2 * h);
+      EXPECT_LT((camera.derivative(p).col(i) - by_point).norm(), 1e-5);
     }
   }
+}
+
+TEST(IdealCamera, SeesTheRealCamerasRays) {
+  const Lens lens({640, 480, 700, 650, 320, 240, {-0.2, 0.1, 0.001, 0, 0}});
+  const IdealCamera camera(lens);
+  const Eigen::Vector3d p(0.3, -0.2, 1.5);
+  EXPECT_LT((camera.ideal_pixel(lens, *lens.project(p)) - camera.project(p)).norm(), 1e-5);
+  EXPECT_LT((camera.ray(camera.project(p)) - p.head<2>() / p.z()).norm(), 1e-12);
 }
 
 TEST(NormalEquations, SolveALinearProblemInAnyUnknowns) {
@@ -150,7 +160,9 @@ TEST(LevenbergMarquardt, NeverTakesAStepThatIsNoGain) {
 }
 
 TEST(LevenbergMarquardt, LeavesAStateThatHasNoCost) {
-  Registration task{{{0, 0, 1}}, {{std::numeric_limits<double>::quiet_NaN(), 0, 0}}};
+  Registration task;
+  task.from.emplace_back(0, 0, 1);
+  task.to.emplace_back(std::numeric_limits<double>::quiet_NaN(), 0, 0);
   RigidTransform transform;
   EXPECT_TRUE(std::isnan(task.solve(transform)));
   EXPECT_EQ(transform.translation, Eigen::Vector3d(0, 0, 0));

@@ -94,7 +94,7 @@ TEST(QuadCandidates, AreNotDiscsOrTriangles) {
 // Every id of a dictionary, from every side, in OpenCV's own drawing.
 TEST(MarkerCode, ReadsWhatOpenCvDraws) {
   const auto dictionary = cv::aruco::getPredefinedDictionary(cv::aruco::DICT_5X5_50);
-  const MarkerCode code(*dictionary);
+  const MarkerCode code(find_dictionary("DICT_5X5_50"));
   const double first = 19.5;
   const double last = 89.5;
   const std::array<Eigen::Vector2d, 4> square = {
