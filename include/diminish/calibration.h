@@ -93,6 +93,6 @@ struct IntrinsicsCalibration {
 /// standard deviations from 0. Throws Error with fewer than three views, or if no camera explains
 /// them. Cost: some seconds for a hundred views.
 DIMINISH_EXPORT IntrinsicsCalibration calibrate_intrinsics(const ViewCollection& views,
-                                           LensModel model = LensModel::plumb_bob);
+                                                           LensModel model = LensModel::plumb_bob);
 
 }  // namespace diminish

@@ -7,8 +7,8 @@
 
 #include "diminish/diminished_frame.h"
 #include "gl/pixels_of.h"
-#include "membrane/smooth_filling.h"
 #include "inpaint/surface_rules.h"
+#include "membrane/smooth_filling.h"
 
 namespace diminish::gl {
 namespace {

@@ -10,8 +10,8 @@
 #include "core/rows.h"
 #include "diminish/inpainter.h"
 #include "inpaint/plane_colors.h"
-#include "membrane/smooth_filling.h"
 #include "inpaint/surface_rules.h"
+#include "membrane/smooth_filling.h"
 
 namespace diminish {
 namespace {
