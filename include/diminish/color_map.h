@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <span>
 
+#include "diminish/export.h"
+
 namespace diminish {
 
 /// Brings one RGB-D camera's colours to the colour camera's:
@@ -12,7 +14,7 @@ namespace diminish {
 /// The matrix and the offset model white balance, exposure and filters. The field, which is the
 /// same for all channels, models both lenses' vignetting. X and Y are pixel coordinates from the
 /// picture's centre in half widths.
-struct ColorMap {
+struct DIMINISH_EXPORT ColorMap {
   Eigen::Matrix3f matrix = Eigen::Matrix3f::Identity();
   Eigen::Vector3f offset = Eigen::Vector3f::Zero();  ///< levels
   Eigen::Matrix<float, 5, 1> field = Eigen::Matrix<float, 5, 1>::Zero();

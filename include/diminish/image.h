@@ -126,7 +126,8 @@ DIMINISH_EXPORT Rect bounding_box(const Mask& mask);
 DIMINISH_EXPORT Rect bounding_box(const Mask& mask, const Rect& part);
 
 /// The number of pixels inside `part` that are `value`.
-std::size_t count_equal(const Image<std::uint8_t>& image, std::uint8_t value, const Rect& part);
+DIMINISH_EXPORT std::size_t count_equal(const Image<std::uint8_t>& image, std::uint8_t value,
+                                        const Rect& part);
 
 /// The number of non-zero pixels of `mask` inside `part`.
 DIMINISH_EXPORT std::size_t count_nonzero(const Mask& mask, const Rect& part);
