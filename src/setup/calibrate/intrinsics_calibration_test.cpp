@@ -131,9 +131,9 @@ TEST(CalibrateIntrinsicsToo, IsExactForExactCornersAndFindsK3) {
   EXPECT_NEAR(result.intrinsics.distortion[4], 0.05, 0.02);
 }
 
-/// A board that leans in front of one of 30 parts of the picture, corners with errors of 0.05 px.
+/// A board that leans in front of one of 30 parts of the picture, corners with errors of 0.02 px.
 BoardView leaning_view(int index, const Intrinsics& camera, std::mt19937& random) {
-  std::normal_distribution<double> error_px(0, 0.05);
+  std::normal_distribution<double> error_px(0, 0.02);
   const Lens lens(camera);
   const Eigen::Vector2d middle((index % 6 + 0.5) / 6 * camera.width,
                                (index / 6 + 0.5) / 5 * camera.height);
@@ -184,7 +184,7 @@ TEST(CalibrateIntrinsicsToo, RecoversRationalLensesAndFisheyes) {
     const IntrinsicsCalibration result =
         calibrate_intrinsics(seen_through(camera), camera.lens_model);
     EXPECT_EQ(result.intrinsics.lens_model, camera.lens_model);
-    EXPECT_LT(result.error_px, 0.08);
+    EXPECT_LT(result.error_px, 0.04);
     EXPECT_LT(largest_difference_px(camera, result.intrinsics), 0.1);
     const double errors[] = {result.intrinsics.fx - camera.fx, result.intrinsics.fy - camera.fy,
                              result.intrinsics.cx - camera.cx, result.intrinsics.cy - camera.cy};
