@@ -10,7 +10,7 @@
 namespace diminish {
 namespace {
 
-using Run = std::pair<int, int>;
+using FirstLast = std::pair<int, int>;
 
 /// Bytes in stretches of up to `longest`, of few values.
 std::vector<std::uint8_t> stretches(std::mt19937& random, std::size_t size, unsigned longest) {
@@ -24,8 +24,8 @@ std::vector<std::uint8_t> stretches(std::mt19937& random, std::size_t size, unsi
 
 /// Pixel by pixel.
 template <class IsIn>
-std::vector<Run> plain_runs(int begin, int end, const IsIn& is_in) {
-  std::vector<Run> runs;
+std::vector<FirstLast> plain_runs(int begin, int end, const IsIn& is_in) {
+  std::vector<FirstLast> runs;
   for (int x = begin; x < end; ++x) {
     if (!is_in(x)) continue;
     if (runs.empty() || runs.back().second != x) runs.emplace_back(x, x);
@@ -42,7 +42,7 @@ TEST(Runs, OfBytesAreThoseFoundByteByByte) {
       const auto count = static_cast<int>(size);
       for (int begin = 0; begin <= count; begin += 5) {
         for (const Pixels pixels : {Pixels::set, Pixels::clear}) {
-          std::vector<Run> runs;
+          std::vector<FirstLast> runs;
           for_each_run(bytes.data(), begin, count, pixels,
                        [&](int first, int last) { runs.emplace_back(first, last); });
           EXPECT_EQ(runs, plain_runs(begin, count, [&](int x) {
@@ -82,7 +82,7 @@ TEST(Runs, OfBitsAreThoseFoundBitByBit) {
       return (words[static_cast<std::size_t>(x / 32)] >> x % 32 & 1U) != 0;
     };
     const auto count = static_cast<int>(words.size());
-    std::vector<Run> runs;
+    std::vector<FirstLast> runs;
     for_each_run(words.data(), count, [&](int first, int last) { runs.emplace_back(first, last); });
     EXPECT_EQ(runs, plain_runs(0, 32 * count, is_set));
     for (int word = 0; word < count; ++word) {
