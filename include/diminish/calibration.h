@@ -25,14 +25,15 @@ struct BoardView {
 /// Finds a board in images.
 class DIMINISH_EXPORT BoardDetector {
  public:
-  /// Throws Error on boards that cannot be.
+  /// Throws Error on impossible boards.
   explicit BoardDetector(const Board& board);
   ~BoardDetector();
   BoardDetector(BoardDetector&&) noexcept;
   BoardDetector& operator=(BoardDetector&&) noexcept;
 
-  /// The corners, sub-pixel; nothing if the board is not there. Of a checkerboard all must be
-  /// visible (cv::findChessboardCornersSB), of a ChArUco board six that do not lie on a line.
+  /// The corners with sub-pixel accuracy; nothing if the board is not found. All corners of a
+  /// checkerboard must be visible (cv::findChessboardCornersSB), of a ChArUco board six that are
+  /// not on one line.
   std::optional<BoardView> detect(const Image<Bgr>& image, const std::string& name) const;
 
  private:
@@ -40,26 +41,27 @@ class DIMINISH_EXPORT BoardDetector {
   std::unique_ptr<const Implementation> implementation_;
 };
 
-/// Collects views of a board that help to calibrate a camera. Keeps some hundred at most.
+/// Collects views of a board for calibrating a camera. Keeps about a hundred at most.
 class DIMINISH_EXPORT ViewCollection {
  public:
   ViewCollection(int width, int height);
 
-  /// Keeps the view if it helps. Returns why it does not, in plain words; empty if it does.
+  /// Keeps the view if it helps and returns an empty text. Otherwise returns why it does not help,
+  /// in plain words.
   std::string add(BoardView view);
 
   const std::vector<BoardView>& views() const { return views_; }
   int width() const { return width_; }
   int height() const { return height_; }
 
-  /// Views with a corner in each cell of the image.
+  /// The number of views with a corner in each cell of the image.
   const Image<int>& cells() const { return cells_; }
-  /// The share of cells that have any.
+  /// The share of cells that have a corner.
   double coverage() const;
-  /// How many of the five are there: the board faces the camera, or leans left, right, forward,
-  /// back by 15 degrees and more. Leaning boards tell the focal length from the distance.
+  /// How many of five tilts were seen: facing the camera, or tilted left, right, forward or back by
+  /// 15 degrees or more. Tilted boards separate the focal length from the distance.
   int tilts() const;
-  /// Whether more views would hardly add anything: twenty, of all tilts, nearly everywhere.
+  /// Whether more views would hardly help: there are twenty, with all tilts, nearly everywhere.
   bool is_ample() const;
 
  private:
@@ -69,22 +71,23 @@ class DIMINISH_EXPORT ViewCollection {
   std::vector<BoardView> views_;
 };
 
-/// What was found out about a camera.
+/// The result of a calibration.
 struct IntrinsicsCalibration {
   struct View {
     std::string name;
     double error_px;  ///< root mean square over its corners
-    bool used;        ///< false: left out, as it does not agree with the others
+    bool used;        ///< false: left out because it disagrees with the others
   };
 
   Intrinsics intrinsics;
-  /// Standard deviations of fx, fy, cx, cy and the lens's coefficients; 0 of what was not fitted.
+  /// Standard deviations of fx, fy, cx, cy, k1, k2, p1, p2, k3; 0 for parameters that were not
+  /// fitted.
   std::array<double, 12> deviations{};
   double error_px = 0;  ///< root mean square over the corners of the views used
   std::vector<View> views;
   /// Each corner's reprojection error by view, pixels: seen minus computed.
   std::vector<std::vector<Eigen::Vector2d>> residuals_px;
-  /// What makes the figures doubtful, in plain words.
+  /// Why the figures may be wrong, in plain words.
   std::vector<std::string> warnings;
 };
 

@@ -19,39 +19,39 @@
 
 namespace diminish {
 
-/// Seconds of the machine's monotonic clock: what all live timestamps are in.
+/// The time on the machine's monotonic clock, seconds. All live timestamps use it.
 inline double monotonic_now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// Which of a camera's sensors an image is from.
+/// A camera's sensors.
 enum class Sensor { color, depth };
 
-/// An image as a camera delivers it. Of `color` and `depth` the one that `sensor` names is filled.
+/// An image from a camera. `sensor` says whether `color` or `depth` is filled.
 struct CameraImage {
   Sensor sensor = Sensor::color;
-  /// When it was taken, on the monotonic clock; the driver's word for it where there is one.
+  /// When it was taken, on the monotonic clock; the driver's timestamp if it has one.
   double stamp_s = 0;
   Image<Bgr> color;
   Image<std::uint16_t> depth;
-  /// Why the image cannot be used (torn, damaged); empty for a good one.
+  /// Why the image cannot be used (torn, damaged); empty if it can.
   std::string fault;
 };
 
-/// What names a camera: "scheme:target?key=value&key".
+/// A camera's URI: "scheme:target?key=value&key".
 struct DIMINISH_EXPORT CameraUri {
   std::string text;                               ///< all of it, for messages
-  std::string scheme;                             ///< which registered source it is for
+  std::string scheme;                             ///< the registered CameraSource
   std::string target;                             ///< a path, a device, a pipeline
-  std::map<std::string, std::string> parameters;  ///< without '=': an empty text
+  std::map<std::string, std::string> parameters;  ///< without "=": an empty text
 
   bool has(const std::string& key) const { return parameters.count(key) != 0; }
-  /// Throws Error that names the URI and the key, if the value is no number in the range.
+  /// Throws Error that names the URI and the key if the value is not a number in the range.
   double number(const std::string& key, double fallback, double min, double max) const;
   std::string text_of(const std::string& key, const std::string& fallback) const;
-  /// Complains of parameters that are not in `known`.
+  /// Throws Error if there are parameters that are not in `known`.
   void expect_parameters(const std::vector<std::string>& known) const;
-  /// Throws Error with the URI in front.
+  /// Throws Error with the URI in front of the message.
   [[noreturn]] void fail(const std::string& message,
                          Error::Category category = Error::configuration) const;
 };
@@ -59,11 +59,11 @@ struct DIMINISH_EXPORT CameraUri {
 /// Throws Error if there is no "scheme:" in front.
 DIMINISH_EXPORT CameraUri parse_camera_uri(const std::string& text);
 
-/// For whom a camera is opened.
+/// What a camera is opened for.
 struct CameraRequest {
   std::string name;  ///< "color" for the user's view, else an RGB-D camera's name in the rig
-  const Rig* rig = nullptr;  ///< null: not known yet, the driver chooses the images' sizes
-  /// When the live session began: what is replayed begins here, on all cameras.
+  const Rig* rig = nullptr;  ///< null: not known yet; the driver chooses the image sizes
+  /// When the live session began. Replayed cameras all start here.
   double epoch_s = 0;
 };
 
@@ -73,7 +73,7 @@ struct CameraDevice {
   std::string description;
 };
 
-/// A camera, or what behaves like one. Registered by its URI's scheme, one file each.
+/// A camera, or something that behaves like one. Registered by its URI's scheme, one file each.
 /// Used by one thread.
 class DIMINISH_EXPORT CameraSource {
  public:
@@ -81,9 +81,9 @@ class DIMINISH_EXPORT CameraSource {
   struct Entry {
     /// Opens the camera. Throws Error that names the URI and what was expected.
     std::function<std::unique_ptr<CameraSource>(const CameraUri&, const CameraRequest&)> open;
-    /// The devices that are there now; may be left out.
+    /// Lists the connected devices; may be left out.
     std::function<std::vector<CameraDevice>()> list;
-    /// An example and what it is for: "v4l2:/dev/video0?size=1280x1024&fps=30: a webcam".
+    /// An example and its purpose: "v4l2:/dev/video0?size=1280x1024&fps=30  a webcam".
     std::string help;
     /// Whether the URI's target is a text of its own, with any character: such as a pipeline. It
     /// has no parameters then.
@@ -95,15 +95,15 @@ class DIMINISH_EXPORT CameraSource {
 
   virtual ~CameraSource() = default;
 
-  /// Waits for the next image, at most about `timeout`, and reads it into `image`, reusing its
-  /// memory. `end`: there will be none any more. Throws Error when the camera is gone; it may then
-  /// be opened again.
+  /// Waits up to about `timeout` for the next image and reads it into `image`, reusing its memory.
+  /// `end`: there will be no more images. Throws Error when the camera is lost; it may then be
+  /// opened again.
   virtual Status read(CameraImage& image, std::chrono::milliseconds timeout) = 0;
 
-  /// Images that the camera itself left out so far, as far as it says.
+  /// The number of images that the camera itself has dropped, if it says so.
   virtual std::size_t dropped() const { return 0; }
 
-  /// Factory intrinsics, where a driver knows them.
+  /// Factory intrinsics, if the driver knows them.
   virtual std::optional<Intrinsics> intrinsics(Sensor) const { return std::nullopt; }
 };
 

@@ -11,30 +11,30 @@
 
 namespace diminish {
 
-/// What a colour correction goes by.
+/// The input of a colour correction.
 struct ColorInputs {
   const Image<Bgr>& camera;  ///< the colour camera's image
-  /// The objects' mask in it: `camera` shows the object there and must not be used.
+  /// The objects' mask in it. `camera` shows the objects there and must not be used.
   const Mask& occlusion;
   const Reconstruction& reconstruction;  ///< drawn in its `region`
   ColorMapsBySource maps;                ///< of the declared model
 };
 
-/// Brings the reconstruction's colours to the colour camera's. Registered by name; the option
-/// `color_correct` chooses.
+/// Matches the reconstruction's colours to the colour camera's. Registered by name; chosen by the
+/// option `color_correct`.
 class DIMINISH_EXPORT ColorCorrector {
  public:
   static constexpr const char* kind = "colour correction";
   using Factory = std::function<std::unique_ptr<ColorCorrector>()>;
 
-  /// What the rest of the frame needs to know of it.
+  /// What other stages need to know about it.
   struct Declaration {
-    /// Fitted before the scene is drawn.
+    /// The colour maps to fit before the scene is drawn.
     ColorMapModel maps = ColorMapModel::none;
-    /// Whether `correct` does nothing but map colours, and add a soft membrane to them. Other
-    /// implementations of that, on a GPU, then take its place.
+    /// Whether `correct` only maps colours, with or without a soft membrane. If so, another
+    /// implementation (on a GPU) may replace it.
     enum class Rule { own, maps, maps_and_membrane } rule = Rule::own;
-    /// The correction to use where time is short; null: this one.
+    /// The correction to use when time is short; null: this one.
     const char* simpler = nullptr;
   };
 

@@ -11,9 +11,9 @@
 
 namespace diminish {
 
-/// A place in a YAML file that knows its file, line and key, so that every complaint names them:
-/// "scene.yaml:4: occluders[0].marker.size_m: expected a number above 0, got '-1'".
-/// All readers throw Error. Cheap to copy.
+/// A place in a YAML file. It knows its file, line and key, so that every message names them:
+/// "scene.yaml:4: occluders[0].marker.size_m: expected a number above 0, got '-1'". All readers
+/// throw Error. Cheap to copy.
 class DIMINISH_EXPORT Config {
  public:
   /// Nothing: `exists()` is false.
@@ -25,19 +25,21 @@ class DIMINISH_EXPORT Config {
   Config& operator=(Config&&) noexcept;
 
   static Config load(const std::filesystem::path& file);
-  /// For tests and programs that hold their configuration in memory. `file` is used in messages.
+  /// For tests and programs that hold their configuration in memory. `file` appears in messages.
   static Config parse(const std::string& yaml, const std::filesystem::path& file = "(text)");
 
   bool exists() const;
-  /// The file that this came from; paths in it are relative to its folder.
+  /// The file it comes from. Paths in it are relative to its folder.
   const std::filesystem::path& file() const;
 
-  /// Complains of keys that are not in `known`, so that a typing error is not silently ignored.
+  /// Throws Error if there are keys that are not in `known`, so that typing errors are not silently
+  /// ignored.
   void expect_keys(std::initializer_list<const char*> known) const;
   void expect_keys(const std::vector<std::string>& known) const;
-  /// The value of a key of this map; complains when it is missing.
+  /// The value of a key of this map. Throws Error if it is missing.
   Config at(const std::string& key) const;
-  /// The same; `exists()` is false when it is missing. What does not exist has no keys either.
+  /// The same, but if the key is missing, the result's `exists()` is false. A place that does not
+  /// exist has no keys either.
   Config find(const std::string& key) const;
   /// The items of this list.
   std::vector<Config> items() const;

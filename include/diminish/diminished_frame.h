@@ -15,15 +15,15 @@
 
 namespace diminish {
 
-/// Where a pixel of the picture comes from. Values 1 to 253: from RGB-D camera `value - 1`.
+/// Where a pixel of the picture comes from. Values 1 to 253: RGB-D camera `value - 1`.
 namespace provenance {
 inline constexpr std::uint8_t camera = 0;
 inline constexpr std::uint8_t first_rgbd = 1;
 inline constexpr std::uint8_t inpainted = 254;
-inline constexpr std::uint8_t unknown = 255;  ///< part of the object, and nothing to show there
+inline constexpr std::uint8_t unknown = 255;  ///< part of the object, with nothing to show there
 }  // namespace provenance
 
-/// What happened in a frame.
+/// A report about a frame.
 struct FrameReport {
   Markers markers;
   Poses poses;
@@ -32,9 +32,9 @@ struct FrameReport {
   std::size_t valid_pixels = 0;    ///< of these, seen by an RGB-D camera
   std::size_t missing_pixels = 0;  ///< of these, not seen by any
   StageTimes milliseconds{};
-  double frame_ms = 0;  ///< from the frame's coming to its result
+  double frame_ms = 0;  ///< of the whole frame
   DrawingReport drawing;
-  /// The frame's colour image could not be read: there is no picture, and all images are empty.
+  /// The frame's colour image could not be read, so there is no picture.
   bool skipped = false;
   /// Images that could not be used (see FrameSet::faults).
   std::vector<std::string> faults;

@@ -1,6 +1,6 @@
 #pragma once
 
-/// What programs may use of the library; all else is hidden in it.
+/// Marks what programs may use of the library. Everything else is hidden.
 #if defined(__GNUC__)
 #define DIMINISH_EXPORT __attribute__((visibility("default")))
 #else

@@ -9,20 +9,20 @@
 
 namespace diminish {
 
-/// One RGB-D camera's images of one moment.
+/// One RGB-D camera's images at one moment.
 struct RgbdFrame {
   Image<Bgr> color;
   Image<std::uint16_t> depth;
   double color_stamp_s = 0;
   double depth_stamp_s = 0;
-  /// Why there are no images, in plain words; empty when both are there.
+  /// Why there are no images, in plain words; empty if both are there.
   std::string missing;
 
   bool available() const { return missing.empty() && !color.empty() && !depth.empty(); }
 };
 
-/// Masks of one occluder that another program made: 255 on the object. An image that was not given
-/// is empty.
+/// Masks of one occluder, made by another program: 255 on the object. An image without a mask is
+/// empty.
 struct GivenMask {
   std::string occluder;
   Mask color;              ///< in the colour camera
@@ -34,10 +34,10 @@ struct FrameSet {
   std::string name;       ///< the colour image's file stem
   std::size_t index = 0;  ///< 0 for the first frame
   double stamp_s = 0;
-  Image<Bgr> color;             ///< empty when it could not be read: the frame is skipped
+  Image<Bgr> color;             ///< empty if it could not be read; the frame is then skipped
   std::vector<RgbdFrame> rgbd;  ///< one per RGB-D camera of the rig, in its order
   std::vector<GivenMask> masks;
-  /// Images that should be there and could not be used, each with its file and the reason.
+  /// Images that could not be used, each with its file and the reason.
   std::vector<std::string> faults;
 };
 

@@ -12,19 +12,19 @@
 
 namespace diminish {
 
-/// Where frames come from.
+/// Delivers frames.
 class DIMINISH_EXPORT FrameSource {
  public:
   virtual ~FrameSource() = default;
 
-  /// Reads the next moment into `frame`, reusing its memory; false at the end. An image that cannot
-  /// be used is a fault of its frame, not an error.
+  /// Reads the next frame into `frame`, reusing its memory; false at the end. An unusable image is
+  /// a fault of its frame, not an error.
   virtual bool next(FrameSet& frame) = 0;
 
-  /// The number of frames, where it is known in advance; else 0.
+  /// The number of frames if known in advance, else 0.
   virtual std::size_t frame_count() const { return 0; }
 
-  /// The colour stream's mean rate; 0 where it is not known.
+  /// The colour stream's mean rate; 0 if unknown.
   virtual double frames_per_second() const { return 0; }
 };
 
@@ -35,7 +35,7 @@ struct Recording {
   Scene scene;
 };
 
-/// Reads a recording's rig.yaml and scene.yaml. Throws Error, naming file and key.
+/// Reads a recording's rig.yaml and scene.yaml. Throws Error that names file and key.
 DIMINISH_EXPORT Recording load_recording(const std::filesystem::path& folder);
 
 /// The frames of a recording: for each colour image the RGB-D images nearest in time, within

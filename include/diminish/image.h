@@ -9,7 +9,7 @@
 
 namespace diminish {
 
-/// 8-bit colour, in the order in which OpenCV stores it.
+/// 8-bit colour in OpenCV's order.
 struct Bgr {
   std::uint8_t b = 0, g = 0, r = 0;
   friend bool operator==(const Bgr&, const Bgr&) = default;
@@ -34,7 +34,7 @@ struct Rect {
   friend bool operator==(const Rect&, const Rect&) = default;
 };
 
-/// The part that both rectangles cover; empty where they do not meet.
+/// The part that both rectangles cover; empty if they do not overlap.
 inline Rect intersect(const Rect& a, const Rect& b) {
   const int x = std::max(a.x, b.x);
   const int y = std::max(a.y, b.y);
@@ -48,7 +48,7 @@ inline Rect grow(const Rect& rect, int margin) {
   return {rect.x - margin, rect.y - margin, rect.width + 2 * margin, rect.height + 2 * margin};
 }
 
-/// The smallest rectangle that holds both.
+/// The smallest rectangle that contains both.
 inline Rect join(const Rect& a, const Rect& b) {
   if (a.empty()) return b;
   if (b.empty()) return a;
@@ -57,7 +57,7 @@ inline Rect join(const Rect& a, const Rect& b) {
   return {x, y, std::max(a.right(), b.right()) - x, std::max(a.bottom(), b.bottom()) - y};
 }
 
-/// Makes `rect` the smallest that also holds the pixel (x, y).
+/// Extends `rect` to contain the pixel (x, y).
 inline void extend(Rect& rect, int x, int y) {
   rect = join(rect, {x, y, 1, 1});
 }
@@ -72,7 +72,7 @@ class Image {
   Image() = default;
   Image(int width, int height, Pixel value = {}) { resize(width, height, value); }
 
-  /// Gives the image this size; its pixels are unspecified unless the size stays the same.
+  /// Resizes the image. Its pixels are unspecified unless the size stays the same.
   void resize(int width, int height) {
     width_ = width;
     height_ = height;
@@ -117,12 +117,12 @@ class Image {
   std::vector<Pixel> pixels_;
 };
 
-/// A mask is 255 where something is (an object, a valid pixel) and 0 elsewhere.
+/// A mask is 255 where something is (an object, a valid pixel), else 0.
 using Mask = Image<std::uint8_t>;
 
-/// The smallest rectangle that holds all non-zero pixels of `mask`. Cost: one pass.
+/// The smallest rectangle that contains all non-zero pixels of `mask`. Cost: one pass.
 DIMINISH_EXPORT Rect bounding_box(const Mask& mask);
-/// The same of the mask's part inside `part`, which must not reach beyond the mask.
+/// The same for the part of the mask inside `part`, which must lie within the mask.
 DIMINISH_EXPORT Rect bounding_box(const Mask& mask, const Rect& part);
 
 /// The number of pixels inside `part` that are `value`.

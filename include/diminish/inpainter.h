@@ -11,30 +11,31 @@
 
 namespace diminish {
 
-/// What is to be filled, and what is known of it.
+/// The pixels to fill, and what is known about them.
 struct Holes {
   const Mask& missing;
-  const Mask& occlusion;     ///< of the objects to remove; holds all of `missing`
+  const Mask& occlusion;     ///< the objects to remove; contains all of `missing`
   const Surfaces& surfaces;  ///< empty unless declared to be used
 };
 
-/// Fills pixels that no camera sees. Registered by name; the option `inpaint` chooses.
+/// Fills pixels that no camera sees. Registered by name; chosen by the option `inpaint`.
 class DIMINISH_EXPORT Inpainter {
  public:
   static constexpr const char* kind = "inpainting method";
   using Factory = std::function<std::unique_ptr<Inpainter>()>;
 
-  /// What the rest of the frame needs to know of it.
+  /// What other stages need to know about it.
   struct Declaration {
-    /// Whether `Holes::surfaces` is used; where not, nobody needs to find it.
+    /// Whether it uses `Holes::surfaces`. If not, they need not be computed.
     bool uses_surfaces = false;
-    /// Which of these it follows. Other implementations of that, on a GPU, then take its place.
+    /// The rule that it follows, if it is one of these. Another implementation (on a GPU) may then
+    /// replace it.
     enum class Rule {
       own,
       by_surface,     ///< each plane from its own pixels (src/inpaint/surface_rules.h)
       leaves_unknown  ///< nothing is filled
     } rule = Rule::own;
-    /// The method to use where time is short; null: this one.
+    /// The method to use when time is short; null: this one.
     const char* simpler = nullptr;
   };
 
@@ -42,9 +43,9 @@ class DIMINISH_EXPORT Inpainter {
 
   virtual Declaration declaration() const { return {}; }
 
-  /// Writes a colour to every pixel of `picture` where `holes.missing` is not 0, from the other
-  /// pixels, none of which shows an object to remove; leaves those alone. Returns whether the
-  /// pixels were filled with something to look at ("none" leaves them black and answers false).
+  /// Writes a colour to every pixel of `picture` where `holes.missing` is not 0, using the other
+  /// pixels, none of which shows an object to remove. Leaves those unchanged. Returns whether the
+  /// pixels were filled ("none" leaves them black and returns false).
   virtual bool inpaint(const Holes& holes, const Options& options, Image<Bgr>& picture) = 0;
 };
 

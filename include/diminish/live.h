@@ -19,7 +19,7 @@
 
 namespace diminish {
 
-/// A camera of a live session. An RGB-D camera whose sensors are separate devices has two.
+/// A camera of a live session. An RGB-D camera with two devices has two.
 struct LiveCamera {
   std::string name;  ///< "color", or an RGB-D camera's name in the rig
   std::string uri;
@@ -29,25 +29,25 @@ enum class CameraState { opening, running, silent, lost, ended };
 inline constexpr std::array<const char*, 5> camera_state_names = {"opening", "running", "silent",
                                                                   "lost", "ended"};
 
-/// How a camera does. Counters are of the whole session.
+/// A camera's status. Counters cover the whole session.
 struct CameraStatus {
   std::string name, uri;
   CameraState state = CameraState::opening;
   /// The last thing that went wrong, in plain words; empty if nothing did.
   std::string problem;
-  double images_per_second = 0;  ///< colour, where the camera has it
-  std::size_t images = 0;        ///< usable ones
-  std::size_t dropped = 0;       ///< by the camera's driver, as far as it says
-  std::size_t duplicates = 0;    ///< with the timestamp of the one before
+  double images_per_second = 0;  ///< of colour, if the camera has it
+  std::size_t images = 0;        ///< usable images
+  std::size_t dropped = 0;       ///< by the camera's driver, if it says so
+  std::size_t duplicates = 0;    ///< with the same timestamp as the one before
   std::size_t out_of_order = 0;  ///< with an earlier timestamp, or one in the future
   std::size_t wrong_size = 0;
   std::size_t damaged = 0;
   std::size_t stalls = 0;      ///< times without an image for a second or more
-  std::size_t failures = 0;    ///< times that it could not be opened or was lost
+  std::size_t failures = 0;    ///< times that it could not be opened, or was lost
   std::size_t reconnects = 0;  ///< times that it came back
 };
 
-/// What a live session produced, with what it was made from.
+/// A result of a live session, with its input.
 struct LiveFrame {
   FrameSet input;
   DiminishedFrame result;  ///< without its reconstruction (Pipeline::want_reconstruction)
@@ -61,12 +61,12 @@ struct LatencyStatus {
   double p50 = 0, p95 = 0, p99 = 0;
 };
 
-/// How a session does. Small enough to be asked for many times a second.
+/// A session's status. Small enough to request many times a second.
 struct LiveStatus {
   bool running = false;
   bool ended = false;       ///< the colour camera has no more images, and all are shown
   std::size_t frames = 0;   ///< shown
-  std::size_t skipped = 0;  ///< colour images that were never shown: newer ones were there
+  std::size_t skipped = 0;  ///< colour images skipped for newer ones
   std::size_t failed = 0;   ///< frames that ended in an error (see `problems`)
   double frames_per_second = 0;
   LatencyStatus latency_ms;  ///< of the last few seconds
@@ -74,9 +74,9 @@ struct LiveStatus {
   double frame_ms = 0;       ///< of the last frame, all stages
   double budget_ms = 0;      ///< 0: none
   int quality_level = 0;     ///< 0: as chosen
-  std::string quality;       ///< what is simplified, in plain words; empty at level 0
+  std::string quality;       ///< what is dropped, in plain words; empty at level 0
   std::vector<CameraStatus> cameras;
-  std::vector<bool> posed;           ///< of the last frame: the pose of each RGB-D camera is known
+  std::vector<bool> posed;  ///< of the last frame: whether each RGB-D camera's pose is known
   std::vector<std::size_t> markers;  ///< seen by the colour camera and each RGB-D camera
   std::vector<OccluderReport> occluders;
   double mask_share = 0;              ///< of the picture
@@ -85,27 +85,27 @@ struct LiveStatus {
 };
 
 struct LiveOptions {
-  /// Threads that work on a frame; 0: all cores.
+  /// Threads to use inside a frame; 0: one per core.
   int threads = 0;
-  /// What a frame may take; quality steps down (docs/live.md says in which order) when it takes
-  /// more. 0: as long as it takes.
+  /// Time budget of a frame. Quality steps down when frames take longer (docs/live.md lists the
+  /// steps). 0: no budget.
   double budget_ms = 0;
-  /// How long a colour image waits for its RGB-D images; 0: 0.02 s longer than the last few of them
-  /// made it wait, at least 0.06 s.
+  /// How long a colour image waits for its RGB-D images. 0: 0.02 s longer than the last few needed,
+  /// at least 0.06 s.
   double sync_wait_s = 0;
 };
 
-/// Cameras in, pictures out, until stopped. The cameras have a thread each, the pipeline has one;
-/// whoever looks has his own. The newest images are worked on, older ones are left out; nothing
-/// queues up. Cameras that fail are opened again and again; meanwhile the session goes on with what
-/// it has. All functions may be called from any thread.
+/// Cameras in, pictures out, until stopped. Each camera has a thread, and so does the pipeline. The
+/// newest images are processed and older ones skipped, so nothing queues up. A camera that fails is
+/// opened again and again; meanwhile the session continues without it. All functions may be called
+/// from any thread.
 class DIMINISH_EXPORT LiveSession {
  public:
-  /// Starts. Throws Error on a configuration that cannot work; a camera that cannot be opened is
-  /// none: it is lost until it can.
+  /// Starts the session. Throws Error on a configuration that cannot work. A camera that cannot be
+  /// opened is not an error: its state is `lost` until it can be opened.
   LiveSession(const Rig& rig, const Scene& scene, const Options& options,
               const std::vector<LiveCamera>& cameras, const LiveOptions& live_options);
-  /// Stops.
+  /// Stops the session and waits for its threads.
   ~LiveSession();
   LiveSession(const LiveSession&) = delete;
   LiveSession& operator=(const LiveSession&) = delete;
@@ -113,23 +113,25 @@ class DIMINISH_EXPORT LiveSession {
   const Rig& rig() const;
   const Scene& scene() const;
   Options options() const;
-  /// Takes effect with the next frame. Throws Error on values out of range and changes nothing.
+  /// Takes effect with the next frame. If a value is out of range, throws Error and changes
+  /// nothing.
   void set_options(const Options& options);
   LiveOptions live_options() const;
   void set_budget_ms(double budget_ms);
 
   LiveStatus status() const;
 
-  /// The newest frame if its number is above `after`; waits for it, at most `timeout`, and returns
-  /// null when there was none. It is the caller's to keep; those who are slow get fewer frames.
+  /// The newest frame if its number is above `after`. Waits for it up to `timeout`; null if there
+  /// was none. The caller may keep it. Slow callers get fewer frames.
   std::shared_ptr<const LiveFrame> wait_for_frame(std::size_t after,
                                                   std::chrono::milliseconds timeout) const;
 
-  /// Called with every frame, in order, by the pipeline's thread: must return at once and not
-  /// throw. Returns what removes it again when destroyed.
+  /// Registers `call` for every frame, in order. The pipeline's thread calls it, so it must return
+  /// at once and not throw. Destroying the result removes it.
   std::shared_ptr<void> on_frame(std::function<void(const std::shared_ptr<const LiveFrame>&)> call);
 
-  /// Ends the cameras' and the pipeline's threads. `wait_for_frame` returns from now on.
+  /// Ends the pipeline's thread and tells the cameras' threads to end; the destructor waits for
+  /// those. `wait_for_frame` returns null from now on.
   void stop();
 
  private:

@@ -20,10 +20,9 @@ class DIMINISH_EXPORT MarkerDetector {
   MarkerDetector(MarkerDetector&&) noexcept;
   MarkerDetector& operator=(MarkerDetector&&) noexcept;
 
-  /// The markers in `image`, by ascending id. Corners are sub-pixel: each side is a line fitted to
-  /// the image's edge, each corner the meeting point of two. A marker whose id is in the image
-  /// twice is ambiguous and left out. lens: the camera's, in whose undistorted rays sides are
-  /// straight.
+  /// Finds the markers in `image`, sorted by id, with sub-pixel corners: each side is a line fitted
+  /// to the image's edge, and neighbouring lines are intersected. A marker whose id appears twice
+  /// is ambiguous and left out. lens: the camera's; sides are straight in its undistorted rays.
   void detect(const Image<Bgr>& image, const Lens& lens, std::vector<Marker>& markers);
 
  private:

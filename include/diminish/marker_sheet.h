@@ -17,7 +17,7 @@ struct MarkerSheet {
   double quiet_modules = 1;  ///< white around a marker, in the marker's own cells
 };
 
-/// Paper, upright. `paper` turns it where that holds more.
+/// Paper, upright. `paper` turns it if more fits that way.
 struct Paper {
   std::string name;
   double width_mm = 0, height_mm = 0;
@@ -29,14 +29,14 @@ DIMINISH_EXPORT const std::vector<Paper>& papers();
 /// Throws Error that lists the known names.
 DIMINISH_EXPORT const Paper& find_paper(const std::string& name);
 
-/// Writes the sheet at true size, with ids and size beneath each marker and a ruler to check the
-/// print. The format is the file's extension: svg, pdf or png. Markers that one page does not hold
-/// go to further pages, which only PDF has. Throws Error: an unknown dictionary, an id that it does
-/// not have, a marker that the paper does not hold, a file that cannot be written.
+/// Writes the sheet at true size, with id and size below each marker and a ruler to check the
+/// print. The file's extension is the format: svg, pdf or png. Markers that do not fit on one page
+/// go to further pages, which only PDF has. Throws Error on an unknown dictionary, an id that is
+/// not in it, a marker that does not fit on the paper, or a file that cannot be written.
 DIMINISH_EXPORT void write_marker_sheet(const MarkerSheet& sheet, const Paper& paper,
                                         const std::filesystem::path& file);
 
-/// The same for a board: one page, with the text that `parse_board` reads beneath it.
+/// The same for a board: one page, with the text that `parse_board` reads below it.
 DIMINISH_EXPORT void write_board(const Board& board, const Paper& paper,
                                  const std::filesystem::path& file);
 

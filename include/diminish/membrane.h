@@ -5,29 +5,28 @@
 #include <memory>
 #include <type_traits>
 
-/// \file
-/// The membrane: a library of its own (CMake: diminish::membrane), which needs nothing else of
+/// The membrane: a library of its own (CMake: diminish::membrane) that needs nothing else of
 /// diminish.
 
 namespace diminish {
 
 class MembraneSolver;
 
-/// Laplace's equation on any set of pixels, for two things that pictures need: to clone a part of
-/// one picture into another without a seam, and to fill holes smoothly. A set may have any shape,
-/// any number of parts, and touch the picture's border.
+/// Solves Laplace's equation on any set of pixels, to clone a part of one picture into another
+/// without a seam, or to fill holes smoothly. A set may have any shape and any number of parts, and
+/// may touch the picture's border.
 ///
-/// Results are about half a level from the exact solution, rounding included; where a part of the
-/// set hangs on a few pixels it may be more. Large sets cost what their outline does, and not their
-/// area. Memory is kept for the next call, and does not grow where sets are alike. Results do not
-/// depend on earlier calls, nor on the number of threads.
+/// Results are within about half a level of the exact solution, including rounding; parts that are
+/// attached by only a few pixels may be further off. The cost of a large set follows its outline,
+/// not its area. Memory is kept for the next call and does not grow for similar sets. Results do
+/// not depend on earlier calls or the number of threads.
 ///
-/// One object serves one thread at a time; inside a call oneTBB shares the work of large sets
+/// One object serves one thread at a time. Inside a call oneTBB shares the work of large sets
 /// between two threads.
 class Membrane {
  public:
-  /// 8-bit pixels that belong to someone else: rows `stride` bytes apart (negative: bottom up),
-  /// pixels `channels` bytes apart.
+  /// A view of 8-bit pixels that belong to someone else: rows `stride` bytes apart (negative:
+  /// bottom up), pixels `channels` bytes apart.
   template <class Byte>
   struct BasicView {
     Byte* data = nullptr;
@@ -53,32 +52,31 @@ class Membrane {
   Membrane(Membrane&&) noexcept;
   Membrane& operator=(Membrane&&) noexcept;
 
-  /// What is cloned. All views have one size. Three channels, in whatever order.
+  /// What to clone. All views have the same size. Three channels in any order.
   struct Cloning {
-    ConstView target;  ///< read only beside the mask; 3 or 4 channels
-    ConstView source;  ///< 3 or 4 channels; a fourth is not looked at
-    ConstView mask;    ///< 1 channel; not 0: to be taken from `source`
-    /// 1 channel: 0 where `source` shows nothing, else which of several pictures it was put
-    /// together from, 1 to 254 (255 counts as 254): where colours jump from one to the next, that
-    /// is evened out. Without data: it is one picture, and shows something everywhere.
+    ConstView target;  ///< only read beside the mask; 3 or 4 channels
+    ConstView source;  ///< 3 or 4 channels; a fourth is ignored
+    ConstView mask;    ///< 1 channel; not 0: take the pixel from `source`
+    /// 1 channel: 0 where `source` shows nothing, else the number, 1 to 254, of the picture that
+    /// the pixel comes from (255 counts as 254). Jumps in colour between pictures are evened out.
+    /// Without data: it is one picture that shows something everywhere.
     ConstView layers = {};
   };
 
-  /// Poisson seamless cloning (Perez, Gangnet & Blake 2003): writes to `picture`, where the mask is
-  /// set and `source` shows something, colours with the gradient of `source` which pass into
-  /// `target` at the mask's outline; writes nothing else. picture: 3 channels; may be `target`.
+  /// Poisson seamless cloning (Perez, Gangnet & Blake 2003). Writes to `picture`, where the mask is
+  /// set and `source` shows something, colours with the gradient of `source` that join `target` at
+  /// the mask's outline. Writes nothing else. picture: 3 channels; may be `target`.
   ///
-  /// Beside pixels where `source` shows nothing, and at the views' border, colours are free. Parts
-  /// of the mask with no pixel of `target` beside them where `source` shows something get the mean
-  /// correction.
-  /// Throws std::invalid_argument on views of other sizes or channels.
+  /// Colours are free beside pixels where `source` shows nothing and at the views' border. Parts of
+  /// the mask without a pixel of `target` beside them where `source` shows something get the mean
+  /// correction. Throws std::invalid_argument on views of other sizes or channels.
   void clone(const Cloning& cloning, View picture);
 
-  /// Fills the pixels of `picture` where the mask is not 0 from those around them: the smoothest
-  /// filling there is (harmonic), which invents no edges. At the picture's border it is free.
-  /// picture: 3 channels. mask: 1 channel, of the same size.
-  /// Returns false, and leaves the picture alone, if the mask leaves no pixel to fill from.
-  /// Throws std::invalid_argument on views of other sizes or channels.
+  /// Fills the pixels of `picture` where the mask is not 0 from those around them, with the
+  /// smoothest filling (harmonic), which invents no edges. It is free at the picture's border.
+  /// picture: 3 channels. mask: 1 channel, same size. Returns false and leaves the picture alone if
+  /// there is no pixel to fill from. Throws std::invalid_argument on views of other sizes or
+  /// channels.
   bool fill(ConstView mask, View picture);
 
  private:

@@ -15,7 +15,7 @@
 
 namespace diminish {
 
-/// What a detector may look at: this frame, and what is known of it so far.
+/// The input of a detector: this frame and what is known of it so far.
 struct Observation {
   const FrameSet& frame;
   const Markers& markers;
@@ -23,31 +23,31 @@ struct Observation {
   const Options& options;
 };
 
-/// Finds one object to remove. Registered by name; `detector` in scene.yaml chooses.
+/// Finds one object to remove. Registered by name; chosen by `detector` in scene.yaml.
 class DIMINISH_EXPORT OccluderDetector {
  public:
   static constexpr const char* kind = "detector";
   struct Entry {
     /// Reads the detector's settings from its object's place in scene.yaml, which also has the keys
-    /// `name` and `detector`. Throws Error, naming file and key. What the settings themselves
-    /// check, it need not.
+    /// `name` and `detector`. Throws Error that names file and key. Need not check what the
+    /// settings themselves check.
     std::function<std::shared_ptr<const OccluderSettings>(const Config& place)> read;
-    /// Makes the detector. Throws Error on settings that cannot work.
+    /// Creates the detector. Throws Error on settings that cannot work.
     std::function<std::unique_ptr<OccluderDetector>(const OccluderSpec& spec, const Rig& rig)> make;
   };
   using Factory = Entry;
 
   virtual ~OccluderDetector() = default;
 
-  /// Whether the observation must hold the markers of the colour images.
+  /// Whether `Observation::markers` must be filled.
   virtual bool needs_markers() const { return false; }
 
   /// Sets the object's pixels in `masks` to 255 and leaves the others alone. `masks` has the rig's
-  /// sizes. Cameras without images in this frame are left alone too.
+  /// sizes. Leaves cameras without images in this frame alone too.
   virtual OccluderReport detect(const Observation& observation, OcclusionMasks& masks) = 0;
 };
 
-/// The object's settings as its detector's own type. Throws Error if they are of another.
+/// The object's settings, as its detector's own type. Throws Error if they have another type.
 template <class Settings>
 const Settings& settings_of(const OccluderSpec& spec) {
   const auto* const settings = dynamic_cast<const Settings*>(spec.settings.get());

@@ -12,12 +12,12 @@
 
 namespace diminish {
 
-/// Of the detector `marker`: an object with a marker on it, whose shape in the marker's frame is
+/// For the detector `marker`: an object with a marker on it, whose shape in the marker's frame is
 /// known.
 class DIMINISH_EXPORT MarkerSettings : public OccluderSettings {
  public:
   MarkerSpec marker;
-  /// At least 4, in metres. Without triangles the shape is their convex hull.
+  /// At least 4, in metres. Without triangles, the shape is their convex hull.
   std::vector<Eigen::Vector3d> vertices;
   std::vector<std::array<int, 3>> triangles;  ///< indices of vertices
   /// A Wavefront OBJ file with the shape instead; empty: none.
@@ -28,20 +28,20 @@ class DIMINISH_EXPORT MarkerSettings : public OccluderSettings {
   std::vector<std::filesystem::path> files() const override;
 };
 
-/// Of the detector `color_blob`: an object that is found by its colour.
+/// For the detector `color_blob`: an object that is found by its colour.
 class DIMINISH_EXPORT ColorBlobSettings : public OccluderSettings {
  public:
   enum class Shape { any, circle };
 
-  std::filesystem::path training;  ///< the folder with what was learnt, or is to be
+  std::filesystem::path training;  ///< the folder with the training images
   Shape shape = Shape::any;
 
   void check(const Config& place, const Rig* rig) const override;
   std::vector<std::filesystem::path> files() const override { return {training}; }
 };
 
-/// Of the detector `mask`: an object whose masks another program makes. Frames bring them
-/// (FrameSet::masks); those of a recording are read from folders.
+/// For the detector `mask`: an object whose masks another program makes. Frames contain them
+/// (FrameSet::masks); a recording's are read from folders.
 class DIMINISH_EXPORT MaskSettings : public OccluderSettings {
  public:
   std::filesystem::path color;                        ///< the colour camera's masks
@@ -50,10 +50,10 @@ class DIMINISH_EXPORT MaskSettings : public OccluderSettings {
   void check(const Config& place, const Rig* rig) const override;
 };
 
-/// Of the detector `box`: whatever the RGB-D cameras see inside a box.
+/// For the detector `box`: whatever the RGB-D cameras see inside a box.
 class DIMINISH_EXPORT BoxSettings : public OccluderSettings {
  public:
-  std::string frame = "world";  ///< or the name of an RGB-D camera, for its depth sensor's
+  std::string frame = "world";  ///< or an RGB-D camera's name, for its depth sensor's frame
   Eigen::Vector3d min_m = Eigen::Vector3d::Zero(), max_m = Eigen::Vector3d::Zero();
 
   void check(const Config& place, const Rig* rig) const override;

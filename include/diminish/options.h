@@ -8,7 +8,7 @@
 
 namespace diminish {
 
-/// Everything about a run that can be chosen. Names, units, ranges and meanings are described once,
+/// Everything that can be chosen for a run. Names, units, ranges and meanings are described once,
 /// in `for_each_option`, from which the command line and the docs are made.
 struct Options {
   double sync_tolerance_s = 0;
@@ -39,15 +39,15 @@ struct Options {
   std::string backend = "cpu";
 };
 
-/// An option's description. The range is inclusive and means nothing for texts and switches.
+/// An option's description. The range is inclusive; it has no meaning for texts and switches.
 struct OptionInfo {
-  const char* name;  ///< as in Options; the command line's spelling has '-' for '_'
+  const char* name;  ///< as in Options; the command line has "-" instead of "_"
   const char* unit;
   const char* help;
   double min = 0;
   double max = std::numeric_limits<double>::max();
-  /// Of a text: the kind of the registered methods that it can name (Interface::kind), and words
-  /// that it can be besides. Neither: any text.
+  /// For texts: the kind of the registered methods that it can name (Interface::kind), and further
+  /// words that are allowed. Neither: any text.
   const char* kind = "";
   std::vector<std::string> choices = {};
 };
@@ -56,34 +56,33 @@ struct OptionInfo {
 template <class AnyOptions, class Visit>
 void for_each_option(AnyOptions& options, Visit&& visit) {
   visit(OptionInfo{"sync_tolerance_s", "seconds",
-                   "Largest difference between the colour image's timestamp and an RGB-D image's; "
-                   "0: half a colour frame period",
+                   "Largest time difference between a colour image and its RGB-D images; 0: half a "
+                   "colour frame period",
                    0, 3600},
         options.sync_tolerance_s);
-  visit(OptionInfo{"mask_margin_px", "pixels", "Growth of the objects' masks in the colour image",
-                   0, 200},
+  visit(OptionInfo{"mask_margin_px", "pixels",
+                   "How far the objects' masks grow in the colour image", 0, 200},
         options.mask_margin_px);
   visit(OptionInfo{"soft_rim_px", "pixels",
-                   "Width, within the margin, of the passage from the camera's picture to the "
+                   "Width inside the margin over which the camera's picture fades into the "
                    "background; at most half the margin",
                    0, 100},
         options.soft_rim_px);
   visit(OptionInfo{"rgbd_mask_margin_px", "pixels",
-                   "Growth of the objects' masks in the RGB-D cameras' colour images; in their "
-                   "depth images it is scaled to the same angle",
+                   "How far the masks grow in the RGB-D cameras' colour images; scaled to the same "
+                   "angle in their depth images",
                    0, 200},
         options.rgbd_mask_margin_px);
   visit(OptionInfo{"blob_spread", "standard deviations",
                    "How far a blob's mean colour may be from the training images' mean", 0.01, 100},
         options.blob_spread);
-  visit(
-      OptionInfo{"refine_poses", "",
-                 "Correct the colour camera's pose until its picture and the RGB-D cameras' agree"},
-      options.refine_poses);
-  visit(OptionInfo{"remove_flying", "", "Leave out depth pixels that lie between two surfaces"},
+  visit(OptionInfo{"refine_poses", "",
+                   "Refine the colour camera's pose until its picture matches the RGB-D cameras'"},
+        options.refine_poses);
+  visit(OptionInfo{"remove_flying", "", "Drop depth pixels that lie between two surfaces"},
         options.remove_flying);
   visit(OptionInfo{"remove_hidden", "",
-                   "Leave out depth pixels that the RGB-D camera's colour sensor does not see"},
+                   "Drop depth pixels that the RGB-D camera's colour sensor cannot see"},
         options.remove_hidden);
   visit(
       OptionInfo{"smooth_depth", "", "Average depth over neighbouring pixels of the same surface"},
@@ -91,41 +90,42 @@ void for_each_option(AnyOptions& options, Visit&& visit) {
   visit(OptionInfo{"snap_edges", "",
                    "Move depth edges onto the edges of the RGB-D camera's colour image"},
         options.snap_edges);
-  visit(OptionInfo{"smooth_colors", "",
-                   "Average what RGB-D cameras show over neighbouring pixels of the same colour"},
-        options.smooth_colors);
-  visit(OptionInfo{"lift_shadows", "",
-                   "Show what the objects hide without the shadows that they cast on it"},
-        options.lift_shadows);
+  visit(
+      OptionInfo{
+          "smooth_colors", "",
+          "Reduce the RGB-D cameras' noise by averaging neighbouring pixels of similar colour"},
+      options.smooth_colors);
+  visit(
+      OptionInfo{"lift_shadows", "", "Remove the shadows that the objects cast on what they hide"},
+      options.lift_shadows);
   visit(OptionInfo{"remove_shadows", "",
-                   "Take away the shadows that the objects cast outside their masks, too"},
+                   "Also remove the shadows that the objects cast outside their masks"},
         options.remove_shadows);
   visit(OptionInfo{"discontinuity_threshold_m", "metres",
-                   "Depth pixels further apart than this are not joined by a triangle (SDCT)", 1e-4,
-                   100},
+                   "Largest depth step between pixels that a triangle may join (SDCT)", 1e-4, 100},
         options.discontinuity_threshold_m);
   visit(OptionInfo{"discontinuity_reach_m", "metres",
-                   "Beyond this distance the threshold grows with its square, as sensors' depth "
-                   "resolution does; 0: it is constant, as the paper's",
+                   "Beyond this distance the threshold grows with its square, like a depth "
+                   "sensor's steps; 0: constant, as in the paper",
                    0, 1000},
         options.discontinuity_reach_m);
   visit(OptionInfo{"depth_agreement_m", "metres",
-                   "Surfaces of two RGB-D cameras closer than this are one surface", 0, 100},
+                   "Surfaces of two RGB-D cameras closer than this count as one", 0, 100},
         options.depth_agreement_m);
   visit(OptionInfo{.name = "merge_cameras",
                    .unit = "method",
-                   .help = "How what several RGB-D cameras see of one surface becomes one picture",
+                   .help = "How the views of several RGB-D cameras are combined",
                    .choices = {"blend", "choose"}},
         options.merge_cameras);
   visit(OptionInfo{"surroundings_px", "pixels",
-                   "How far around the mask the scene is reconstructed", 1, 10000},
+                   "How far around the masks the scene is reconstructed", 1, 10000},
         options.surroundings_px);
   visit(OptionInfo{"whole_view", "",
-                   "Reconstruct the whole picture, not just the mask's surroundings"},
+                   "Reconstruct the whole picture instead of the masks' surroundings"},
         options.whole_view);
   visit(OptionInfo{.name = "color_correct",
                    .unit = "method",
-                   .help = "How the reconstruction's colours are corrected",
+                   .help = "How the RGB-D cameras' colours are matched to the colour camera's",
                    .kind = "colour correction"},
         options.color_correct);
   visit(OptionInfo{.name = "inpaint",
@@ -133,35 +133,36 @@ void for_each_option(AnyOptions& options, Visit&& visit) {
                    .help = "How pixels that no RGB-D camera sees are filled",
                    .kind = "inpainting method"},
         options.inpaint);
-  visit(OptionInfo{"inpaint_radius_px", "pixels", "Neighbourhood of telea and ns", 1, 100},
+  visit(OptionInfo{"inpaint_radius_px", "pixels", "Neighbourhood that telea and ns use", 1, 100},
         options.inpaint_radius_px);
   visit(OptionInfo{.name = "mode",
                    .unit = "method",
                    .help = "How the background is shown",
                    .kind = "view mode"},
         options.mode);
-  visit(OptionInfo{"keep", "names", "Objects to leave in the picture; commas between them"},
+  visit(OptionInfo{"keep", "names", "Objects to leave in the picture, separated by commas"},
         options.keep);
   visit(OptionInfo{"transparency", "",
-                   "Of the object, in the mode half: 0 shows it as it is, 1 not at all", 0, 1},
+                   "Transparency of the object in mode half; 0: opaque, 1: invisible", 0, 1},
         options.transparency);
   visit(OptionInfo{.name = "backend",
                    .unit = "method",
-                   .help = "What makes the pixels: the reconstruction and, on a GPU, the rest",
+                   .help = "Whether the CPU or the GPU makes the pixels, and how",
                    .kind = "reconstruction backend",
                    .choices = {"auto"}},
         options.backend);
 }
 
-/// Throws Error that names the option and what was given, if a value is out of range or names no
-/// registered method.
+/// Throws Error with the option and its value if the value is out of range or not a registered
+/// method.
 DIMINISH_EXPORT void check(const Options& options);
 
 struct Scene;
-/// The same, and that what `keep` names is there.
+/// The same, and checks that the objects in `keep` exist.
 DIMINISH_EXPORT void check(const Options& options, const Scene& scene);
 
-/// What an option's text can be, in the order in which it is offered; empty where it can be any.
+/// The texts that an option accepts, in the order in which they are offered; empty if it accepts
+/// any.
 DIMINISH_EXPORT std::vector<std::string> method_names(const std::string& option);
 DIMINISH_EXPORT std::vector<std::string> method_names(const OptionInfo& option);
 

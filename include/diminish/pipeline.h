@@ -33,18 +33,18 @@ class DIMINISH_EXPORT Pipeline {
   void set_options(const Options& options);
   const Options& options() const;
 
-  /// Whether `result.reconstruction` is looked at: at first it is. Where a GPU does the whole
-  /// frame, its images then stay there, and are empty in the result.
+  /// Whether the caller needs `result.reconstruction`; by default it does. If not, and a GPU makes
+  /// the whole frame, its images stay there and are empty in the result.
   void want_reconstruction(bool wanted);
 
-  /// From the next frame on, each picture goes into a texture that an application shares; nullopt:
-  /// no longer. Where a GPU does the whole frame, `result.picture` and `result.provenance` are then
-  /// empty: nothing but what is reported is read back. Where the CPU does the picture it is
-  /// uploaded, and a message says so. Throws Error where diminish was built without OpenGL, or the
-  /// context cannot be shared. To be called again where the application's context was lost.
+  /// From the next frame on, puts each picture into a texture that the application shares; nullopt:
+  /// no longer. Where a GPU makes the whole frame, `result.picture` and `result.provenance` are
+  /// then empty: only the report is read back. Where the CPU makes the picture, it is uploaded, and
+  /// a message says so. Throws Error if diminish was built without OpenGL or the context cannot be
+  /// shared. Call it again if the application's context was lost.
   void want_texture(const std::optional<GlSharing>& application);
-  /// The last frame's picture. Without a name where it was skipped, or no texture is wanted, or the
-  /// GPU failed: a message says so then, and `result.picture` is there.
+  /// The last frame's picture. It has no name if the frame was skipped, no texture is wanted, or
+  /// the GPU failed; a message says so, and `result.picture` is filled.
   const GlTexture& texture() const;
 
   /// `result`'s memory is used again. Never throws for what a camera delivered: that is reported.

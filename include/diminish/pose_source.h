@@ -12,7 +12,7 @@
 
 namespace diminish {
 
-/// Finds where the cameras are in a frame. Registered by name; `pose.source` in rig.yaml chooses.
+/// Finds the cameras' poses in a frame. Registered by name; chosen by `pose.source` in rig.yaml.
 class DIMINISH_EXPORT PoseSource {
  public:
   static constexpr const char* kind = "pose source";
@@ -24,8 +24,9 @@ class DIMINISH_EXPORT PoseSource {
   /// Whether `markers` must hold the markers of the colour images.
   virtual bool needs_markers() const = 0;
 
-  /// Fills what it can find out; `poses` comes with every entry absent, one per RGB-D camera. What
-  /// follows from the rest (`color_from_depth` from two world poses, and back) is filled in later.
+  /// Fills in the poses that it can find. `poses` comes empty, with one entry per RGB-D camera.
+  /// What follows from others (`color_from_depth` from two world poses, and back) is filled in
+  /// later.
   virtual void estimate(const FrameSet& frame, const Markers& markers, Poses& poses) = 0;
 };
 

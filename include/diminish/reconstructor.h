@@ -18,26 +18,26 @@
 
 namespace diminish {
 
-/// One for each RGB-D camera, in its own units; 0: nothing to draw.
+/// One image for each RGB-D camera, in its own units; 0: nothing to draw.
 using DepthImages = std::vector<Image<std::uint16_t>>;
 
 /// Draws what the RGB-D cameras see, without the objects, from the colour camera's viewpoint.
-/// Registered by name: one per implementation ("reference", ...).
+/// Registered by name, one per implementation ("reference", ...).
 class DIMINISH_EXPORT Reconstructor {
  public:
   static constexpr const char* kind = "reconstruction backend";
 
-  /// When the option `backend` means it by "auto".
+  /// When `backend: auto` chooses it.
   enum class Suited {
     when_named,     ///< never
-    always,         ///< where nothing better is there; it also draws where another one fails
+    always,         ///< if nothing better is there; it also draws when another backend fails
     with_hardware,  ///< first of all
   };
-  /// How to make one.
+  /// Creates a backend.
   class Factory {
    public:
     using Make = std::function<std::unique_ptr<Reconstructor>(const Rig& rig)>;
-    /// suited: asked where it matters, which may take a while.
+    /// suited: called only when needed, because it may take a while.
     Factory(Make make, std::function<Suited()> suited)
         : make_(std::move(make)), suited_(std::move(suited)) {}
     template <class AnyMake>
@@ -53,9 +53,9 @@ class DIMINISH_EXPORT Reconstructor {
 
   virtual ~Reconstructor() = default;
 
-  /// depths: of each RGB-D camera, what is to be drawn of its depth image. masks: grown already.
-  /// region: the part to draw, inside the colour image; tiles that do not belong to it come out
-  /// empty. RGB-D cameras without images or without a pose in this frame take no part.
+  /// depths: the depth image to draw for each RGB-D camera. masks: already grown. region: the part
+  /// to draw, inside the colour image; other tiles come out empty. RGB-D cameras without images or
+  /// without a pose in this frame take no part.
   virtual void reconstruct(const FrameSet& frame, const DepthImages& depths, const Poses& poses,
                            const OcclusionMasks& masks, const TiledRegion& region,
                            const Options& options, Reconstruction& reconstruction) = 0;
@@ -63,12 +63,12 @@ class DIMINISH_EXPORT Reconstructor {
   /// The name of the MaskDrawer that goes with it.
   virtual std::string mask_drawer() const { return "cpu"; }
 
-  /// The GPU that draws, by its driver's name; empty where the CPU does.
+  /// The GPU driver's name; empty if the CPU draws.
   virtual const std::string& device() const {
     static const std::string cpu;
     return cpu;
   }
-  /// What the GPU did in the last frame, pass by pass.
+  /// The GPU's passes in the last frame.
   virtual const std::vector<GpuPass>& gpu_passes() const {
     static const std::vector<GpuPass> none;
     return none;

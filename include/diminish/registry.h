@@ -12,16 +12,16 @@
 namespace diminish {
 
 namespace detail {
-// One table for the whole process, in the library: what a program or another shared object adds is
-// known to all. Methods are kept by their kind, so that whoever lists them need not know the
-// stages.
+// One table for the whole process, inside the library, so that everybody knows what a program or
+// another shared object adds. Methods are stored by kind, so that listing them needs no knowledge
+// of the stages.
 DIMINISH_EXPORT bool add_method(std::string_view kind, const std::string& name,
                                 std::shared_ptr<const void> factory);
 /// Null if there is none.
 DIMINISH_EXPORT const void* find_method(std::string_view kind, const std::string& name);
 DIMINISH_EXPORT bool leave_out_method(std::string_view kind, const std::string& name,
                                       const std::string& needed);
-/// What the method needs that this build was made without; empty if it is not one of those.
+/// What the method needs and this build lacks; empty if the build has the method.
 DIMINISH_EXPORT std::string left_out_for(std::string_view kind, const std::string& name);
 /// "unknown KIND 'NAME', expected one of A, B"
 DIMINISH_EXPORT std::string unknown_method(std::string_view kind, const std::string& name);
@@ -31,13 +31,14 @@ DIMINISH_EXPORT std::string unknown_method(std::string_view kind, const std::str
 DIMINISH_EXPORT std::vector<std::string> registered_names(std::string_view kind);
 
 /// ", which this build is without (it was built without libepoxy and EGL)"; empty for methods that
-/// are there, and for those that nobody knows.
+/// exist and for unknown ones.
 DIMINISH_EXPORT std::string left_out_note(std::string_view kind, const std::string& name);
 
-/// Implementations found by name. Each registers itself in its own file, in the library or outside:
+/// Implementations, found by name. Each registers itself in its own file, inside or outside the
+/// library:
 ///   const bool registered = Registry<Inpainter>::add("telea", [] { return ...; });
-/// `Interface::kind` names what is registered ("inpainting method"), and is unique to the
-/// interface. `Interface::Factory` is what makes one. Threads may add and look up at the same time.
+/// `Interface::kind` names the kind of method ("inpainting method") and is unique to the interface.
+/// `Interface::Factory` creates one. Threads may add and look up at the same time.
 template <class Interface>
 class Registry {
  public:
@@ -48,7 +49,7 @@ class Registry {
     return detail::add_method(Interface::kind, name,
                               std::make_shared<const Factory>(std::move(factory)));
   }
-  /// Says of a method that this build is without it, and what it needs: "libepoxy and EGL".
+  /// Registers that this build lacks a method, and what it needs: "libepoxy and EGL".
   static bool leave_out(const std::string& name, const std::string& needed) {
     return detail::leave_out_method(Interface::kind, name, needed);
   }

@@ -13,29 +13,29 @@
 namespace diminish {
 
 struct ResultWriterOptions {
-  /// Only pictures with input and result side by side (and the tables).
+  /// Write only pictures with input and result side by side (and the tables).
   bool preview_only = false;
-  /// Replace the results that the folder holds.
+  /// Replace existing results in the folder.
   bool force = false;
 };
 
 /// Writes a run's results into a folder: result/, mask/, reconstruction/, provenance/ (or
-/// preview/), frames.csv, summary.json, result.mp4 (docs/command-line.md). What is there is
-/// complete at any moment.
+/// preview/), frames.csv, summary.json, result.mp4 (docs/command-line.md). Every file is complete
+/// at any moment.
 class DIMINISH_EXPORT ResultWriter : public FrameSink {
  public:
-  /// Throws Error if the folder cannot be made, or holds something and `force` is not given. With
-  /// `force` only what this class writes is removed.
+  /// Throws Error if the folder cannot be created, or is not empty and `force` is not set. `force`
+  /// removes only what this class writes.
   ResultWriter(std::filesystem::path folder, const Rig& rig, const Options& options,
                double frames_per_second, const ResultWriterOptions& writer_options);
   ~ResultWriter() override;
 
   void write_images(const FrameSet& frame, const DiminishedFrame& result) override;
   void append(const FrameSet& frame, const DiminishedFrame& result) override;
-  /// Ends the video and writes the summary. Why there is no video, if there is none.
+  /// Ends the video and writes the summary. Returns why there is no video, if there is none.
   std::string finish(bool interrupted);
 
-  /// Frames of which an image could not be used; skipped ones too.
+  /// Frames with an unusable image, including skipped ones.
   std::size_t faulty_frames() const;
   /// For a terminal: the stages' times beside the paper's, and what was not found in how many
   /// frames.

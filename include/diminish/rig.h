@@ -22,8 +22,8 @@ struct RgbdCamera {
   RigidTransform color_from_depth;
 };
 
-/// The cameras and where their poses come from: a recording's `rig.yaml`.
-/// "The colour camera" is always the user's view; an RGB-D camera's colour sensor is named so.
+/// The cameras and the source of their poses: a recording's `rig.yaml`. "The colour camera" is
+/// always the user's view; an RGB-D camera's colour sensor is called that.
 struct Rig {
   Intrinsics color;
   std::vector<RgbdCamera> rgbd;
@@ -32,12 +32,12 @@ struct Rig {
   Config pose;
 };
 
-/// Reads `rig.yaml`. Throws Error, naming file and key.
+/// Reads `rig.yaml`. Throws Error that names file and key.
 DIMINISH_EXPORT Rig load_rig(const std::filesystem::path& file);
-/// The same for a file that has been read already.
+/// The same for a file that has already been read.
 DIMINISH_EXPORT Rig read_rig(const Config& config);
 
-/// The name by which messages call an RGB-D camera's colour sensor: "rgbd0 color".
+/// The name of an RGB-D camera's colour sensor in messages: "rgbd0 color".
 inline std::string color_sensor_name(const RgbdCamera& camera) {
   return camera.name + " color";
 }

@@ -14,35 +14,36 @@
 
 namespace diminish {
 
-/// Where an RGB-D camera's depth sensor is, seen from its own colour sensor.
+/// The pose of an RGB-D camera's depth sensor relative to its own colour sensor.
 struct DepthToColor {
   RigidTransform color_from_depth;
-  std::size_t sightings = 0;  ///< of markers, or of the board, with depth
-  /// Root mean square distance of the measured depth from the targets' planes, metres: with what
-  /// the rig says, and with the result.
+  std::size_t sightings = 0;  ///< of markers or the board, with depth
+  /// Root mean square distance of the measured depth from the targets' planes, metres: with the
+  /// rig's values and with the result.
   double error_before_m = 0, error_m = 0;
-  /// Directions, of six, that the sightings do not determine; there the rig's values stay.
+  /// Those of the six degrees of freedom that the sightings do not determine. They keep the rig's
+  /// values.
   std::vector<std::string> undetermined;
   double deviation_m = 0;  ///< standard deviation of the worst one that is determined
   std::vector<std::string> warnings;
 };
 
-/// Where an RGB-D camera is, seen from the colour camera.
+/// The pose of an RGB-D camera relative to the colour camera.
 struct ColorFromRgbd {
   RigidTransform color_from_depth;  ///< from the RGB-D camera's depth frame
-  std::size_t sightings = 0;        ///< of markers, or of the board, by both cameras
+  std::size_t sightings = 0;        ///< of markers or the board, by both cameras
   std::size_t agreeing = 0;         ///< of these, those that agree with the rest
   double error_px = 0;              ///< root mean square of the corners' reprojection errors
-  double least_error_px = 0;  ///< the same if the cameras could be elsewhere for every sighting
+  double least_error_px = 0;        ///< the same with a separate pose for every sighting
   double deviation_m = 0, deviation_deg = 0;  ///< standard deviations
   std::vector<std::string> warnings;
 };
 
-/// Calibrates the places of cameras and sensors by markers of known size (those of the scene) or by
-/// a board, seen in many frames. Keeps some hundred sightings for each camera.
+/// Calibrates the poses of cameras and sensors from markers of known size (the scene's) or a board,
+/// seen in many frames. Keeps a few hundred sightings for each camera.
 class DIMINISH_EXPORT RigCalibration {
  public:
-  /// board: looked for instead of markers. Throws Error if nothing of known size can be looked for.
+  /// board: used instead of markers. Throws Error if there is nothing of known size to look for.
   RigCalibration(const Rig& rig, const Scene& scene, const std::optional<Board>& board);
   ~RigCalibration();
   RigCalibration(RigCalibration&&) noexcept;
@@ -50,9 +51,9 @@ class DIMINISH_EXPORT RigCalibration {
 
   void add(const FrameSet& frame);
 
-  /// For the rig's RGB-D camera of this index. Throws Error that names the camera without
-  /// sightings. Planes say how the sensors lie to each other only together: six degrees of freedom
-  /// need markers that lean in three directions and more.
+  /// For the rig's RGB-D camera with this index. Throws Error that names the camera if it has no
+  /// sightings. A plane determines only three of six degrees of freedom, so markers must be tilted
+  /// in at least three directions.
   DepthToColor depth_to_color(std::size_t camera) const;
 
   /// The same between cameras. own: the RGB-D camera's color_from_depth.

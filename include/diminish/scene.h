@@ -19,20 +19,19 @@ struct MarkerSpec {
   double size_m = 0;  ///< side of the black square
 };
 
-/// What a detector must know of its object. Each detector has a type of its own
-/// (occluder_settings.h).
+/// A detector's settings for its object. Each detector has its own type (occluder_settings.h).
 class DIMINISH_EXPORT OccluderSettings {
  public:
   virtual ~OccluderSettings() = default;
 
-  /// Throws Error on settings that cannot work, by `place.find(KEY).fail(..)`: of a file, the place
-  /// is the occluder's in it. rig: null where it is not known.
+  /// Throws Error on settings that cannot work, through `place.find(KEY).fail(..)`. place: the
+  /// occluder's place in a file. rig: null if unknown.
   virtual void check(const Config& /*place*/, const Rig* /*rig*/) const {}
   /// The marker on the object, if there is one.
   virtual std::optional<MarkerSpec> marker_on_it() const { return std::nullopt; }
-  /// Whether the pose of the world is needed to find the object.
+  /// Whether the world's pose is needed to find the object.
   virtual bool needs_world() const { return false; }
-  /// Files and folders that a copy of the scene needs beside it.
+  /// The files and folders that a copy of the scene needs.
   virtual std::vector<std::filesystem::path> files() const { return {}; }
 };
 
@@ -41,19 +40,19 @@ struct OccluderSpec {
   std::string name;
   std::string detector;  ///< the name of a registered `OccluderDetector`
   std::shared_ptr<const OccluderSettings> settings;  ///< of the detector's own type
-  Config place = {};  ///< where it was read, for messages; nothing if it was not
+  Config place = {};  ///< where it was read, for messages; empty if it was not
 };
 
 /// What is in front of the cameras: a recording's `scene.yaml`.
 struct Scene {
   std::string marker_dictionary = "DICT_4X4_50";
-  MarkerSpec world_marker;  ///< of size 0: there is none
+  MarkerSpec world_marker;  ///< size 0: none
   std::vector<OccluderSpec> occluders;
 };
 
-/// Reads `scene.yaml`. Throws Error, naming file and key.
+/// Reads `scene.yaml`. Throws Error that names file and key.
 DIMINISH_EXPORT Scene load_scene(const std::filesystem::path& file);
-/// The same for a file that has been read already.
+/// The same for a file that has already been read.
 DIMINISH_EXPORT Scene read_scene(const Config& config);
 
 /// Reads `{id: .., size_m: ..}`.

@@ -8,7 +8,7 @@
 
 namespace diminish {
 
-/// A point on a surface that an RGB-D camera sees and the colour camera may see, too.
+/// A point on a surface that an RGB-D camera sees and the colour camera may see too.
 struct SceneSample {
   Eigen::Vector3f point_m = Eigen::Vector3f::Zero();  ///< in the colour camera's frame
   Eigen::Vector2f pixel = Eigen::Vector2f::Zero();    ///< its place in the colour camera's image
@@ -16,15 +16,15 @@ struct SceneSample {
       Eigen::Vector2f::Zero();  ///< its place in the RGB-D camera's colour image
   Bgr color;                    ///< the RGB-D camera's, averaged over the neighbourhood
   std::uint8_t source = 0;      ///< 1 + the RGB-D camera's index
-  bool even = false;            ///< the neighbourhood has one colour
+  bool even = false;            ///< the neighbourhood has a single colour
 };
 
-/// What the RGB-D cameras see, thinly over the whole picture.
+/// Sparse samples over the whole picture of what the RGB-D cameras see.
 struct SceneSamples {
-  /// Of surfaces, away from objects to remove and from depth edges; sorted by `source`. A few
+  /// On surfaces, away from objects to remove and from depth edges; sorted by `source`. A few
   /// thousand.
   std::vector<SceneSample> surfaces;
-  /// Of the objects to remove, in the colour camera's frame, as far as RGB-D cameras see them.
+  /// On the objects to remove, where RGB-D cameras see them, in the colour camera's frame.
   std::vector<Eigen::Vector3f> object_points_m;
 };
 

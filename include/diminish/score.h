@@ -12,7 +12,7 @@
 
 namespace diminish {
 
-/// How like the truth a set of pixels is.
+/// How close a set of pixels is to the truth.
 struct Quality {
   double psnr_db = 0;  ///< over the three channels; identical pictures count as 99
   /// Structural similarity of the brightness (Wang et al. 2004: Gaussian window of 11x11, sigma
@@ -20,36 +20,36 @@ struct Quality {
   double ssim = 0;
 };
 
-/// How far a pose is from the truth.
+/// The error of a pose.
 struct PoseError {
   double position_mm = 0;
   double rotation_deg = 0;
 };
 
-/// What errors come from: the object was not covered; no camera saw the place; the picture is
-/// shifted; edges are not where they should be; neighbouring pixels are off by the same colour;
-/// what is left.
+/// Causes of error: the object was not covered; no camera saw the place; the picture is shifted;
+/// edges are in the wrong place; neighbouring pixels share a wrong colour; the rest.
 inline constexpr std::array<const char*, 6> error_causes{"mask",  "missing", "pose",
                                                          "edges", "color",   "texture"};
-/// Shares of the squared error, by cause; they sum to 1.
+/// Shares of the squared error by cause. They sum to 1.
 using ErrorBudget = std::array<double, error_causes.size()>;
 
-/// What a viewer notices, inside the true mask (without one, the run's) grown by a square of 3
-/// pixels on each side, of the brightness after a Gaussian of 1 pixel.
+/// What a viewer notices, inside the true mask (or without one, the run's) grown by a square of 3
+/// pixels on each side, in the brightness after a Gaussian of 1 pixel.
 struct ViewerFigures {
-  /// The share of the truth's edges (Canny) that are there, within 2 pixels; the share of the
-  /// result's that are the truth's; and their harmonic mean.
+  /// The share of the truth's edges (Canny) that the result has within 2 pixels, the share of the
+  /// result's edges that the truth has, and their harmonic mean.
   double edge_recall = 0, edge_precision = 0, edge_f1 = 0;
-  /// The mean of how alike the gradients' magnitudes are (Xue et al. 2014, c = 170).
+  /// The mean similarity of the gradients' magnitudes (Xue et al. 2014, c = 170).
   double gradient_similarity = 0;
   double invented_share = 0;  ///< of the region
-  /// The gradients' mean magnitude over the truth's: 1 is right, 0.2 a smear. Absent where there
-  /// are no such pixels, or at most 50 invented ones.
+  /// The mean gradient magnitude relative to the truth's: 1 is right, 0.2 is a smear. Absent if
+  /// there are no such pixels, or at most 50 invented ones.
   std::optional<double> sharpness_seen, sharpness_invented;
   std::optional<Quality> invented;
 };
 
-/// One frame against the truth. What cannot be known (no such pixels, no truth) is absent.
+/// One frame compared with the truth. Figures that cannot be known (no such pixels, no truth) are
+/// absent.
 struct FrameScore {
   std::string name;
   std::optional<Quality> inside;   ///< inside the true mask, grown by 3 pixels
@@ -62,13 +62,13 @@ struct FrameScore {
   std::optional<double> mask_iou;
   /// The share of the true mask that the run's mask covers.
   std::optional<double> mask_recall;
-  /// Pixels outside the run's mask that differ from the input: must be 0.
+  /// Pixels outside the run's mask that differ from the input; must be 0.
   std::optional<std::size_t> changed_outside;
   /// By pose: "color_from_world", "rgbd0_depth_from_world", "color_from_rgbd0_depth".
   std::map<std::string, PoseError> poses;
 };
 
-/// A run against its recording's truth.
+/// A run compared with its recording's truth.
 struct Score {
   std::vector<FrameScore> frames;
   /// The mean over the frames that have the figure; `changed_outside` is the sum, the edges' F1
@@ -79,16 +79,16 @@ struct Score {
   /// The mean absolute change of (result - truth) between consecutive frames inside both true
   /// masks, grey levels.
   std::optional<double> flicker;
-  /// Frames that the recording has and the run did not write.
+  /// Frames of the recording that the run did not write.
   std::vector<std::string> not_written;
 };
 
-/// Compares the results in `run` (of `diminish run`) with `recording`/truth. Throws Error if either
-/// folder lacks what is needed.
+/// Compares the results in `run` (from `diminish run`) with `recording`/truth. Throws Error if
+/// either folder lacks something.
 DIMINISH_EXPORT Score score_run(const std::filesystem::path& recording,
                                 const std::filesystem::path& run);
-/// The same; also writes run/score/NAME.png, cut to the object's surroundings: input, result,
-/// truth; four times the error, provenance, and the causes of the error, each in its colour.
+/// The same. Also writes run/score/NAME.png, cropped to the object's surroundings: input, result,
+/// truth; four times the error, provenance, and the causes of error, each in its colour.
 DIMINISH_EXPORT Score score_run_with_pictures(const std::filesystem::path& recording,
                                               const std::filesystem::path& run);
 

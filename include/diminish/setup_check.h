@@ -11,7 +11,7 @@
 
 namespace diminish {
 
-/// Something that is wrong with a set-up.
+/// Something wrong with a set-up.
 struct Finding {
   enum class Severity { warning, serious };
 
@@ -22,7 +22,7 @@ struct Finding {
   std::string remedy;  ///< what to do
 };
 
-/// Something that was measured, wrong or not.
+/// A measured figure, right or wrong.
 struct SetupFigure {
   std::string name;
   double value = 0;
@@ -37,11 +37,11 @@ struct SetupReport {
   bool fine() const { return findings.empty(); }
 };
 
-/// Looks at a set-up's frames and says what is wrong with its configuration. Of causes that would
-/// explain the same figures the one that makes the cameras' pictures agree best is named, and what
-/// follows from a cause that was found is not complained of again. Keeps six frames in memory.
-/// Throws Error on configurations that cannot be read at all. Cost: as running the first
-/// stages, and some seconds.
+/// Checks a set-up's frames and says what is wrong with its configuration. Of several causes that
+/// would explain the same figures, names the one that makes the cameras' pictures agree best. Once
+/// a cause is found, its consequences are not reported again. Keeps six frames in memory. Throws
+/// Error on configurations that cannot be read at all. Cost: the first stages of the pipeline, plus
+/// some seconds.
 DIMINISH_EXPORT SetupReport check_setup(const Rig& rig, const Scene& scene, FrameSource& source,
                                         std::size_t most_frames = 300);
 

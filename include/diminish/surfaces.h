@@ -6,19 +6,19 @@
 
 namespace diminish {
 
-/// What Surfaces::label says of a pixel.
+/// Values of Surfaces::label.
 namespace surface_label {
 inline constexpr std::uint8_t unknown =
-    0;  ///< nothing was measured there, nor is a plane behind it
-inline constexpr std::uint8_t first_plane = 1;   ///< and further ones: on a plane of the background
+    0;  ///< nothing was measured there, and no plane is behind it
+inline constexpr std::uint8_t first_plane = 1;   ///< and above: on a plane of the background
 inline constexpr std::uint8_t foreground = 255;  ///< measured, in front of the planes
 }  // namespace surface_label
 
 /// The background's planes in the colour camera's view. Images have its size and are known in
-/// `region`; they are empty where nobody looked for planes or shadows.
+/// `region`; they are empty if planes or shadows were not looked for.
 struct Surfaces {
   Rect region;
-  /// See surface_label. Where nothing was drawn, the plane that would be seen there.
+  /// See surface_label. Where nothing was drawn, the plane that would be visible there.
   Image<std::uint8_t> label;
   /// The share of the light on the planes that the objects to remove leave; 255: all of it.
   Image<Bgr> light;

@@ -10,16 +10,16 @@
 
 namespace diminish {
 
-/// A part of the picture: a rectangle, or those of its tiles that are near an object. A slender
-/// object's bounding box is mostly empty.
+/// A part of the picture: a rectangle, or those of its tiles that are near an object. (The bounding
+/// box of a slender object is mostly empty.)
 class DIMINISH_EXPORT TiledRegion : public Rect {
  public:
-  static constexpr int tile = 16;  ///< pixels; tiles begin at multiples of it in the picture
+  static constexpr int tile = 16;  ///< pixels; tiles begin at multiples of it
 
   TiledRegion() = default;
-  /// All of the rectangle.
+  /// The whole rectangle.
   TiledRegion(const Rect& box) : Rect(box) {}
-  /// Becomes all of the rectangle, and keeps its memory.
+  /// Becomes the whole rectangle. Keeps its memory.
   void set(const Rect& box) {
     Rect::operator=(box);
     first_column_ = first_row_ = columns_ = rows_ = 0;
@@ -27,12 +27,12 @@ class DIMINISH_EXPORT TiledRegion : public Rect {
     sums_.clear();
   }
 
-  /// Leaves out the tiles that are further than `distance_px`, rounded up to whole tiles, from all
-  /// tiles that hold a part of an object.
+  /// Removes tiles that are further than `distance_px`, rounded up to whole tiles, from every tile
+  /// with a part of an object.
   void keep_near(const Mask& objects, int distance_px);
 
-  /// The tiles that meet the rectangle, counted from the picture's first, and by row whether each
-  /// is kept; none where all are.
+  /// The tiles that overlap the rectangle, counted from the picture's first tile; and row by row
+  /// whether each is kept, empty if all are.
   Rect tiles() const { return {first_column_, first_row_, columns_, rows_}; }
   const std::vector<std::uint8_t>& kept_tiles() const { return kept_; }
 
@@ -42,7 +42,7 @@ class DIMINISH_EXPORT TiledRegion : public Rect {
   bool keeps(int column, int row) const {
     return is_whole() || kept_[index(column / tile - first_column_, row / tile - first_row_)] != 0;
   }
-  /// Whether anything of `pixels` belongs to it. Cost: that of a pixel.
+  /// Whether any of `pixels` belongs to it. Cost: that of a single pixel.
   bool touches(const Rect& pixels) const;
   /// Calls visit(first, last) for each run [first, last) of columns in a row of the rectangle that
   /// do not belong to it.

@@ -6,13 +6,13 @@
 
 namespace diminish {
 
-/// Throws Error that names the key, as in rig.yaml, and what was expected there:
-/// "color.width: expected a whole number from 8 to 16384, got '0'". Files are checked in the same
-/// way when they are read, with file and line in front; Pipeline checks what it is given.
+/// Throws Error that names the key as in rig.yaml and what was expected: "color.width: expected a
+/// whole number from 8 to 16384, got '0'". Files are checked in the same way when read, with file
+/// and line in front. Pipeline checks its arguments too.
 DIMINISH_EXPORT void validate(const Rig& rig);
 /// The same for a scene.
 DIMINISH_EXPORT void validate(const Scene& scene);
-/// The same, and that the scene goes with the rig.
+/// The same, and that the scene fits the rig.
 DIMINISH_EXPORT void validate(const Scene& scene, const Rig& rig);
 
 }  // namespace diminish

@@ -12,7 +12,7 @@
 namespace diminish {
 
 /// How the hidden background is shown: people look through objects for different reasons.
-/// Registered by name; the option `mode` chooses.
+/// Registered by name; chosen by the option `mode`.
 class DIMINISH_EXPORT ViewMode {
  public:
   static constexpr const char* kind = "view mode";
@@ -21,7 +21,7 @@ class DIMINISH_EXPORT ViewMode {
   virtual ~ViewMode() = default;
 
   /// camera: the colour camera's image, with the object. `result` shows the background in its
-  /// place; changes `result.picture` inside `result.mask`, and nothing else.
+  /// place. Changes `result.picture` inside `result.mask`, and nothing else.
   virtual void show(const Image<Bgr>& camera, const Options& options,
                     DiminishedFrame& result) const = 0;
 };

@@ -11,30 +11,30 @@
 namespace diminish {
 
 struct WebServerOptions {
-  /// On which of the machine's addresses. Other ones than loopback need a token.
+  /// The address to listen on. Any address but loopback needs a token.
   std::string address = "127.0.0.1";
-  /// 0: any that is free.
+  /// 0: any free port.
   int port = 8080;
-  /// What requests must carry, as "Authorization: Bearer TOKEN" or "?token=TOKEN". Empty: nothing.
+  /// The token that requests must carry, as "Authorization: Bearer TOKEN" or "?token=TOKEN". Empty:
+  /// none.
   std::string token;
-  /// Where recordings that are asked for go, each into a folder of its own; empty: none can be
-  /// made.
+  /// The folder for recordings, each in a folder of its own. Empty: recording is not allowed.
   std::filesystem::path recordings;
-  /// The set-up's files, for recordings.
+  /// The set-up's files, which recordings copy.
   std::filesystem::path rig_file, scene_file;
-  /// Pictures are streamed to so many at a time; further ones are told to come back later.
+  /// The most viewers of streams at a time. Further ones are told to come back later.
   std::size_t most_viewers = 16;
-  /// Of streamed pictures, 1 to 100.
+  /// Quality of streamed pictures, 1 to 100.
   int jpeg_quality = 85;
 };
 
-/// A live session on a web page, and behind it an HTTP API (docs/http-api.md). Has threads of its
-/// own. A picture is compressed once for all who look; those who are slow get fewer.
+/// A live session on a web page, with an HTTP API behind it (docs/http-api.md). Has its own
+/// threads. Each picture is compressed once for all viewers; slow viewers get fewer.
 class DIMINISH_EXPORT WebServer {
  public:
-  /// Starts. Throws Error if the address cannot be used, or needs a token and has none.
+  /// Starts. Throws Error if the address cannot be used, or needs a token and there is none.
   WebServer(LiveSession& session, const WebServerOptions& options);
-  /// Stops; ends the recording.
+  /// Stops, and ends the recording.
   ~WebServer();
   WebServer(const WebServer&) = delete;
   WebServer& operator=(const WebServer&) = delete;

@@ -11,11 +11,11 @@
 
 namespace diminish {
 
-/// Puts the reconstruction where the objects are (Meerits & Saito 2015, section 3.4). One call a
-/// stage, in this order, on a result whose reconstruction and surfaces are there.
+/// Puts the reconstruction where the objects are (Meerits & Saito 2015, section 3.4). One call per
+/// stage, in this order, on a result that has its reconstruction and surfaces.
 class Compositor {
  public:
-  /// What every stage looks at.
+  /// The input of every stage.
   struct Inputs {
     const Image<Bgr>& camera;  ///< the colour camera's image
     const Mask& occlusion;     ///< of the objects to remove
@@ -23,21 +23,20 @@ class Compositor {
     const Options& options;
   };
 
-  /// Stage::compositing. Fills picture, mask, provenance and the pixel counts: the picture is the
-  /// camera's, and the mask's pixels are those that were seen and those to be inpainted.
+  /// Stage::compositing. Fills picture, mask, provenance and the pixel counts. The picture becomes
+  /// the camera's, and the mask's pixels are sorted into seen ones and ones to inpaint.
   static void sort(const Inputs& inputs, DiminishedFrame& result);
 
-  /// Stage::colors. Pixels that were seen get their corrected colour, without the objects' shadows.
+  /// Stage::colors. Gives seen pixels their corrected colour, without the objects' shadows.
   void correct_colors(const Inputs& inputs, ColorMapsBySource maps, ColorCorrector& corrector,
                       DiminishedFrame& result) const;
 
-  /// Stage::inpainting. Fills the other pixels of the mask, and marks those as unknown that cannot
-  /// be filled. They are filled from pixels as they were seen: that is 0.1 dB better than from
-  /// smoothed ones.
+  /// Stage::inpainting. Fills the other pixels of the mask and marks those that cannot be filled as
+  /// unknown. Fills them from unsmoothed pixels, which is 0.1 dB better than from smoothed ones.
   void inpaint(const Inputs& inputs, Inpainter& inpainter, DiminishedFrame& result);
 
-  /// Stage::finish. Takes out noise, gives the camera back what is outside the mask, bit for bit,
-  /// softens the rim, and shows it all as `mode` does.
+  /// Stage::finish. Removes noise, restores the camera's picture outside the mask, bit for bit,
+  /// softens the rim, and applies `mode`.
   void finish(const Inputs& inputs, const ViewMode& mode, DiminishedFrame& result);
 
  private:

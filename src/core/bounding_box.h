@@ -32,7 +32,7 @@ inline int last_set(const std::uint8_t* row, int count) {
   return end - 1;
 }
 
-/// The smallest rectangle that holds all non-zero pixels inside `part` of a mask whose rows are
+/// The smallest rectangle that contains all non-zero pixels inside `part` of a mask whose rows are
 /// `stride` bytes apart.
 inline Rect bounding_box(const std::uint8_t* mask, std::ptrdiff_t stride, const Rect& part) {
   int left = part.width;

@@ -8,8 +8,8 @@
 
 namespace diminish {
 
-/// Which pixels are neighbours: those that share a side (four), or also those that share a corner
-/// (eight).
+/// Which pixels are neighbours: those that share a side (four), or those that share a side or a
+/// corner (eight).
 enum class Connectivity { four, eight };
 
 /// Finds the connected regions of a set of pixels by uniting the runs of neighbouring rows. Reuses

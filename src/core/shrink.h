@@ -18,8 +18,7 @@ inline Rect shrunk_bounds(const Image<Bgr>& image, int scale) {
 }
 
 /// Makes each pixel of `small` the rounded mean of `scale` x `scale` pixels of `image`, in a part
-/// of `shrunk_bounds`.
-/// scale: 1 to 16. `scratch` is memory to use again.
+/// of `shrunk_bounds`. scale: 1 to 16. `scratch` is memory to reuse.
 void shrink(const Image<Bgr>& image, int scale, const Rect& part,
             std::vector<std::uint16_t>& scratch, Image<Bgr>& small);
 

@@ -13,15 +13,16 @@
 
 namespace diminish {
 
-/// Gets all depth images ready to be drawn: cleans what may show up in the colour camera's picture.
+/// Prepares all depth images for drawing: cleans what may be visible in the colour camera's
+/// picture.
 class DepthStage {
  public:
   explicit DepthStage(const Rig& rig);
 
-  /// poses: as measured. drawn: the part of the picture that will be drawn, once poses are refined.
+  /// poses: as measured. drawn: the part of the picture that will be drawn after poses are refined.
   void clean(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks,
              const Rect& drawn, const Options& options);
-  /// Of cameras without images or without a pose, any.
+  /// Unspecified for cameras without images or without a pose.
   const DepthImages& depths() const { return depths_; }
 
  private:

@@ -28,7 +28,7 @@ OccluderStage::OccluderStage(const Rig& rig, const Scene& scene) : rig_(rig) {
     masks_.rgbd_depth.emplace_back(camera.depth.width, camera.depth.height);
   }
   parts_.resize(drawings_.size());
-  processor_ = Registry<MaskDrawer>::get("cpu")();
+  cpu_ = Registry<MaskDrawer>::get("cpu")();
 }
 
 bool OccluderStage::needs_markers() const {
@@ -121,8 +121,8 @@ void OccluderStage::draw_by_chosen() {
     drawer_->draw(drawings_);
   } catch (const Error& error) {
     drawer_.reset();
-    message_ = std::string(error.what()) + "; masks were drawn by the processor instead";
-    processor_->draw(drawings_);
+    message_ = std::string(error.what()) + "; masks were drawn by the CPU instead";
+    cpu_->draw(drawings_);
   }
 }
 

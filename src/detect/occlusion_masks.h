@@ -19,19 +19,19 @@ class OccluderStage {
   /// Whether the observation must hold the markers of the colour images.
   bool needs_markers() const;
 
-  /// drawer: of a registered MaskDrawer; "cpu" at first. Where that fails the processor draws, and
-  /// it begins anew in the next frame.
+  /// drawer: a registered MaskDrawer's name; "cpu" at first. If it fails, the CPU draws, and the
+  /// next frame tries again.
   void draw_by(const std::string& drawer);
 
   /// Replaces the masks by the union of all objects' masks in this frame, grown by the options'
-  /// margins, and `reports` by one report for each object. Those that the option `keep` names are
-  /// not looked for.
+  /// margins, and `reports` by one report for each object. Objects in the option `keep` are not
+  /// looked for.
   void detect(const Observation& observation, std::vector<OccluderReport>& reports);
 
   const OcclusionMasks& masks() const { return masks_; }
   /// The colour camera's mask's bounding box.
   const Rect& objects() const { return objects_; }
-  /// Why the last frame's masks were not drawn as was chosen; empty where they were.
+  /// Why the last frame's masks were not drawn as chosen; empty if they were.
   const std::string& message() const { return message_; }
 
  private:
@@ -44,13 +44,13 @@ class OccluderStage {
   std::vector<std::unique_ptr<OccluderDetector>> detectors_;
   std::vector<std::string> names_;  ///< of the objects
   OcclusionOutlines outlines_;
-  bool is_blank_ = true;               ///< no detector has set pixels in this frame
+  bool is_blank_ = true;               ///< no detector has set pixels in this frame yet
   std::vector<MaskDrawing> drawings_;  ///< color, and of each RGB-D camera color and depth
   OcclusionMasks masks_;
   std::vector<Rect> parts_;  ///< in the order of drawings: outside of which masks are 0
   Rect objects_;
   std::string drawer_name_ = "cpu";
-  std::unique_ptr<MaskDrawer> drawer_, processor_;
+  std::unique_ptr<MaskDrawer> drawer_, cpu_;
   std::string message_;
 };
 

@@ -97,8 +97,7 @@ TEST(OccluderStage, WhereTheGpuFailsTheProcessorDraws) {
   for (int frame = 1; frame <= 2; ++frame) {
     stage.detect(detection.observation(), reports);
     EXPECT_EQ(count_nonzero(masks.color, masks.color.bounds()), 13U);
-    EXPECT_EQ(stage.message(),
-              "the driver lost the context; masks were drawn by the processor instead");
+    EXPECT_EQ(stage.message(), "the driver lost the context; masks were drawn by the CPU instead");
     EXPECT_EQ(BrokenDrawer::made, frame);
   }
   stage.draw_by("cpu");

@@ -15,18 +15,18 @@
 
 namespace diminish::gl {
 
-/// Takes a frame from the reconstruction to the picture on the GPU: what the Compositor does, and
-/// before it the labels of surfaces and the light on them, each a compute pass over the region.
-/// Made, used (but for what is said) and deleted while the context is current.
+/// Takes a frame from the reconstruction to the picture on the GPU. Does what the Compositor does,
+/// and before that the labels of surfaces and the light on them, each in a compute pass over the
+/// region. Create, use (unless stated otherwise) and delete it while the context is current.
 class FrameCompositor {
  public:
-  /// ComposingReconstructor::takes_over. Everything that only the CPU does is so by this rule.
+  /// ComposingReconstructor::takes_over. This rule alone decides what only the CPU does.
   static bool takes_over(Stage stage, const FrameMethods& methods);
-  /// Whether the reconstruction is filled, too.
+  /// Whether the reconstruction is filled too.
   static bool gives_reconstruction(const FrameInputs& inputs, Stage last);
   /// Whether picture and provenance are.
   static bool gives_picture(const FrameInputs& inputs, Stage last);
-  /// What `pack` adds to an upload at most.
+  /// The most bytes that `pack` adds to an upload.
   static std::size_t most_added_bytes(const Rig& rig);
 
   explicit FrameCompositor(const Rig& rig);
@@ -34,16 +34,16 @@ class FrameCompositor {
   /// Adds the frame to the upload, which has packed it; needs no context. last: the stage up to
   /// which the frame is done here.
   void pack(const FrameInputs& inputs, Stage last, FrameUpload& upload);
-  /// After the upload was sent. reconstruction: of the region, in the upload's order of cameras.
-  /// What was asked for is on its way to the CPU afterwards.
+  /// Call after the upload was sent. reconstruction: of the region, in the upload's order of
+  /// cameras. What was requested is then on its way to the CPU.
   void run(const FrameInputs& inputs, const FrameUpload& upload,
            const ResultBuffers& reconstruction, PassTimer& timer);
-  /// Fills what `run` has made, when it is done; needs no context. Outside the region result's
-  /// images are the caller's.
+  /// Fills in the results of `run` when it is done. Needs no context. Outside the region the
+  /// result's images are the caller's business.
   void read(const FrameInputs& inputs, const FrameUpload& upload, DiminishedFrame& result) const {
     download_.read(inputs, upload, result);
   }
-  /// The region's pixels, as `run` has made them: colour, and any byte.
+  /// The region's pixels from `run`: colour, and any byte.
   const Buffer& picture() const { return picture_; }
 
  private:

@@ -20,30 +20,30 @@ inline void bind_work(const Buffer& work, int camera) {
                     sizeof(WorkBlock));
 }
 
-/// One way to find what is seen in each pixel. Made, used and deleted while the context is current.
+/// A way to find what is seen in each pixel. Create, use and delete it while the context is
+/// current.
 class Rasterizer {
  public:
   virtual ~Rasterizer() = default;
 
-  /// The files that define kept_inverse_z_at(), seen_place() and seen_color() for the passes that
-  /// follow.
+  /// The shader files that define kept_inverse_z_at(), seen_place() and seen_color() for later
+  /// passes.
   virtual std::vector<std::string> seen_files() const = 0;
-  /// Finds what the cameras see, in the frame that is bound. work: a WorkBlock for each of them,
-  /// with nothing in it.
+  /// Finds what the cameras see in the bound frame. work: an empty WorkBlock for each camera.
   virtual void draw(const FrameUpload& upload, const Rect& region, const Buffer& work,
                     PassTimer& timer) = 0;
-  /// Binds what those functions read.
+  /// Binds what these functions read.
   virtual void bind_seen() const = 0;
 };
 
-/// The frame around a Rasterizer: one upload, the cameras merged or blended by layers.h's rules,
-/// where it is asked for the way to the picture (FrameCompositor), one download.
+/// The frame around a Rasterizer: one upload, the cameras merged or blended by the rules of
+/// layers.h, the way to the picture if wanted (FrameCompositor), one download.
 class GlReconstructor : public ComposingReconstructor {
  public:
   using MakeRasterizer =
       std::function<std::unique_ptr<Rasterizer>(const Rig& rig, const FrameUpload& upload)>;
 
-  /// Throws Error where there is no driver that can do it.
+  /// Throws Error if no driver can do it.
   GlReconstructor(const Rig& rig, const MakeRasterizer& make_rasterizer);
   ~GlReconstructor() override;
 

@@ -8,7 +8,7 @@
 
 namespace diminish::membrane {
 
-// The inner loops of MembraneSolver, vectorised for whatever the processor has. `values` and
+// The inner loops of MembraneSolver, vectorised for whatever the CPU has. `values` and
 // `right_side` are a level's x and right_side, or its error and residual.
 
 /// The key of a pixel with a given value (Dirichlet).

@@ -7,29 +7,29 @@
 
 namespace diminish {
 
-/// The reconstruction backend that Options::backend names. Where a GPU fails in a frame, the CPU
-/// draws it, and the next frame begins with a new context.
+/// The reconstruction backend that Options::backend names. If a GPU fails in a frame, the CPU draws
+/// it, and the next frame starts with a new context.
 class Backend {
  public:
   explicit Backend(const Rig& rig) : rig_(rig) {}
 
-  /// name: of a registered Reconstructor, or "auto". Throws Error where it cannot work here.
+  /// name: a registered Reconstructor's, or "auto". Throws Error if it cannot work here.
   void choose(const std::string& name);
-  /// Reconstructor::mask_drawer of the chosen one.
+  /// Reconstructor::mask_drawer of the chosen backend.
   std::string mask_drawer() { return chosen().mask_drawer(); }
 
-  /// Forgets what failed in the last frame, and what it had taken over.
+  /// Forgets what failed and what was taken over in the last frame.
   void begin_frame() {
     message_.clear();
     last_ = Stage::drawing;
   }
-  /// Stage::drawing, and the stages after it that the backend takes over. Fills
-  /// `result.report.drawing`, too.
+  /// Does Stage::drawing and the stages after it that the backend takes over. Also fills
+  /// `result.report.drawing`.
   void draw(const FrameInputs& inputs, DiminishedFrame& result);
   /// Whether the backend has taken this stage over in this frame.
   bool has_done(Stage stage) const { return stage > Stage::drawing && stage <= last_; }
 
-  /// Why the frame was not drawn by the chosen backend; empty where it was.
+  /// Why the chosen backend did not draw the frame; empty if it did.
   const std::string& message() const { return message_; }
 
  private:

@@ -5,8 +5,8 @@
 
 namespace diminish {
 
-/// Throws Error where a frame's images are not of the rig's sizes. Frame sources deliver such; a
-/// program that makes its own frames may not.
+/// Throws Error if a frame's images do not have the rig's sizes. Those of frame sources do; those
+/// of a program's own frames may not.
 void expect_sizes(const FrameSet& frame, const Rig& rig);
 
 }  // namespace diminish

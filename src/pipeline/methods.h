@@ -8,8 +8,8 @@
 
 namespace diminish {
 
-/// The registered methods of one kind that have been asked for, made once each, so that they keep
-/// their memory from frame to frame.
+/// The registered methods of one kind that have been used. Each is created once and keeps its
+/// memory from frame to frame.
 template <class Interface>
 class Methods {
  public:

@@ -11,10 +11,10 @@
 
 namespace diminish {
 
-/// Finds the markers in all colour images of a frame, each image in a thread of its own.
+/// Finds the markers in all colour images of a frame, each image in its own thread.
 class FrameMarkers {
  public:
-  /// wanted: where not, none are looked for. Throws Error for an unknown dictionary.
+  /// wanted: if false, none are looked for. Throws Error for an unknown dictionary.
   FrameMarkers(const Rig& rig, const std::string& dictionary, bool wanted);
 
   /// Cameras without an image have none.

@@ -21,9 +21,9 @@ class Background {
   struct Wanted {
     bool planes, shadows;  ///< shadows only with planes
   };
-  /// objects: where they are in the colour camera's picture.
+  /// Finds the planes and shadows. objects: their box in the colour camera's picture.
   void find(const Rect& objects, const SceneSamples& samples, const Wanted& wanted);
-  /// Null where they were not looked for.
+  /// Null if they were not looked for.
   const std::vector<BackgroundPlane>* planes() const {
     return has_planes_ ? &planes_.planes() : nullptr;
   }
@@ -31,7 +31,8 @@ class Background {
   /// The shadows' place in the colour camera's picture.
   Rect shaded_part() const { return shadows_.bounds(); }
 
-  /// Which plane each pixel of the drawn scene shows, and how much light the shadows leave it.
+  /// Fills in which plane each pixel of the drawn scene shows, and how much light the shadows leave
+  /// on it.
   void label(const Reconstruction& reconstruction, Surfaces& surfaces);
 
  private:

@@ -8,8 +8,8 @@
 
 namespace diminish {
 
-/// A row of a table of times: a stage of the frame, an operation of the paper's Table 2 (Meerits &
-/// Saito 2015, on an i7-4770K and a GTX 780), which is a sum of stages, or the whole frame.
+/// A row of a table of times: a stage of the frame; an operation of the paper's Table 2 (Meerits &
+/// Saito 2015, on an i7-4770K and a GTX 780), which sums stages; or the whole frame.
 struct TimeRow {
   const char* key;       ///< in files
   const char* title;     ///< in tables
