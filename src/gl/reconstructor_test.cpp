@@ -209,7 +209,7 @@ TEST_P(ThreeCameras, ThroughEveryLens) {
       scene.rig.color = testing::small_rig(0, users).color;
       for (const char* merge : {"choose", "blend"}) {
         options.merge_cameras = merge;
-        const Difference difference = beside_the_cpu_backend();
+        const Difference difference = beside_the_cpus();
         expect_alike(difference);
         EXPECT_GT(difference.drawn, difference.pixels / 2);
       }

@@ -8,6 +8,7 @@
 #include "analytic_scene.h"
 #include "diminish/error.h"
 #include "diminish/frame_source.h"
+#include "diminish/occluder_settings.h"
 #include "mask_overlap.h"
 #include "paths.h"
 #include "picture_difference.h"
@@ -163,8 +164,9 @@ class PipelineOnAnalyticScene : public ::testing::Test {
     rig = scene_frame.rig;
     rig.pose_source = "fixed";
     rig.pose = Config::parse(yaml);
-    scene.occluders = {
-        {"patch", "mask", Config::parse("{name: patch, detector: mask, color: masks/color}")}};
+    auto settings = std::make_shared<MaskSettings>();
+    settings->color = "masks/color";
+    scene.occluders = {{"patch", "mask", settings}};
     frame = scene_frame.frame;
     GivenMask mask{"patch", Mask(rig.color.width, rig.color.height, 0), std::vector<Mask>(1)};
     mask.color.fill({40, 60, 50, 30}, 255);

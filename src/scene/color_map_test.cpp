@@ -265,7 +265,8 @@ TEST(MappedCorrection, IsNotDrawnAlongByTheRim) {
   const Image<Bgr> picture = looks.corrected("field_membrane");
   for (int y = 0; y < 300; ++y) {
     for (int x = 0; x < 400; ++x) {
-      if (looks.occlusion(x, y) == 0) ASSERT_EQ(picture(x, y), looks.camera(x, y)) << "it stays";
+      if (looks.occlusion(x, y) != 0) continue;
+      ASSERT_EQ(picture(x, y), looks.camera(x, y)) << "it stays";
     }
   }
   for (int x = 130; x < 270; ++x) {
