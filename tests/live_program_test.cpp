@@ -53,7 +53,7 @@ TEST(LiveProgram, ChecksLiveCameras) {
       {"check", calendar, "--color", replay, "--rgbd", replay, "--seconds", "3", "--frames", "8"});
   EXPECT_EQ(fine.exit_code, 0) << fine.out << fine.err;
   EXPECT_THAT(fine.out, AllOf(ContainsRegex("color: side of marker 0 +14[0-9]\\."),
-                              ContainsRegex("[1-8] frames: nothing wrong was found")));
+                              ContainsRegex("[1-8] frames: no problems found")));
   const auto gone = Program::run({"check", calendar, "--color", replay, "--rgbd",
                                   "recording:/nowhere", "--seconds", "3", "--frames", "8"});
   EXPECT_EQ(gone.exit_code, 3) << gone.err;

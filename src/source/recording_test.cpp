@@ -259,7 +259,7 @@ TEST(Recording, GivenMasks) {
   const TinyRecording recording;
   recording.write("scene.yaml",
                   "occluders:\n"
-                  "  - {name: ball, detector: color_blob}\n"
+                  "  - {name: ball, detector: color_blob, training: training}\n"
                   "  - {name: cup, detector: mask, color: masks/color, rgbd0: masks/rgbd0}\n"
                   "  - {name: box, detector: mask, color: masks/color}\n");
   cv::Mat mask = black(40, 30, CV_8UC3);

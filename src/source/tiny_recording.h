@@ -18,7 +18,7 @@ class TinyRecording {
  public:
   TinyRecording() {
     write("rig.yaml", rig());
-    write("scene.yaml", "occluders: [{name: ball, detector: color_blob}]\n");
+    write("scene.yaml", "occluders: [{name: ball, detector: color_blob, training: training}]\n");
     for (const char* list : {"color", "rgbd0_color", "rgbd0_depth"}) write_list(list, {0, 1, 2});
     for (int i = 0; i < 3; ++i) {
       write(fmt::format("color/{}.png", i), cv::Mat(30, 40, CV_8UC3, cv::Scalar(i, 50, 200)));

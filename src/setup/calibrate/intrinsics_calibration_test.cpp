@@ -233,7 +233,7 @@ TEST(ViewCollection, SaysWhichViewsDoNotHelp) {
   BoardView again = projected_view(1, truth);
   again.pixels[3].x() += 5;
   again.name = "again";
-  EXPECT_THAT(collection.add(again), HasSubstr("as 1 does"));
+  EXPECT_THAT(collection.add(again), HasSubstr("like 1"));
   EXPECT_EQ(collection.add(projected_view(2, truth)), "");
   EXPECT_EQ(collection.views().size(), 2U);
 }

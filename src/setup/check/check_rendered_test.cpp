@@ -25,7 +25,7 @@ struct WavedMarker {
     scene = read_scene(
         Config::parse("world_marker: {id: 0, size_m: 0.2}\n"
                       "occluders: [{name: a, detector: marker, marker: {id: 1, size_m: 0.15}, "
-                      "vertices: [[0, 0, 0]]}]\n"));
+                      "vertices: [[0, 0, 0], [0.1, 0, 0], [0, 0.1, 0], [0, 0, 0.1]]}]\n"));
     const testing::TargetRenderer color(rig.color);
     const testing::TargetRenderer rgbd_color(camera.color);
     const testing::TargetRenderer depth(camera.depth);
