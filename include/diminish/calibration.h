@@ -80,8 +80,8 @@ struct IntrinsicsCalibration {
   };
 
   Intrinsics intrinsics;
-  /// Standard deviations of fx, fy, cx, cy, k1, k2, p1, p2, k3; 0 for parameters that were not
-  /// fitted.
+  /// Standard deviations of fx, fy, cx, cy and the distortion coefficients, in the lens model's
+  /// order; 0 for parameters that were not fitted.
   std::array<double, 12> deviations{};
   double error_px = 0;  ///< root mean square over the corners of the views used
   std::vector<View> views;

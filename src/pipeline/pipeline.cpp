@@ -23,7 +23,7 @@
 namespace diminish {
 namespace {
 
-/// A result without anything of an earlier frame; its memory stays.
+/// A result without anything of an earlier frame. A skipped frame's images are empty.
 void begin(const FrameSet& frame, DiminishedFrame& result) {
   result.name = frame.name;
   result.index = frame.index;

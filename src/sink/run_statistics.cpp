@@ -5,6 +5,7 @@
 #include <algorithm>
 
 namespace diminish {
+
 void RunStatistics::add(const FrameReport& report) {
   if (!report.faults.empty() || report.skipped) ++faulty_;
   for (const std::string& message : report.messages) ++messages_[message];

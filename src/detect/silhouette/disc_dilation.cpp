@@ -4,6 +4,7 @@
 #include <cmath>
 
 namespace diminish {
+
 void DiscDilation::dilate(Mask& mask, const Rect& part, int radius) {
   copy_part(mask, part);
   spread_runs(part, radius, Pixels::set, 255, mask);

@@ -32,8 +32,7 @@ void check_streams(Diagnosis& setup) {
         fmt::format("{} of {} frames have no images of {}", missing, setup.survey.frames, name),
         setup.survey.first_missing[k],
         "synchronise the clocks, or shift the timestamps in its lists; if they are only slightly "
-        "off, "
-        "raise --sync-tolerance-s");
+        "off, raise --sync-tolerance-s");
   }
   if (setup.survey.fault_count > 0) {
     setup.find(Severity::warning, "faults",
