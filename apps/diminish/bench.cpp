@@ -180,13 +180,15 @@ void BenchCommand::measure_throughput(const Recording& input, std::vector<FrameS
 }
 
 void print(const Figures& figures, int threads) {
-  fmt::print("{:<20}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>16}\n", "Operation, ms", "avg", "min", "max",
-             "p50", "p95", "p99", "paper");
-  for (std::size_t i = 0; i < time_row_count; ++i) {
-    const TimeRow& row = time_rows()[i];
-    const Distribution& d = figures.times_ms[i];
-    fmt::print("{:<20}{:>9.2f}{:>9.2f}{:>9.2f}{:>9.2f}{:>9.2f}{:>9.2f}{:>16}\n", row.title,
-               d.average, d.least, d.most, d.p50, d.p95, d.p99, row.paper_ms);
+  for (const TimeGroup& group : time_groups) {
+    fmt::print("{:<20}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>16}\n", group.title, "avg", "min", "max",
+               "p50", "p95", "p99", group.paper_title);
+    for (std::size_t i = group.begin; i < group.end; ++i) {
+      const TimeRow& row = time_rows()[i];
+      const Distribution& d = figures.times_ms[i];
+      fmt::print("{:<20}{:>9.2f}{:>9.2f}{:>9.2f}{:>9.2f}{:>9.2f}{:>9.2f}{:>16}\n", row.title,
+                 d.average, d.least, d.most, d.p50, d.p95, d.p99, row.paper_ms);
+    }
   }
   const Distribution& total = figures.times_ms[whole_frame_row];
   fmt::print("{} frames, measured {} times; {} skipped without a colour image\n", figures.frames,

@@ -7,6 +7,7 @@
 #include "diminish/occluder_detector.h"
 #include "diminish/occluder_settings.h"
 #include "geometry/triangle_mesh.h"
+#include "source/find_camera.h"
 
 namespace diminish {
 namespace {
@@ -19,8 +20,8 @@ class BoxOccluder : public OccluderDetector {
     const auto& settings = settings_of<BoxSettings>(spec);
     min_ = settings.min_m;
     max_ = settings.max_m;
-    for (std::size_t k = 0; k < rig.rgbd.size(); ++k) {
-      if (rig.rgbd[k].name == settings.frame) frame_camera_ = k;
+    if (const RgbdCamera* camera = find_rgbd_camera(rig, settings.frame)) {
+      frame_camera_ = static_cast<std::size_t>(camera - rig.rgbd.data());
     }
     for (const RgbdCamera& camera : rig.rgbd) {
       rgbd_drawers_.emplace_back(Lens(camera.color));

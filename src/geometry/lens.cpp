@@ -153,15 +153,13 @@ Eigen::Vector2d Lens::undistort(const Eigen::Vector2d& pixel) const {
   const Eigen::Vector2d target((pixel.x() - intrinsics_.cx) / intrinsics_.fx,
                                (pixel.y() - intrinsics_.cy) / intrinsics_.fy);
   const auto& k = intrinsics_.distortion;
-  switch (intrinsics_.lens_model) {
-    case LensModel::rational:
-      return undistorted<LensModel::rational>(k, target);
-    case LensModel::fisheye:
+  return with_lens_model(intrinsics_.lens_model, [&](auto model) -> Eigen::Vector2d {
+    if constexpr (decltype(model)::value == LensModel::fisheye) {
       return undistorted_fisheye(k, target, max_radius_squared_);
-    case LensModel::plumb_bob:
-      break;
-  }
-  return undistorted<LensModel::plumb_bob>(k, target);
+    } else {
+      return undistorted<decltype(model)::value>(k, target);
+    }
+  });
 }
 
 Image<Eigen::Vector2f> Lens::rays() const {

@@ -12,7 +12,7 @@ namespace {
 class ComputeRasterizer : public Rasterizer {
  public:
   ComputeRasterizer(const Rig& rig, const FrameUpload& upload)
-      : vertices_(compute_program(finding_vertices(rig))),
+      : vertices_(compute_program(vertex_files(rig, "vertices.comp"))),
         cells_(compute_program(drawing("cells.comp"))),
         nearest_small_(compute_program(drawing("draw_small.comp"), "#define FIND_NEAREST\n")),
         nearest_large_(compute_program(drawing("draw_large.comp"), "#define FIND_NEAREST\n")),
@@ -80,13 +80,6 @@ class ComputeRasterizer : public Rasterizer {
   }
 
  private:
-  static std::vector<std::string> finding_vertices(const Rig& rig) {
-    std::vector<std::string> files = lens_files(rig);
-    files.insert(files.begin(), {"frame.glsl", "sdct.glsl"});
-    files.insert(files.end(), {"rule1.glsl", "vertices.comp"});
-    return files;
-  }
-
   static std::vector<std::string> drawing(const char* last) {
     return {"frame.glsl", "sdct.glsl", "vertices.glsl", "work.glsl", "triangles.glsl", last};
   }

@@ -30,7 +30,7 @@ class GeometryRasterizer : public Rasterizer {
   GeometryRasterizer(const Rig& rig, const FrameUpload& /*upload*/)
       : picture_(rig.color),
         lens_files_(lens_files(rig)),
-        program_({{GL_VERTEX_SHADER, finding_vertices(), {}},
+        program_({{GL_VERTEX_SHADER, vertex_files(rig, "geometry.vert"), {}},
                   {GL_GEOMETRY_SHADER, {"frame.glsl", "sdct.glsl", "geometry.geom"}, {}},
                   {GL_FRAGMENT_SHADER, {"frame.glsl", "texture.glsl", "geometry.frag"}, {}}}) {
     const GLsizei layers = static_cast<GLsizei>(std::max<std::size_t>(rig.rgbd.size(), 1));
@@ -113,13 +113,6 @@ class GeometryRasterizer : public Rasterizer {
     const Indices& indices = indices_[upload.camera(camera).source - 1];
     glVertexArrayElementBuffer(no_attributes_.value, indices.name.get());
     glDrawElements(GL_TRIANGLES, indices.count, GL_UNSIGNED_INT, nullptr);
-  }
-
-  std::vector<std::string> finding_vertices() const {
-    std::vector<std::string> files = lens_files_;
-    files.insert(files.begin(), {"frame.glsl", "sdct.glsl"});
-    files.insert(files.end(), {"rule1.glsl", "geometry.vert"});
-    return files;
   }
 
   Intrinsics picture_;

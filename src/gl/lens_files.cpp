@@ -14,4 +14,11 @@ std::vector<std::string> lens_files(const Rig& rig) {
   return files;
 }
 
+std::vector<std::string> vertex_files(const Rig& rig, const char* last) {
+  std::vector<std::string> files = lens_files(rig);
+  files.insert(files.begin(), {"frame.glsl", "sdct.glsl"});
+  files.insert(files.end(), {"rule1.glsl", last});
+  return files;
+}
+
 }  // namespace diminish::gl

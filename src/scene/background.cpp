@@ -13,10 +13,10 @@ void Background::find(const Rect& objects, const SceneSamples& samples, const Wa
 }
 
 void Background::label(const Reconstruction& reconstruction, Surfaces& surfaces) {
-  surfaces.region = reconstruction.region;
   if (has_planes_) {
     planes_.label(reconstruction, surfaces);
   } else {
+    surfaces.region = reconstruction.region;
     surfaces.label.resize(0, 0);
   }
   if (shadows_.any()) {

@@ -83,7 +83,7 @@ class BackgroundPlanes {
 
   /// Finds the planes. objects: their box in the colour camera's picture. Deterministic.
   void find(const Rect& objects, const std::vector<SceneSample>& samples);
-  /// Fills `surfaces.label` in the reconstruction's region.
+  /// Sets `surfaces.region` to the reconstruction's, and fills `surfaces.label` in it.
   void label(const Reconstruction& reconstruction, Surfaces& surfaces) const;
 
   const std::vector<BackgroundPlane>& planes() const { return planes_; }

@@ -117,23 +117,27 @@ std::vector<std::optional<double>> numbers_in(const std::vector<CsvRow>& rows,
 
 std::string time_plots(const std::filesystem::path& file) {
   const std::vector<CsvRow> rows = load_csv(file);
+  const auto plot = [&](const TimeRow& row) {
+    return html::plot(std::string(row.title) + ", ms",
+                      numbers_in(rows, std::string(row.key) + "_ms", file));
+  };
   std::string text = "<div class=plots>\n";
-  for (const TimeRow& row : time_rows()) {
-    if (row.paper_ms[0] != '\0' && &row != &time_rows()[whole_frame_row]) continue;
-    const auto values = numbers_in(rows, std::string(row.key) + "_ms", file);
-    text += html::plot(std::string(row.title) + ", ms", values);
-  }
-  return text + "</div>\n";
+  for (const TimeRow& row : time_rows().first<stage_count>()) text += plot(row);
+  return text + plot(time_rows()[whole_frame_row]) + "</div>\n";
 }
 
-std::string table_2(const nlohmann::json& summary) {
-  std::string text = "<table><tr><th>Operation, ms<th>avg<th>min<th>max<th>paper</tr>\n";
+std::string time_table(const nlohmann::json& summary) {
+  std::string text = "<table>\n";
   const auto& times = summary.at("milliseconds");
-  for (const TimeRow& row : time_rows()) {
-    const auto& time = times.at(row.key);
-    text += fmt::format("<tr><td>{}<td>{:.2f}<td>{:.2f}<td>{:.2f}<td>{}</tr>\n", row.title,
-                        time.at("avg").get<double>(), time.at("min").get<double>(),
-                        time.at("max").get<double>(), row.paper_ms);
+  for (const TimeGroup& group : time_groups) {
+    text +=
+        fmt::format("<tr><th>{}<th>avg<th>min<th>max<th>{}</tr>\n", group.title, group.paper_title);
+    for (const TimeRow& row : time_rows().subspan(group.begin, group.end - group.begin)) {
+      const auto& time = times.at(row.key);
+      text += fmt::format("<tr><td>{}<td>{:.2f}<td>{:.2f}<td>{:.2f}<td>{}</tr>\n", row.title,
+                          time.at("avg").get<double>(), time.at("min").get<double>(),
+                          time.at("max").get<double>(), row.paper_ms);
+    }
   }
   return text + "</table>\n";
 }
@@ -225,7 +229,7 @@ void write_report(const std::filesystem::path& recording, const std::filesystem:
       page += comparison(folder, score.frames[i]);
     }
     page += "<h2>Figures by frame</h2>\n" + plots(score.frames);
-    page += "<h2>Table 2</h2>\n" + table_2(summary);
+    page += "<h2>Times</h2>\n" + time_table(summary);
     page += "<h2>Milliseconds by frame</h2>\n" + time_plots(run / "frames.csv");
     page += fmt::format("<h2>Options</h2><pre>{}</pre>\n",
                         html::escaped(summary.at("options").dump(2)));

@@ -32,14 +32,14 @@ double RunStatistics::average_ms(std::size_t row) const {
 
 std::string RunStatistics::table() const {
   std::string text;
-  for (std::size_t i = 0; i < time_row_count; ++i) {
-    if (i == 0 || i == stage_count) {
-      text += fmt::format("{:<20}{:>10}{:>10}{:>10}{:>16}\n", i == 0 ? "Stage, ms" : "Table 2, ms",
-                          "avg", "min", "max", i == 0 ? "" : "paper");
+  for (const TimeGroup& group : time_groups) {
+    text += fmt::format("{:<20}{:>10}{:>10}{:>10}{:>16}\n", group.title, "avg", "min", "max",
+                        group.paper_title);
+    for (std::size_t i = group.begin; i < group.end; ++i) {
+      const TimeRow& row = time_rows()[i];
+      text += fmt::format("{:<20}{:>10.1f}{:>10.1f}{:>10.1f}{:>16}\n", row.title, average_ms(i),
+                          times_[i].min_ms, times_[i].max_ms, row.paper_ms);
     }
-    const TimeRow& row = time_rows()[i];
-    text += fmt::format("{:<20}{:>10.1f}{:>10.1f}{:>10.1f}{:>16}\n", row.title, average_ms(i),
-                        times_[i].min_ms, times_[i].max_ms, row.paper_ms);
   }
   const double mask = static_cast<double>(std::max<std::size_t>(mask_pixels_, 1));
   text += fmt::format("{} frames; of the objects' pixels {:.1f} % seen, {:.1f} % not\n", frames_,

@@ -20,6 +20,16 @@ inline constexpr std::size_t time_row_count = stage_count + paper_row_count + 1;
 /// The index of the whole frame's row, the last.
 inline constexpr std::size_t whole_frame_row = time_row_count - 1;
 
+/// Rows that stand under one heading: [begin, end).
+struct TimeGroup {
+  const char* title;
+  const char* paper_title;  ///< of the column of the paper's figures
+  std::size_t begin, end;
+};
+/// The stages; then the paper's operations and the whole frame.
+inline constexpr std::array<TimeGroup, 2> time_groups{
+    {{"Stage, ms", "", 0, stage_count}, {"Table 2, ms", "paper", stage_count, time_row_count}}};
+
 /// The stages by Stage, the paper's operations, the frame.
 std::span<const TimeRow, time_row_count> time_rows();
 
