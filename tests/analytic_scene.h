@@ -174,7 +174,7 @@ inline OcclusionMasks empty_masks(const Rig& rig) {
 /// The depth images as they are.
 inline DepthImages depths_of(const FrameSet& frame) {
   DepthImages depths;
-  for (const RgbdFrame& rgbd : frame.rgbd) depths.push_back(rgbd.depth);
+  for (const RgbdFrame& rgbd : frame.rgbd) copy(rgbd.depth.view(), depths.emplace_back());
   return depths;
 }
 

@@ -12,15 +12,15 @@ namespace diminish {
 struct Detection {
   explicit Detection(const Rig& a_rig) : rig(a_rig) {
     const std::size_t count = rig.rgbd.size();
-    frame.color.resize(rig.color.width, rig.color.height, Bgr{});
+    frame.color.own().resize(rig.color.width, rig.color.height, Bgr{});
     markers.rgbd.resize(count);
     poses.depth_from_world.resize(count);
     poses.color_from_depth.resize(count);
     masks.color.resize(rig.color.width, rig.color.height, 0);
     for (const RgbdCamera& camera : rig.rgbd) {
       RgbdFrame& rgbd = frame.rgbd.emplace_back();
-      rgbd.color.resize(camera.color.width, camera.color.height, Bgr{});
-      rgbd.depth.resize(camera.depth.width, camera.depth.height, 0);
+      rgbd.color.own().resize(camera.color.width, camera.color.height, Bgr{});
+      rgbd.depth.own().resize(camera.depth.width, camera.depth.height, 0);
       masks.rgbd_color.emplace_back(camera.color.width, camera.color.height);
       masks.rgbd_depth.emplace_back(camera.depth.width, camera.depth.height);
     }

@@ -52,8 +52,9 @@ struct DiminishedWall : LitWall {
         const auto level = [&](int base) {
           return static_cast<std::uint8_t>(base + static_cast<int>(random() % 9));
         };
-        frame.frame.color(x, y) = {level(60 + x / 4), level(150 - y / 3), level(90 + (x + y) / 8)};
-        if (masks.color(x, y) != 0 && (x + 2 * y) % 19 < 3) frame.frame.color(x, y).g += 90;
+        frame.frame.color.own()(x, y) = {level(60 + x / 4), level(150 - y / 3),
+                                         level(90 + (x + y) / 8)};
+        if (masks.color(x, y) != 0 && (x + 2 * y) % 19 < 3) frame.frame.color.own()(x, y).g += 90;
       }
     }
   }

@@ -34,7 +34,7 @@ class DIMINISH_EXPORT BoardDetector {
   /// The corners with sub-pixel accuracy; nothing if the board is not found. All corners of a
   /// checkerboard must be visible (cv::findChessboardCornersSB), of a ChArUco board six that are
   /// not on one line.
-  std::optional<BoardView> detect(const Image<Bgr>& image, const std::string& name) const;
+  std::optional<BoardView> detect(ImageView<Bgr> image, const std::string& name) const;
 
  private:
   struct Implementation;

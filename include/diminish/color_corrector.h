@@ -13,7 +13,7 @@ namespace diminish {
 
 /// The input of a colour correction.
 struct ColorInputs {
-  const Image<Bgr>& camera;  ///< the colour camera's image
+  ImageView<Bgr> camera;  ///< the colour camera's image
   /// The objects' mask in it. `camera` shows the objects there and must not be used.
   const Mask& occlusion;
   const Reconstruction& reconstruction;  ///< drawn in its `region`

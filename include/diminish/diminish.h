@@ -10,6 +10,11 @@
 ///   diminish::FrameSet frame;
 ///   diminish::DiminishedFrame result;
 ///   while (source->next(frame)) pipeline.process(frame, result);
+///
+/// Or a program's own images, where they are, here a cv::Mat of CV_8UC3:
+///
+///   frame.color = diminish::ImageView<diminish::Bgr>(mat.ptr<diminish::Bgr>(), mat.cols, mat.rows,
+///                                                    static_cast<std::ptrdiff_t>(mat.step));
 
 #include "diminish/board.h"
 #include "diminish/calibration.h"
@@ -27,6 +32,7 @@
 #include "diminish/gpu_pass.h"
 #include "diminish/image.h"
 #include "diminish/inpainter.h"
+#include "diminish/input_image.h"
 #include "diminish/intrinsics.h"
 #include "diminish/live.h"
 #include "diminish/marker_detector.h"

@@ -6,13 +6,14 @@
 #include <vector>
 
 #include "diminish/image.h"
+#include "diminish/input_image.h"
 
 namespace diminish {
 
 /// One RGB-D camera's images at one moment.
 struct RgbdFrame {
-  Image<Bgr> color;
-  Image<std::uint16_t> depth;
+  InputImage<Bgr> color;
+  InputImage<std::uint16_t> depth;
   double color_stamp_s = 0;
   double depth_stamp_s = 0;
   /// Why there are no images, in plain words; empty if both are there.
@@ -34,7 +35,7 @@ struct FrameSet {
   std::string name;       ///< the colour image's file stem
   std::size_t index = 0;  ///< 0 for the first frame
   double stamp_s = 0;
-  Image<Bgr> color;             ///< empty if it could not be read; the frame is then skipped
+  InputImage<Bgr> color;        ///< empty if it could not be read; the frame is then skipped
   std::vector<RgbdFrame> rgbd;  ///< one per RGB-D camera of the rig, in its order
   std::vector<GivenMask> masks;
   /// Images that could not be used, each with its file and the reason.

@@ -117,6 +117,46 @@ class Image {
   std::vector<Pixel> pixels_;
 };
 
+/// Pixels that belong to someone else, to read: rows from top to bottom, `stride` bytes apart. The
+/// owner keeps them, unchanged, for as long as the view is used.
+template <class Pixel>
+class ImageView {
+ public:
+  using value_type = Pixel;
+
+  ImageView() = default;
+  /// The stride is a multiple of the pixel's alignment and not smaller than a row of pixels.
+  ImageView(const Pixel* data, int width, int height, std::ptrdiff_t stride)
+      : data_(data), width_(width), height_(height), stride_(stride) {}
+  ImageView(const Image<Pixel>& image)
+      : ImageView(image.data(), image.width(), image.height(),
+                  image.width() * std::ptrdiff_t{sizeof(Pixel)}) {}
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  std::ptrdiff_t stride() const { return stride_; }  ///< bytes
+  bool empty() const { return width_ == 0 || height_ == 0; }
+  Rect bounds() const { return {0, 0, width_, height_}; }
+
+  const Pixel* data() const { return data_; }
+  const Pixel* row(int y) const {
+    return reinterpret_cast<const Pixel*>(reinterpret_cast<const std::byte*>(data_) + y * stride_);
+  }
+  const Pixel& operator()(int x, int y) const { return row(y)[x]; }
+
+ private:
+  const Pixel* data_ = nullptr;
+  int width_ = 0;
+  int height_ = 0;
+  std::ptrdiff_t stride_ = 0;
+};
+
+template <class Pixel>
+void copy(const ImageView<Pixel>& from, Image<Pixel>& to) {
+  to.resize(from.width(), from.height());
+  for (int y = 0; y < from.height(); ++y) std::copy_n(from.row(y), from.width(), to.row(y));
+}
+
 /// A mask is 255 where something is (an object, a valid pixel), else 0.
 using Mask = Image<std::uint8_t>;
 

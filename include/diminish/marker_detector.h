@@ -23,7 +23,7 @@ class DIMINISH_EXPORT MarkerDetector {
   /// Finds the markers in `image`, sorted by id, with sub-pixel corners: each side is a line fitted
   /// to the image's edge, and neighbouring lines are intersected. A marker whose id appears twice
   /// is ambiguous and left out. lens: the camera's; sides are straight in its undistorted rays.
-  void detect(const Image<Bgr>& image, const Lens& lens, std::vector<Marker>& markers);
+  void detect(ImageView<Bgr> image, const Lens& lens, std::vector<Marker>& markers);
 
  private:
   struct Implementation;

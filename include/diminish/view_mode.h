@@ -22,7 +22,7 @@ class DIMINISH_EXPORT ViewMode {
 
   /// camera: the colour camera's image, with the object. `result` shows the background in its
   /// place. Changes `result.picture` inside `result.mask`, and nothing else.
-  virtual void show(const Image<Bgr>& camera, const Options& options,
+  virtual void show(ImageView<Bgr> camera, const Options& options,
                     DiminishedFrame& result) const = 0;
 };
 

@@ -53,8 +53,9 @@ TEST_F(OpenNi2Camera, DeliversTheDevicesImages) {
     if (camera->read(image, milliseconds(100)) != CameraSource::Status::image) continue;
     const bool is_depth = image.sensor == Sensor::depth;
     ++(is_depth ? depths : colors);
-    EXPECT_TRUE(std::any_of(recorded.begin(), recorded.end(), [&](const FrameSet& frame) {
-      return is_depth ? frame.rgbd[0].depth == image.depth : frame.rgbd[0].color == image.color;
+    EXPECT_TRUE(std::any_of(recorded.begin(), recorded.end(), [&](FrameSet& frame) {
+      return is_depth ? frame.rgbd[0].depth.own() == image.depth
+                      : frame.rgbd[0].color.own() == image.color;
     })) << (is_depth ? "depth" : "colour");
     EXPECT_GT(image.stamp_s, last_s[is_depth ? 1 : 0]);
     EXPECT_LE(image.stamp_s, monotonic_now_s());

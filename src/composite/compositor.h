@@ -17,9 +17,9 @@ class Compositor {
  public:
   /// The input of every stage.
   struct Inputs {
-    const Image<Bgr>& camera;  ///< the colour camera's image
-    const Mask& occlusion;     ///< of the objects to remove
-    Rect objects;              ///< its bounding box
+    ImageView<Bgr> camera;  ///< the colour camera's image
+    const Mask& occlusion;  ///< of the objects to remove
+    Rect objects;           ///< its bounding box
     const Options& options;
   };
 

@@ -1,6 +1,6 @@
 #include "diminish/color_corrector.h"
 #include "diminish/membrane.h"
-#include "membrane/image_view.h"
+#include "membrane/part_view.h"
 
 namespace diminish {
 namespace {

@@ -229,7 +229,7 @@ TEST_P(PoissonOnRecordings, EqualsADirectSolve) {
   open_recording(recording, {})->next(frame);
   Pipeline(recording.rig, recording.scene, {}).process(frame, result);
   Problem problem(1, 1, 0);
-  problem.camera = frame.color;
+  problem.camera = frame.color.own();
   problem.occlusion = result.mask;
   problem.reconstruction = result.reconstruction;
   // Specks that hang on a few pixels may be further off.

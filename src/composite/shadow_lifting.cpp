@@ -146,7 +146,7 @@ void ShadowLifting::lift(const Surfaces& surfaces, Image<Bgr>& picture) const {
   });
 }
 
-void ShadowLifting::restore_outside(const Image<Bgr>& camera, const Mask& occlusion,
+void ShadowLifting::restore_outside(ImageView<Bgr> camera, const Mask& occlusion,
                                     const Surfaces& surfaces, Image<Bgr>& picture) {
   const Rect part = shaded_part(surfaces);
   measure_distances(occlusion, part);

@@ -17,7 +17,7 @@ class ShadowLifting {
   void lift(const Surfaces& surfaces, Image<Bgr>& picture) const;
   /// Restores the camera's picture outside the mask. The shadow returns over the last pixels before
   /// the mask's rim, so that no line shows where it continues outside.
-  void restore_outside(const Image<Bgr>& camera, const Mask& occlusion, const Surfaces& surfaces,
+  void restore_outside(ImageView<Bgr> camera, const Mask& occlusion, const Surfaces& surfaces,
                        Image<Bgr>& picture);
 
  private:

@@ -91,7 +91,7 @@ void SoftRim::find_distances(const Mask& mask, const Rect& box, int width_px) {
   }
 }
 
-void SoftRim::blend(const Image<Bgr>& camera, const Mask& mask, const Rect& box, int width_px,
+void SoftRim::blend(ImageView<Bgr> camera, const Mask& mask, const Rect& box, int width_px,
                     Image<Bgr>& picture) {
   if (width_px <= 0 || box.empty()) return;
   find_distances(mask, box, width_px);

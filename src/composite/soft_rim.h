@@ -21,7 +21,7 @@ class SoftRim {
   /// (width_px + 1) (picture - camera). Distances are octagonal; beyond the image's border nothing
   /// is outside. box: the mask's bounding box. Cost: 0.1 ns per pixel of the box and pixel of
   /// width.
-  void blend(const Image<Bgr>& camera, const Mask& mask, const Rect& box, int width_px,
+  void blend(ImageView<Bgr> camera, const Mask& mask, const Rect& box, int width_px,
              Image<Bgr>& picture);
 
  private:

@@ -11,7 +11,7 @@ class TextureOutput {
   virtual ~TextureOutput() = default;
 
   /// Uploads a picture that the CPU made. Throws Error if the GPU fails.
-  virtual void upload(const Image<Bgr>& picture) = 0;
+  virtual void upload(ImageView<Bgr> picture) = 0;
   /// The last picture.
   virtual const GlTexture& latest() const = 0;
 };

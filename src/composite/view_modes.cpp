@@ -30,14 +30,13 @@ Bgr blend(const Bgr& a, const Bgr& b, float share_of_b) {
 
 class Remove : public ViewMode {
  public:
-  void show(const Image<Bgr>&, const Options&, DiminishedFrame&) const override {}
+  void show(ImageView<Bgr>, const Options&, DiminishedFrame&) const override {}
 };
 
 /// The object as if made of glass.
 class Half : public ViewMode {
  public:
-  void show(const Image<Bgr>& camera, const Options& options,
-            DiminishedFrame& result) const override {
+  void show(ImageView<Bgr> camera, const Options& options, DiminishedFrame& result) const override {
     const auto opacity = static_cast<float>(1 - options.transparency);
     replace_in_mask(
         result, [&](int x, int y) { return blend(result.picture(x, y), camera(x, y), opacity); });
@@ -47,7 +46,7 @@ class Half : public ViewMode {
 /// The background, with the object's edges on top.
 class XRay : public ViewMode {
  public:
-  void show(const Image<Bgr>& camera, const Options&, DiminishedFrame& result) const override {
+  void show(ImageView<Bgr> camera, const Options&, DiminishedFrame& result) const override {
     const auto brightness = [&](int x, int y) {
       const Bgr& color =
           camera(std::clamp(x, 0, camera.width() - 1), std::clamp(y, 0, camera.height() - 1));
@@ -66,7 +65,7 @@ class XRay : public ViewMode {
 /// The background, with a line where the object is.
 class Outline : public ViewMode {
  public:
-  void show(const Image<Bgr>&, const Options&, DiminishedFrame& result) const override {
+  void show(ImageView<Bgr>, const Options&, DiminishedFrame& result) const override {
     const auto is_beside_mask = [&](int x, int y) {
       const Rect bounds = result.mask.bounds();
       for (const auto& [dx, dy] : neighbour_offsets) {
@@ -87,7 +86,7 @@ class Outline : public ViewMode {
 /// Shows what was seen in green and what was invented in magenta, hatched.
 class Provenance : public ViewMode {
  public:
-  void show(const Image<Bgr>&, const Options&, DiminishedFrame& result) const override {
+  void show(ImageView<Bgr>, const Options&, DiminishedFrame& result) const override {
     using namespace provenance_view;
     replace_in_mask(result, [&](int x, int y) -> Bgr {
       const Bgr& color = result.picture(x, y);

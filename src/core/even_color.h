@@ -15,7 +15,7 @@ struct EvenColor {
 inline constexpr int even_color_reach_px = 2;
 
 /// From nine pixels up to `even_color_reach_px` away, which must all be in the image.
-inline EvenColor even_color(const Image<Bgr>& image, int x, int y) {
+inline EvenColor even_color(ImageView<Bgr> image, int x, int y) {
   constexpr int largest_range = 24;
   int sum[3] = {};
   int lowest[3] = {255, 255, 255};

@@ -3,6 +3,7 @@
 #include <opencv2/core.hpp>
 
 #include "diminish/image.h"
+#include "diminish/input_image.h"
 
 namespace diminish {
 
@@ -36,8 +37,17 @@ cv::Mat as_mat(Image<Pixel>& image) {
 }
 /// The same, read-only. OpenCV has no read-only header; the caller must not write to it.
 template <class Pixel>
+cv::Mat as_mat(const ImageView<Pixel>& image) {
+  return {image.height(), image.width(), MatType<Pixel>::value, const_cast<Pixel*>(image.data()),
+          static_cast<std::size_t>(image.stride())};
+}
+template <class Pixel>
 cv::Mat as_mat(const Image<Pixel>& image) {
-  return as_mat(const_cast<Image<Pixel>&>(image));
+  return as_mat(ImageView<Pixel>(image));
+}
+template <class Pixel>
+cv::Mat as_mat(const InputImage<Pixel>& image) {
+  return as_mat(image.view());
 }
 
 inline cv::Rect as_cv(const Rect& rect) {

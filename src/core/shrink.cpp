@@ -125,8 +125,8 @@ HWY_EXPORT(ShrinkGreenRow);
 
 }  // namespace
 
-void shrink(const Image<Bgr>& image, int scale, const Rect& part,
-            std::vector<std::uint16_t>& scratch, Image<Bgr>& small) {
+void shrink(ImageView<Bgr> image, int scale, const Rect& part, std::vector<std::uint16_t>& scratch,
+            Image<Bgr>& small) {
   small.resize(part.width, part.height);
   const int rows = std::min(scale, image.height());
   const int columns = std::min(scale, image.width());
@@ -142,11 +142,10 @@ void shrink(const Image<Bgr>& image, int scale, const Rect& part,
   const auto room = static_cast<std::size_t>(count + beyond);
   scratch.resize(room + room / 2 + 1);
   auto* const means = reinterpret_cast<std::uint8_t*>(scratch.data() + room);
-  const std::ptrdiff_t pitch = std::ptrdiff_t{3} * image.width();
   for (int y = 0; y < part.height; ++y) {
     const Bgr* const cells = image.row((part.y + y) * scale) + std::ptrdiff_t{part.x} * scale;
     HWY_DYNAMIC_DISPATCH(SumRows)
-    (reinterpret_cast<const std::uint8_t*>(cells), pitch, rows, count, scratch.data());
+    (reinterpret_cast<const std::uint8_t*>(cells), image.stride(), rows, count, scratch.data());
     HWY_DYNAMIC_DISPATCH(AverageColumns)(scratch.data(), columns, rows, count, means);
     Bgr* const pixels = small.row(y);
     const std::uint8_t* mean = means;
@@ -156,7 +155,7 @@ void shrink(const Image<Bgr>& image, int scale, const Rect& part,
   }
 }
 
-void shrink_green(const Image<Bgr>& image, Image<std::uint8_t>& small) {
+void shrink_green(ImageView<Bgr> image, Image<std::uint8_t>& small) {
   small.resize(image.width() / green_shrinkage, image.height() / green_shrinkage);
   for (int y = 0; y < small.height(); ++y) {
     // Two of the four rows: half the memory, and noise does no harm here.

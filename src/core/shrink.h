@@ -13,19 +13,19 @@ namespace diminish {
 
 /// The size that `shrink` makes of a picture. Up to `scale - 1` columns and rows at the right and
 /// below are left out; a picture narrower or lower than `scale` becomes one pixel wide or high.
-inline Rect shrunk_bounds(const Image<Bgr>& image, int scale) {
+inline Rect shrunk_bounds(ImageView<Bgr> image, int scale) {
   return {0, 0, std::max(1, image.width() / scale), std::max(1, image.height() / scale)};
 }
 
 /// Makes each pixel of `small` the rounded mean of `scale` x `scale` pixels of `image`, in a part
 /// of `shrunk_bounds`. scale: 1 to 16. `scratch` is memory to reuse.
-void shrink(const Image<Bgr>& image, int scale, const Rect& part,
-            std::vector<std::uint16_t>& scratch, Image<Bgr>& small);
+void shrink(ImageView<Bgr> image, int scale, const Rect& part, std::vector<std::uint16_t>& scratch,
+            Image<Bgr>& small);
 
 /// The picture's brightness at a quarter of the resolution: each pixel is the rounded mean of 4x2
 /// pixels' green channel (the other channels add little), from the square's two middle rows.
 /// Enough to see a marker, and little memory to read.
 inline constexpr int green_shrinkage = 4;
-void shrink_green(const Image<Bgr>& image, Image<std::uint8_t>& small);
+void shrink_green(ImageView<Bgr> image, Image<std::uint8_t>& small);
 
 }  // namespace diminish

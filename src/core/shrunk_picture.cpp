@@ -10,8 +10,8 @@ constexpr float object = -2;
 
 }  // namespace
 
-void ShrunkPicture::begin(const Image<Bgr>& picture, const Mask& occlusion, int shrinkage) {
-  picture_ = &picture;
+void ShrunkPicture::begin(ImageView<Bgr> picture, const Mask& occlusion, int shrinkage) {
+  picture_ = picture;
   occlusion_ = &occlusion;
   shrinkage_ = shrinkage;
   levels_.resize(picture.width() / shrinkage, picture.height() / shrinkage);
@@ -64,7 +64,7 @@ float ShrunkPicture::shrink(int column, int row) const {
   int red = 0;
   for (const int y : {top, top + shrinkage_ / 2}) {
     for (const int x : {left, left + shrinkage_ / 2}) {
-      const Bgr& color = (*picture_)(x, y);
+      const Bgr& color = picture_(x, y);
       blue += color.b;
       green += color.g;
       red += color.r;

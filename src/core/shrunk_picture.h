@@ -17,7 +17,7 @@ class ShrunkPicture {
  public:
   /// Both must outlive what is read. occlusion: of the picture's size; what shows an object is not
   /// told.
-  void begin(const Image<Bgr>& picture, const Mask& occlusion, int shrinkage);
+  void begin(ImageView<Bgr> picture, const Mask& occlusion, int shrinkage);
 
   int width() const { return levels_.width(); }
   int height() const { return levels_.height(); }
@@ -35,7 +35,7 @@ class ShrunkPicture {
   void fill_in(int column, int row);
   float shrink(int column, int row) const;
 
-  const Image<Bgr>* picture_ = nullptr;
+  ImageView<Bgr> picture_;
   const Mask* occlusion_ = nullptr;
   int shrinkage_ = 1;
   Image<float> levels_;  ///< below 0: unknown as yet, or an object's

@@ -16,7 +16,7 @@ using depth_rows::reach;
 constexpr float margin_px = 1;
 
 /// The part at least `reach` away from the image's borders.
-Rect inside(const Image<std::uint16_t>& depth) {
+Rect inside(ImageView<std::uint16_t> depth) {
   return {reach, reach, depth.width() - 2 * reach, depth.height() - 2 * reach};
 }
 
@@ -35,10 +35,10 @@ DepthCleaner::DepthCleaner(const RgbdCamera& camera) : camera_(camera), edge_sna
   }
 }
 
-void DepthCleaner::clean(const Image<std::uint16_t>& depth, const EdgeSnapping::Images& images,
+void DepthCleaner::clean(ImageView<std::uint16_t> depth, const EdgeSnapping::Images& images,
                          const DepthPart& part, const Options& options,
                          Image<std::uint16_t>& cleaned) {
-  cleaned = depth;
+  copy(depth, cleaned);
   if (options.remove_flying) remove_flying(depth, part, cleaned);
   if (options.smooth_depth) smooth(part, cleaned);
   if (options.snap_edges) edge_snapping_.snap(images, part, cleaned);
@@ -47,11 +47,11 @@ void DepthCleaner::clean(const Image<std::uint16_t>& depth, const EdgeSnapping::
   }
 }
 
-void DepthCleaner::remove_flying(const Image<std::uint16_t>& depth, const DepthPart& part,
+void DepthCleaner::remove_flying(ImageView<std::uint16_t> depth, const DepthPart& part,
                                  Image<std::uint16_t>& cleaned) const {
+  const auto pitch = static_cast<int>(depth.stride() / std::ptrdiff_t{sizeof(std::uint16_t)});
   for_each_row(part, inside(depth), [&](int y, const DepthPart::Columns& columns) {
-    depth_rows::remove_flying(row(depth, y, columns), depth.width(),
-                              cleaned.row(y) + columns.first);
+    depth_rows::remove_flying(row(depth, y, columns), pitch, cleaned.row(y) + columns.first);
   });
 }
 
@@ -92,7 +92,7 @@ void DepthCleaner::smooth(const DepthPart& part, Image<std::uint16_t>& cleaned) 
   });
 }
 
-depth_rows::Row DepthCleaner::row(const Image<std::uint16_t>& depth, int y,
+depth_rows::Row DepthCleaner::row(ImageView<std::uint16_t> depth, int y,
                                   const DepthPart::Columns& columns) const {
   return {
       depth.row(y) + columns.first, columns.count(), static_cast<float>(camera_.depth_unit_m), {}};

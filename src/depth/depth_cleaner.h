@@ -25,18 +25,18 @@ class DepthCleaner {
 
   /// images: masked parts are not used to move edges. Changes only `part` and copies the rest.
   /// Cost: 1 ns per pixel, plus EdgeSnapping's.
-  void clean(const Image<std::uint16_t>& depth, const EdgeSnapping::Images& images,
+  void clean(ImageView<std::uint16_t> depth, const EdgeSnapping::Images& images,
              const DepthPart& part, const Options& options, Image<std::uint16_t>& cleaned);
 
  private:
   struct Scratch {
     std::vector<float> depth_m, place;
   };
-  void remove_flying(const Image<std::uint16_t>& depth, const DepthPart& part,
+  void remove_flying(ImageView<std::uint16_t> depth, const DepthPart& part,
                      Image<std::uint16_t>& cleaned) const;
   void remove_hidden(const DepthPart& part, float threshold_m, Image<std::uint16_t>& cleaned);
   void smooth(const DepthPart& part, Image<std::uint16_t>& cleaned);
-  depth_rows::Row row(const Image<std::uint16_t>& depth, int y,
+  depth_rows::Row row(ImageView<std::uint16_t> depth, int y,
                       const DepthPart::Columns& columns) const;
 
   RgbdCamera camera_;

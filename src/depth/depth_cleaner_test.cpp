@@ -69,7 +69,7 @@ TEST(DepthCleaner, LeavesWhatTheColorSensorSees) {
 TEST(DepthCleaner, TakesOutWhatLiesBetweenTwoSurfaces) {
   AnalyticScene scene;
   AnalyticFrame frame(scene, {eye});
-  Image<std::uint16_t>& depth = frame.frame.rgbd[0].depth;
+  Image<std::uint16_t>& depth = frame.frame.rgbd[0].depth.own();
   // Wherever the box ends, a pixel half way to the wall.
   std::vector<std::pair<int, int>> flying;
   const Image<std::uint16_t> exact = depth;
@@ -90,7 +90,7 @@ TEST(DepthCleaner, LeavesASlantedWallAlone) {
   AnalyticScene scene;
   scene.has_box = false;
   const AnalyticFrame frame(scene, {Eigen::Vector3d(-0.8, 0.1, 0.7)});
-  const Image<std::uint16_t>& depth = frame.frame.rgbd[0].depth;
+  const Image<std::uint16_t> depth = testing::depths_of(frame.frame)[0];
   Options options;
   options.smooth_depth = false;
   const Image<std::uint16_t> result = cleaned(frame, options);
@@ -113,7 +113,7 @@ TEST(DepthCleaner, LeavesASlantedWallAlone) {
 TEST(DepthCleaner, SmoothsNoiseOnSurfaces) {
   AnalyticScene scene;
   AnalyticFrame frame(scene, {eye});
-  Image<std::uint16_t>& depth = frame.frame.rgbd[0].depth;
+  Image<std::uint16_t>& depth = frame.frame.rgbd[0].depth.own();
   const Image<std::uint16_t> exact = depth;
   std::mt19937 random(3);
   std::normal_distribution<double> noise(0, 20);  // 2 mm
@@ -138,7 +138,7 @@ TEST(DepthCleaner, ChangesOnlyItsPartAndCanBeSwitchedOff) {
   const AnalyticFrame frame(scene, {eye});
   Options off;
   off.remove_flying = off.remove_hidden = off.smooth_depth = off.snap_edges = false;
-  const Image<std::uint16_t>& depth = frame.frame.rgbd[0].depth;
+  const Image<std::uint16_t> depth = testing::depths_of(frame.frame)[0];
   EXPECT_EQ(cleaned(frame, off), depth);
   ASSERT_NE(cleaned(frame), depth);
   const Rect corner{0, 0, 20, 20};

@@ -239,7 +239,7 @@ std::optional<Bgr3> EdgeSnapping::color_at(const Images& images, int x, int y,
                       to_color_.apply(1, side, down, depth_m) / ahead, u, v)) {
     return std::nullopt;
   }
-  const Image<Bgr>& image = images.color;
+  const ImageView<Bgr>& image = images.color;
   if (!(u >= 1 && v >= 1 && u < static_cast<float>(image.width() - 2) &&
         v < static_cast<float>(image.height() - 2))) {
     return std::nullopt;

@@ -30,7 +30,7 @@ class EdgeSnapping {
 
   /// What is masked is another object's, and neither read nor changed.
   struct Images {
-    const Image<Bgr>& color;
+    ImageView<Bgr> color;
     const Mask& color_mask;
     const Mask& depth_mask;
   };

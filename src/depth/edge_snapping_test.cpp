@@ -14,7 +14,7 @@ using testing::AnalyticScene;
 /// as flying pixels leave it.
 class SpoiltEdges : public ::testing::Test {
  protected:
-  SpoiltEdges() : exact_(frame_.frame.rgbd[0].depth), with_rim_(exact_) {
+  SpoiltEdges() : exact_(frame_.frame.rgbd[0].depth.own()), with_rim_(exact_) {
     const RigidTransform depth_from_world = *frame_.poses.depth_from_world[0];
     const RigidTransform color_from_world = camera_.color_from_depth * depth_from_world;
     const Eigen::Vector3d color_eye = color_from_world.inverse().translation;
@@ -29,7 +29,7 @@ class SpoiltEdges : public ::testing::Test {
     scene_.render(Lens(camera_.color), color_from_world,
                   [&](int x, int y, const AnalyticScene::Hit& hit) {
                     const auto shade = static_cast<std::uint8_t>(x % 7 + y % 5);
-                    frame_.frame.rgbd[0].color(x, y) =
+                    frame_.frame.rgbd[0].color.own()(x, y) =
                         hit.on_box ? Bgr{40, 60, static_cast<std::uint8_t>(150 + shade)}
                                    : Bgr{90, static_cast<std::uint8_t>(100 + shade), 110};
                   });
@@ -81,7 +81,7 @@ TEST_F(SpoiltEdges, RightEdgesStayRight) {
 }
 
 TEST_F(SpoiltEdges, StayWhereTheColorsAreAlike) {
-  frame_.frame.rgbd[0].color.fill(camera_.color.bounds(), {90, 120, 100});
+  frame_.frame.rgbd[0].color.own().fill(camera_.color.bounds(), {90, 120, 100});
   EXPECT_EQ(snapped(with_rim_, no_masks_), with_rim_);
 }
 

@@ -94,9 +94,10 @@ VisibleBlocks::VisibleBlocks(const RgbdCamera& camera, const Intrinsics& color)
   visible_.resize(rays_.size());
 }
 
-void VisibleBlocks::find(const Image<std::uint16_t>& depth, const RigidTransform& color_from_depth,
+void VisibleBlocks::find(ImageView<std::uint16_t> depth, const RigidTransform& color_from_depth,
                          const Rect& region) {
   find_sides(color_from_depth, region);
+  const auto pitch = depth.stride() / std::ptrdiff_t{sizeof(std::uint16_t)};
   for_rows(image_height_, [&](Rows rows) {
     Depths& depths = depths_[rows.first == 0 ? 0 : 1];
     depths.nearest.resize(static_cast<std::size_t>(image_width_));
@@ -104,7 +105,7 @@ void VisibleBlocks::find(const Image<std::uint16_t>& depth, const RigidTransform
     for (int row = rows.first / height; row * height < rows.last; ++row) {
       const Rect band = with_neighbours(0, row, depth.bounds());
       HWY_DYNAMIC_DISPATCH(FindDepths)
-      (depth.row(band.y), depth.width(), band.height, depth.width(), depths.nearest.data(),
+      (depth.row(band.y), pitch, band.height, depth.width(), depths.nearest.data(),
        depths.farthest.data());
       for (int column = 0; column < columns_; ++column) {
         const Rect pixels = with_neighbours(column, row, depth.bounds());

@@ -22,7 +22,7 @@ class VisibleBlocks {
   VisibleBlocks(const RgbdCamera& camera, const Intrinsics& color);
 
   /// color_from_depth: from the depth sensor's frame to the colour camera's. Cost: 1 ns per pixel.
-  void find(const Image<std::uint16_t>& depth, const RigidTransform& color_from_depth,
+  void find(ImageView<std::uint16_t> depth, const RigidTransform& color_from_depth,
             const Rect& region);
   /// Nothing is visible.
   void clear();

@@ -56,7 +56,7 @@ TEST(VisibleBlocks, HoldWhateverIsSeen) {
   for (int trial = 0; trial < 40; ++trial) {
     const AnalyticFrame frame(scene, {{0.7 * unit(random), 0.5 * unit(random), 1.1}},
                               testing::lens_models[trial % 3]);
-    Image<std::uint16_t> depth = frame.frame.rgbd[0].depth;
+    Image<std::uint16_t> depth = testing::depths_of(frame.frame)[0];
     for (std::uint16_t& value : depth) value = random() % 9 == 0 ? std::uint16_t{0} : value;
     RigidTransform pose = *frame.poses.color_from_depth[0];
     // Some look past the scene, or away from it.
@@ -90,7 +90,7 @@ TEST(VisibleBlocks, HoldWhateverIsSeen) {
 
 TEST(VisibleBlocks, PartHoldsThemAndABlockAround) {
   const AnalyticFrame frame(AnalyticScene(), {{-0.45, 0.3, 0.9}});
-  const Image<std::uint16_t>& depth = frame.frame.rgbd[0].depth;
+  const Image<std::uint16_t> depth = testing::depths_of(frame.frame)[0];
   VisibleBlocks blocks(frame.rig.rgbd[0], frame.rig.color);
   blocks.find(depth, *frame.poses.color_from_depth[0], {130, 100, 40, 50});
   const Rect image = depth.bounds();
@@ -117,7 +117,7 @@ TEST(VisibleBlocks, PartHoldsThemAndABlockAround) {
 
 TEST(VisibleBlocks, NoneWithoutDepthOrARegion) {
   const AnalyticFrame frame(AnalyticScene(), {{-0.45, 0.3, 0.9}});
-  Image<std::uint16_t> depth = frame.frame.rgbd[0].depth;
+  Image<std::uint16_t> depth = testing::depths_of(frame.frame)[0];
   const RigidTransform& pose = *frame.poses.color_from_depth[0];
   VisibleBlocks blocks(frame.rig.rgbd[0], frame.rig.color);
   blocks.find(depth, pose, frame.rig.color.bounds());

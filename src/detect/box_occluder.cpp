@@ -88,7 +88,7 @@ class BoxOccluder : public OccluderDetector {
   /// Sets the depth pixels that are in the box, and makes the mesh of their surface (SDCT): two
   /// triangles for each four neighbours whose depths differ by less than `threshold_m`. Returns
   /// whether there are any.
-  bool select_pixels(std::size_t k, const Image<std::uint16_t>& depth,
+  bool select_pixels(std::size_t k, ImageView<std::uint16_t> depth,
                      const RigidTransform& box_from_depth, double threshold_m, Mask& mask) {
     TriangleMesh& mesh = meshes_[k];
     vertex_.resize(depth.width(), depth.height(), -1);

@@ -66,7 +66,8 @@ class BoxOccluderOnPlate : public ::testing::Test {
         const double distance = on_plate(x, y) ? 1 : 2;
         const Eigen::Vector3d ray = lens.undistort({x, y}).homogeneous();
         const double z = (distance + normal.dot(depth_from_world.translation)) / normal.dot(ray);
-        detection.frame.rgbd[k].depth(x, y) = static_cast<std::uint16_t>(std::lround(1000 * z));
+        detection.frame.rgbd[k].depth.own()(x, y) =
+            static_cast<std::uint16_t>(std::lround(1000 * z));
       }
     }
   }
@@ -114,7 +115,7 @@ TEST_F(BoxOccluderOnPlate, PixelsWithoutDepthOnTheObjectAreClosed) {
   Detection detection = make_detection();
   detection.frame.rgbd[1].missing = "late";
   for (int y = 78; y < 82; ++y) {
-    for (int x = 98; x < 102; ++x) detection.frame.rgbd[0].depth(x, y) = 0;
+    for (int x = 98; x < 102; ++x) detection.frame.rgbd[0].depth.own()(x, y) = 0;
   }
   EXPECT_TRUE(detection.detect(*detector).in_color);
   const Mask expected = plate_mask(rig.color, *poses.color_from_world);
@@ -126,7 +127,7 @@ TEST_F(BoxOccluderOnPlate, PixelsWithoutDepthOnTheObjectAreClosed) {
 TEST_F(BoxOccluderOnPlate, OneCameraMasksTheObjectForAnother) {
   const auto detector = make_detector(box_in("world"), rig);
   Detection detection = make_detection();
-  detection.frame.rgbd[1].depth.fill(0);
+  detection.frame.rgbd[1].depth.own().fill(0);
   EXPECT_TRUE(detection.detect(*detector).in_rgbd[1]);
   const Mask expected =
       plate_mask(rig.rgbd[1].color, rig.rgbd[1].color_from_depth * *poses.depth_from_world[1]);

@@ -106,7 +106,7 @@ class ColorBlobOnDrawings : public ::testing::Test {
 
   Mask find(const std::string& shape, const cv::Mat& picture) {
     Detection detection(rig);
-    copy_from(picture, detection.frame.color);
+    copy_from(picture, detection.frame.color.own());
     detection.detect(*make(shape));
     return detection.masks.color;
   }

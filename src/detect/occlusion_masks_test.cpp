@@ -62,7 +62,7 @@ TEST(OccluderStage, UnitesTheOccludersMasksAndGrowsThem) {
 
 TEST(OccluderStage, TheDepthMasksMarginCoversTheSameAngle) {
   Detection detection(small_rig());
-  Image<std::uint16_t>& depth = detection.frame.rgbd[0].depth;
+  Image<std::uint16_t>& depth = detection.frame.rgbd[0].depth.own();
   depth(15, 10) = 1000;
   const std::string box =
       "[{name: zone, detector: box, frame: rgbd0, min: [-5, -5, 0.5], max: [5, 5, 2]}]";

@@ -29,7 +29,7 @@ using Light = Eigen::Array3f;
 static_assert(sizeof(Light) == 3 * sizeof(float));
 
 /// The camera's pixels, and the objects' mask in the highest byte.
-void pack_picture(const Image<Bgr>& camera, const Mask& mask, const Rect& region, std::byte* to) {
+void pack_picture(ImageView<Bgr> camera, const Mask& mask, const Rect& region, std::byte* to) {
   auto* const words = reinterpret_cast<std::uint32_t*>(to);
   for_rows(region.height, [&](Rows rows) {
     for (int y = rows.first; y < rows.last; ++y) {

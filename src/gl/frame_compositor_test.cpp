@@ -26,7 +26,7 @@ class Composition : public ::testing::Test, protected testing::DiminishedWall {
     } else {
       expected.surfaces.light.resize(0, 0);
     }
-    composing.compose(frame.frame.color, masks.color, options, samples, expected);
+    composing.compose(frame.frame.color.own(), masks.color, options, samples, expected);
   }
 
   FrameMethods methods() const {
@@ -54,7 +54,7 @@ class Composition : public ::testing::Test, protected testing::DiminishedWall {
     const FrameInputs inputs{
         frame.frame, depths,   frame.poses,      masks, bounding_box(masks.color), region,
         options,     declared, &planes.planes(), cast,  maps.by_source(),          true};
-    const Image<Bgr>& camera = frame.frame.color;
+    const Image<Bgr>& camera = frame.frame.color.own();
     result.picture = camera;
     result.provenance.resize(camera.width(), camera.height(), provenance::camera);
     clear_outside(frame.rig.color, region, result.reconstruction);
@@ -188,7 +188,7 @@ TEST_F(Composition, ShadowsOutsideStayOrGo) {
     expect_same(removed ? "removed" : "restored");
     std::size_t changed = 0;
     for (std::size_t i = 0; i < masks.color.size(); ++i) {
-      const bool other = result.picture.data()[i] != frame.frame.color.data()[i];
+      const bool other = result.picture.data()[i] != frame.frame.color.view().data()[i];
       changed += masks.color.data()[i] == 0 && other ? 1U : 0U;
     }
     EXPECT_EQ(changed > 0, removed);

@@ -92,21 +92,30 @@ void FrameUpload::pack(const FrameSet& frame, const DepthImages& depths, const P
                        const Options& options) {
   blocks_.clear();
   std::size_t at = block_at(1 + of_rig_.size());
-  const auto append = [&](const auto& image) {
+  // Rows of bytes; the first one's place, in words.
+  const auto append_rows = [&](const auto* first, std::size_t count, int rows,
+                               std::ptrdiff_t stride) {
     const std::size_t start = at;
-    const std::size_t bytes = image.size() * sizeof(*image.data());
-    std::memcpy(mapped_.data() + start, image.data(), bytes);
-    at += whole_words(bytes);
+    const std::size_t row_bytes = count * sizeof(*first);
+    const auto* from = reinterpret_cast<const std::byte*>(first);
+    for (int y = 0; y < rows; ++y, at += row_bytes) {
+      std::memcpy(mapped_.data() + at, from + y * stride, row_bytes);
+    }
+    at = start + whole_words(at - start);
     return static_cast<std::uint32_t>(start / 4);
+  };
+  const auto append = [&]<class Pixel>(const ImageView<Pixel>& image) {
+    return append_rows(image.data(), static_cast<std::size_t>(image.width()), image.height(),
+                       image.stride());
   };
   for (std::size_t k = 0; k < of_rig_.size(); ++k) {
     if (!frame.rgbd[k].available() || !poses.color_from_depth[k]) continue;
     CameraBlock block = of_rig_[k];
     block.color_from_depth = TransformBlock(FloatTransform(*poses.color_from_depth[k]));
-    block.depth_at = append(depths[k]);
-    block.depth_mask_at = append(masks.rgbd_depth[k]);
-    block.color_mask_at = append(masks.rgbd_color[k]);
-    block.color_at = append(frame.rgbd[k].color);
+    block.depth_at = append(ImageView(depths[k]));
+    block.depth_mask_at = append(ImageView(masks.rgbd_depth[k]));
+    block.color_mask_at = append(ImageView(masks.rgbd_color[k]));
+    block.color_at = append(frame.rgbd[k].color.view());
     block.source = static_cast<std::uint32_t>(k + 1);
     block.layer = static_cast<std::uint32_t>(blocks_.size());
     std::memcpy(mapped_.data() + block_at(1 + blocks_.size()), &block, sizeof(block));
@@ -116,7 +125,8 @@ void FrameUpload::pack(const FrameSet& frame, const DepthImages& depths, const P
   frame_.tiles_x = tiles.x;
   frame_.tiles_y = tiles.y;
   frame_.tiles_width = tiles.width;
-  frame_.tiles_at = append(region.kept_tiles());
+  const std::vector<std::uint8_t>& kept = region.kept_tiles();
+  frame_.tiles_at = append_rows(kept.data(), kept.size(), 1, 0);
   bytes_ = at + 4;
 
   const sdct::Threshold threshold(options.discontinuity_threshold_m, options.discontinuity_reach_m);

@@ -65,7 +65,7 @@ PictureTextures::~PictureTextures() {
   delete_in(context_, resources_);
 }
 
-void PictureTextures::upload(const Image<Bgr>& picture) {
+void PictureTextures::upload(ImageView<Bgr> picture) {
   pack(picture);
   const Current current(context_);
   draw_packed();
@@ -74,11 +74,13 @@ void PictureTextures::upload(const Image<Bgr>& picture) {
   publish();
 }
 
-void PictureTextures::pack(const Image<Bgr>& picture) {
+void PictureTextures::pack(ImageView<Bgr> picture) {
   auto* const to = reinterpret_cast<Bgr*>(resources_->packed.data());
   const std::ptrdiff_t width = picture.width();
   for_rows(picture.height(), [&](Rows rows) {
-    std::copy_n(picture.row(rows.first), (rows.last - rows.first) * width, to + rows.first * width);
+    for (int y = rows.first; y < rows.last; ++y) {
+      std::copy_n(picture.row(y), width, to + y * width);
+    }
   });
 }
 

@@ -17,7 +17,7 @@ class PictureTextures : public TextureOutput {
   PictureTextures(const GlSharing& application, const Intrinsics& color);
   ~PictureTextures() override;
 
-  void upload(const Image<Bgr>& picture) override;
+  void upload(ImageView<Bgr> picture) override;
   const GlTexture& latest() const override { return latest_; }
 
   /// What is called with a context that shares with this one current may draw into the textures.
@@ -25,7 +25,7 @@ class PictureTextures : public TextureOutput {
 
   /// Writes a picture into mapped memory. Needs no context. The GPU must be done with the last
   /// picture.
-  void pack(const Image<Bgr>& picture);
+  void pack(ImageView<Bgr> picture);
   /// Copies the packed picture to the next texture. Needs a context that shares.
   void draw_packed() const;
   /// Draws a region's pixels over it, row by row: blue, green, red and any byte. Needs a context

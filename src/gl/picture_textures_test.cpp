@@ -94,7 +94,7 @@ TEST_P(PictureTextures, HoldWhatElseIsDownloaded) {
     downloading.process(frame, expected);
     drawing.process(frame, result);
     EXPECT_EQ(application.shown(drawing.texture()), expected.picture) << frame.name;
-    EXPECT_NE(frame.color, expected.picture) << frame.name;
+    EXPECT_NE(frame.color.own(), expected.picture) << frame.name;
     EXPECT_TRUE(result.picture.empty());
     EXPECT_TRUE(result.provenance.empty());
     EXPECT_EQ(result.mask, expected.mask);
@@ -208,7 +208,7 @@ TEST_F(Textures, HoldTheCamerasPictureWhereNothingIsRemoved) {
   options.keep = scene.recording.scene.occluders.front().name;
   pipeline.set_options(options);
   pipeline.process(scene.frame, result);
-  EXPECT_EQ(application.shown(pipeline.texture()), scene.frame.color);
+  EXPECT_EQ(application.shown(pipeline.texture()), scene.frame.color.own());
   EXPECT_TRUE(result.picture.empty());
   EXPECT_THAT(result.report.messages, ::testing::Not(Contains(by_cpu)));
 }
@@ -217,7 +217,7 @@ TEST_F(Textures, AreNotThereWithoutAPicture) {
   pipeline.process(scene.frame, result);
   EXPECT_NE(pipeline.texture().name, 0U);
   FrameSet skipped = scene.frame;
-  skipped.color.resize(0, 0);
+  skipped.color.own().resize(0, 0);
   pipeline.process(skipped, result);
   EXPECT_EQ(pipeline.texture().name, 0U);
   pipeline.process(scene.frame, result);

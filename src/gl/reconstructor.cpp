@@ -42,7 +42,7 @@ std::size_t end_of_first(const Rect& region) {
 /// Shows the camera's picture: all that is to be seen where nothing is removed, and else what is
 /// around the region. textures: null where the picture goes to the result.
 void show_camera(const FrameInputs& inputs, PictureTextures* textures, DiminishedFrame& result) {
-  const Image<Bgr>& camera = inputs.frame.color;
+  const ImageView<Bgr> camera = inputs.frame.color;
   const Mask& mask = inputs.masks.color;
   const Rect given = textures ? Rect{} : camera.bounds();
   result.picture.resize(given.width, given.height);

@@ -164,7 +164,7 @@ TEST_P(ThreeCameras, WithSlivers) {
   Reconstruction without;
   reconstruct("cpu", without);
   for (std::size_t k = 0; k < 2; ++k) {
-    Image<std::uint16_t>& depth = scene.frame.rgbd[k].depth;
+    Image<std::uint16_t>& depth = scene.frame.rgbd[k].depth.own();
     for (int x = 30; x + 1 < depth.width(); x += 23) depth.fill({x, 60, 2, 90}, 7000);
   }
   options.merge_cameras = "choose";
@@ -225,7 +225,7 @@ INSTANTIATE_TEST_SUITE_P(Backends, NineCameras, ::testing::Values("gl", "gl_geom
 
 TEST_P(NineCameras, AreBlendedOnlyWhereOneSeesNothing) {
   for (const bool blended : {false, true}) {
-    if (blended) scene.frame.rgbd[4].depth.fill(0);
+    if (blended) scene.frame.rgbd[4].depth.own().fill(0);
     const Difference difference = beside_the_cpus();
     expect_alike(difference);
     EXPECT_GT(difference.drawn, difference.pixels / 2);

@@ -106,7 +106,7 @@ std::optional<std::size_t> FrameAssembler::assemble(
       for (std::size_t age = 0; age < color.size(); ++age) {
         auto& entry = color.newest(age);
         if (entry.stamp_s != candidates[i].stamp_s) continue;
-        std::swap(frame.color, entry.image);
+        std::swap(frame.color.own(), entry.image);
         return true;
       }
       return false;
@@ -131,7 +131,7 @@ void FrameAssembler::fill_rgbd(std::size_t camera, double tolerance_s, FrameSet&
     const auto copy = [&](const auto& history, auto& image, double& stamp_s) {
       const auto* entry = history.nearest(frame.stamp_s, tolerance_s);
       if (!entry) return false;
-      if (stamp_s != entry->stamp_s || image.empty()) image = entry->image;
+      if (stamp_s != entry->stamp_s || image.empty()) image.own() = entry->image;
       stamp_s = entry->stamp_s;
       return true;
     };
@@ -141,8 +141,8 @@ void FrameAssembler::fill_rgbd(std::size_t camera, double tolerance_s, FrameSet&
     if (has_color && has_depth) return;
     rgbd.missing = fmt::format("{}: no {} image within {:.2g} s", rgbd_[camera]->name(),
                                has_color ? "depth" : "color", tolerance_s);
-    rgbd.color.resize(0, 0);
-    rgbd.depth.resize(0, 0);
+    rgbd.color.own().resize(0, 0);
+    rgbd.depth.own().resize(0, 0);
   });
 }
 

@@ -9,6 +9,7 @@
 #include "diminish/pipeline.h"
 #include "expect_error.h"
 #include "paths.h"
+#include "same_pixels.h"
 
 namespace diminish {
 namespace {
@@ -68,11 +69,11 @@ TEST_F(Live, ShowsWhatThePipelineMakesOfTheRecordingsFrames) {
     ++i;
     // The picture tells which of the recording's frames it is.
     const auto same = std::find_if(recorded.begin(), recorded.end(), [&](const FrameSet& r) {
-      return r.color == frame->input.color;
+      return testing::same_pixels(r.color, frame->input.color);
     });
     ASSERT_NE(same, recorded.end());
-    EXPECT_EQ(frame->input.rgbd[0].depth, same->rgbd[0].depth);
-    EXPECT_EQ(frame->input.rgbd[0].color, same->rgbd[0].color);
+    EXPECT_TRUE(testing::same_pixels(frame->input.rgbd[0].depth, same->rgbd[0].depth));
+    EXPECT_TRUE(testing::same_pixels(frame->input.rgbd[0].color, same->rgbd[0].color));
     pipeline.process(*same, expected);
     EXPECT_EQ(frame->result.picture, expected.picture);
     EXPECT_GT(frame->latency_ms, 0);

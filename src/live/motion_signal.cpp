@@ -16,7 +16,7 @@ constexpr double least_correlation = 0.6;
 /// Grey levels; anything below is noise.
 constexpr double least_motion = 0.05;
 
-void thin(const Image<Bgr>& image, Image<std::uint8_t>& thinned) {
+void thin(ImageView<Bgr> image, Image<std::uint8_t>& thinned) {
   const int step = std::max(1, image.width() / thinned_width);
   thinned.resize(image.width() / step, image.height() / step);
   for (int y = 0; y < thinned.height(); ++y) {
@@ -66,7 +66,7 @@ double correlation(const double* a, const double* b, std::size_t count) {
 
 }  // namespace
 
-std::optional<Motion> MotionMeter::add(const Image<Bgr>& image, double stamp_s) {
+std::optional<Motion> MotionMeter::add(ImageView<Bgr> image, double stamp_s) {
   thin(image, thinned_);
   std::optional<Motion> motion;
   if (last_.width() == thinned_.width() && last_.height() == thinned_.height()) {

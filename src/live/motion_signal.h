@@ -17,7 +17,7 @@ struct Motion {
 class MotionMeter {
  public:
   /// Nothing for the first image.
-  std::optional<Motion> add(const Image<Bgr>& image, double stamp_s);
+  std::optional<Motion> add(ImageView<Bgr> image, double stamp_s);
 
  private:
   Image<std::uint8_t> last_, thinned_;

@@ -74,7 +74,7 @@ struct RecordingWriter::Implementation {
   void work();
   void write(const LiveFrame& frame);
   template <class Pixel>
-  void write_image(Stream& stream, const Image<Pixel>& image, double stamp_s);
+  void write_image(Stream& stream, const InputImage<Pixel>& image, double stamp_s);
 
   std::filesystem::path folder_;
   Stream color_;
@@ -191,7 +191,7 @@ void RecordingWriter::Implementation::write(const LiveFrame& frame) {
 }
 
 template <class Pixel>
-void RecordingWriter::Implementation::write_image(Stream& stream, const Image<Pixel>& image,
+void RecordingWriter::Implementation::write_image(Stream& stream, const InputImage<Pixel>& image,
                                                   double stamp_s) {
   // Two frames may share an RGB-D image, and the timestamps in a list must increase.
   if (stamp_s <= stream.last_stamp_s) return;

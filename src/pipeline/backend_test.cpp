@@ -191,7 +191,7 @@ class WholeFrames : public ::testing::TestWithParam<const char*> {
   void expect_camera_outside(const std::string& what) const {
     for (std::size_t i = 0; i < result.mask.size(); ++i) {
       if (result.mask.data()[i] != 0) continue;
-      ASSERT_EQ(result.picture.data()[i], frame.color.data()[i]) << what;
+      ASSERT_EQ(result.picture.data()[i], frame.color.view().data()[i]) << what;
     }
   }
 
@@ -292,7 +292,7 @@ TEST(WholeFrame, WithoutObjectsOrRgbdCamerasIsTheGpusToo) {
   options.keep = recording.scene.occluders.front().name;
   pipeline.set_options(options);
   pipeline.process(frame, result);
-  EXPECT_EQ(result.picture, frame.color);
+  EXPECT_EQ(result.picture, frame.color.own());
   EXPECT_EQ(result.report.mask_pixels, 0U);
 }
 

@@ -10,26 +10,33 @@ namespace diminish {
 namespace {
 
 template <class Pixel>
-void expect_size(const Image<Pixel>& image, const Intrinsics& intrinsics, const std::string& name) {
+void expect_size(const ImageView<Pixel>& image, const Intrinsics& intrinsics,
+                 const std::string& name) {
   if (image.width() != intrinsics.width || image.height() != intrinsics.height) {
     throw Error(Error::input,
                 fmt::format("{}: expected an image of {}x{}, got {}x{}", name, intrinsics.width,
                             intrinsics.height, image.width(), image.height()));
+  }
+  const auto row = image.width() * std::ptrdiff_t{sizeof(Pixel)};
+  if (image.stride() < row || image.stride() % std::ptrdiff_t{alignof(Pixel)} != 0) {
+    throw Error(Error::input,
+                fmt::format("{}: expected a stride of at least {} bytes, a multiple of {}, got {}",
+                            name, row, alignof(Pixel), image.stride()));
   }
 }
 
 }  // namespace
 
 void expect_sizes(const FrameSet& frame, const Rig& rig) {
-  if (!frame.color.empty()) expect_size(frame.color, rig.color, "color");
+  if (!frame.color.empty()) expect_size(frame.color.view(), rig.color, "color");
   if (frame.rgbd.size() != rig.rgbd.size()) {
     throw Error(Error::input, fmt::format("frame: expected {} RGB-D cameras, got {}",
                                           rig.rgbd.size(), frame.rgbd.size()));
   }
   for (std::size_t k = 0; k < rig.rgbd.size(); ++k) {
     if (!frame.rgbd[k].available()) continue;
-    expect_size(frame.rgbd[k].color, rig.rgbd[k].color, color_sensor_name(rig.rgbd[k]));
-    expect_size(frame.rgbd[k].depth, rig.rgbd[k].depth, rig.rgbd[k].name + " depth");
+    expect_size(frame.rgbd[k].color.view(), rig.rgbd[k].color, color_sensor_name(rig.rgbd[k]));
+    expect_size(frame.rgbd[k].depth.view(), rig.rgbd[k].depth, rig.rgbd[k].name + " depth");
   }
 }
 

@@ -11,7 +11,7 @@ namespace {
 /// Counts pictures, and fails at the second.
 class Counting : public TextureOutput {
  public:
-  void upload(const Image<Bgr>& picture) override {
+  void upload(ImageView<Bgr> picture) override {
     if (latest_.name == 1) throw Error("the driver lost the context");
     latest_ = {latest_.name + 1, picture.width(), picture.height(), nullptr};
   }

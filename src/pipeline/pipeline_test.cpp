@@ -94,7 +94,7 @@ TEST_P(PipelineOnRecordings, RemovesItAndTouchesNothingElse) {
     const DiminishedFrame& result = recording.result;
     for (std::size_t i = 0; i < result.mask.size(); ++i) {
       if (result.mask.data()[i] != 0) continue;
-      ASSERT_EQ(result.picture.data()[i], recording.frame.color.data()[i]);
+      ASSERT_EQ(result.picture.data()[i], recording.frame.color.view().data()[i]);
     }
     EXPECT_EQ(result.report.valid_pixels + result.report.missing_pixels, result.report.mask_pixels);
     EXPECT_TRUE(result.report.messages.empty()) << result.report.messages.front();
@@ -173,7 +173,7 @@ class PipelineOnAnalyticScene : public ::testing::Test {
     frame.masks.push_back(mask);
     // What the object looks like must not matter.
     for (int y = 60; y < 90; ++y) {
-      for (int x = 40; x < 90; ++x) frame.color(x, y) = {255, 0, 255};
+      for (int x = 40; x < 90; ++x) frame.color.own()(x, y) = {255, 0, 255};
     }
   }
 
@@ -245,7 +245,7 @@ TEST_F(PipelineOnAnalyticScene, AFrameWithoutColorImageIsSkipped) {
 
 TEST_F(PipelineOnAnalyticScene, ImagesOfOtherSizesAndWrongOptionsAreErrors) {
   Pipeline pipeline(rig, scene, {});
-  frame.rgbd[0].depth.resize(10, 10);
+  frame.rgbd[0].depth.own().resize(10, 10);
   EXPECT_THROW(pipeline.process(frame, result), Error);
   frame = scene_frame.frame;
   frame.rgbd.clear();

@@ -18,7 +18,7 @@ constexpr double min_reach_px = 2.5;
 constexpr double near_px = 1;  ///< points up to this far apart are on the same edge
 
 /// The green channel, bilinear; the four pixels must be inside.
-float sample(const Image<Bgr>& image, float x, float y) {
+float sample(ImageView<Bgr> image, float x, float y) {
   const int x0 = static_cast<int>(x);
   const int y0 = static_cast<int>(y);
   const float fx = x - static_cast<float>(x0);
@@ -34,7 +34,7 @@ float sample(const Image<Bgr>& image, float x, float y) {
 
 /// The place of the dark-to-light step on the profile through `center` along `outward`: the
 /// centroid of the rise in brightness around its steepest point.
-std::optional<Vector2d> find_step(const Image<Bgr>& image, const Vector2d& center,
+std::optional<Vector2d> find_step(ImageView<Bgr> image, const Vector2d& center,
                                   const Vector2d& outward, double reach_px, double step_px) {
   const auto inside = [&](const Vector2d& point) {
     return point.x() >= 0 && point.y() >= 0 && point.x() < image.width() - 1.001 &&
@@ -154,8 +154,8 @@ std::optional<Eigen::Hyperplane<double, 2>> fit_line(Points& points) {
 
 }  // namespace
 
-bool refine_corners(const Image<Bgr>& image, const Lens& lens, int modules,
-                    const RefinementPass& pass, std::array<Vector2d, 4>& corners) {
+bool refine_corners(ImageView<Bgr> image, const Lens& lens, int modules, const RefinementPass& pass,
+                    std::array<Vector2d, 4>& corners) {
   std::array<std::optional<Eigen::Hyperplane<double, 2>>, 4> sides;
   for (std::size_t side = 0; side < 4; ++side) {
     const Vector2d& from = corners[side];

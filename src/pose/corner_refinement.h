@@ -27,7 +27,7 @@ inline constexpr RefinementPass fine_pass{48, 4, 0.5, false};
 /// modules: the number of cells along a side, including the border; a profile is no longer than the
 /// border is wide. Returns whether all four sides were found; otherwise the corners stay as they
 /// are.
-bool refine_corners(const Image<Bgr>& image, const Lens& lens, int modules,
-                    const RefinementPass& pass, std::array<Eigen::Vector2d, 4>& corners);
+bool refine_corners(ImageView<Bgr> image, const Lens& lens, int modules, const RefinementPass& pass,
+                    std::array<Eigen::Vector2d, 4>& corners);
 
 }  // namespace diminish

@@ -7,7 +7,7 @@
 namespace diminish {
 
 std::vector<MarkerDepth> marker_depths(const RigidTransform& depth_from_marker, double size_m,
-                                       const Lens& depth_lens, const Image<std::uint16_t>& depth,
+                                       const Lens& depth_lens, ImageView<std::uint16_t> depth,
                                        double depth_unit_m) {
   constexpr int places = 9;  // per side
   std::vector<MarkerDepth> depths;
@@ -29,8 +29,8 @@ std::vector<MarkerDepth> marker_depths(const RigidTransform& depth_from_marker, 
 }
 
 std::optional<double> marker_depth_error_m(const RigidTransform& depth_from_marker, double size_m,
-                                           const Lens& depth_lens,
-                                           const Image<std::uint16_t>& depth, double depth_unit_m) {
+                                           const Lens& depth_lens, ImageView<std::uint16_t> depth,
+                                           double depth_unit_m) {
   std::vector<double> errors;
   for (const MarkerDepth& at :
        marker_depths(depth_from_marker, size_m, depth_lens, depth, depth_unit_m)) {

@@ -23,7 +23,7 @@ MarkerCode::MarkerCode(const MarkerDictionary& dictionary)
       codes_(dictionary.codes) {}
 
 std::optional<MarkerCode::Reading> MarkerCode::read(
-    const Image<Bgr>& image, const std::array<Eigen::Vector2d, 4>& corners) const {
+    ImageView<Bgr> image, const std::array<Eigen::Vector2d, 4>& corners) const {
   const Eigen::Matrix3d image_from_unit = homography_of_unit_square(corners);
   const int n = modules();
   std::array<float, max_modules * max_modules> cells{};

@@ -25,7 +25,7 @@ class MarkerCode {
   };
   /// The marker in a quadrilateral (clockwise) of the picture. Nothing if its cells are not a code
   /// of the dictionary, apart from errors that the dictionary can correct.
-  std::optional<Reading> read(const Image<Bgr>& image,
+  std::optional<Reading> read(ImageView<Bgr> image,
                               const std::array<Eigen::Vector2d, 4>& corners) const;
 
  private:

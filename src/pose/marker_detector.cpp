@@ -50,8 +50,7 @@ MarkerDetector::~MarkerDetector() = default;
 MarkerDetector::MarkerDetector(MarkerDetector&&) noexcept = default;
 MarkerDetector& MarkerDetector::operator=(MarkerDetector&&) noexcept = default;
 
-void MarkerDetector::detect(const Image<Bgr>& image, const Lens& lens,
-                            std::vector<Marker>& markers) {
+void MarkerDetector::detect(ImageView<Bgr> image, const Lens& lens, std::vector<Marker>& markers) {
   Implementation& self = *implementation_;
   markers.clear();
   shrink_green(image, self.small);

@@ -51,7 +51,7 @@ void PoseRefinement::collect(const FrameSet& frame, const std::vector<SceneSampl
     if (!picture.contains(static_cast<int>(sample.pixel.x()), static_cast<int>(sample.pixel.y()))) {
       continue;
     }
-    const Image<Bgr>& image = frame.rgbd[sample.source - 1U].color;
+    const ImageView<Bgr> image = frame.rgbd[sample.source - 1U].color;
     const int u = static_cast<int>(std::lrint(sample.texture.x()));
     const int v = static_cast<int>(std::lrint(sample.texture.y()));
     if (u < rim || v < rim || u >= image.width() - rim || v >= image.height() - rim) continue;

@@ -86,7 +86,7 @@ TEST_F(PoseRefinementTest, FindsBackThroughEveryLens) {
 
 // Gain and offset may differ between cameras.
 TEST_F(PoseRefinementTest, DoesNotMindAnotherExposure) {
-  for (Bgr& pixel : frame.frame.rgbd[0].color) {
+  for (Bgr& pixel : frame.frame.rgbd[0].color.own()) {
     pixel = {static_cast<std::uint8_t>(pixel.b / 2 + 30),
              static_cast<std::uint8_t>(pixel.g / 2 + 30),
              static_cast<std::uint8_t>(pixel.r / 2 + 30)};
@@ -106,7 +106,7 @@ TEST_F(PoseRefinementTest, LooksOnlyOutsideTheMask) {
   Poses again = poses;
   ASSERT_TRUE(refine(poses));
   for (int y = 60; y < 160; ++y) {
-    for (int x = 60; x < 180; ++x) frame.frame.color(x, y) = {255, 0, 255};
+    for (int x = 60; x < 180; ++x) frame.frame.color.own()(x, y) = {255, 0, 255};
   }
   ASSERT_TRUE(refine(again));
   // The last pixels beside the mask are blurred with it.
@@ -114,7 +114,7 @@ TEST_F(PoseRefinementTest, LooksOnlyOutsideTheMask) {
 }
 
 TEST_F(PoseRefinementTest, LeavesPosesAloneWhereThereIsNothingToSee) {
-  frame.frame.color.resize(320, 256, {90, 90, 90});
+  frame.frame.color.own().resize(320, 256, {90, 90, 90});
   Poses poses = frame.poses;
   poses.color_from_depth[0] = small_motion() * *poses.color_from_depth[0];
   const double before = error_px(poses);

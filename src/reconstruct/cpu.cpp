@@ -229,7 +229,7 @@ class VectorizedReconstructor : public Reconstructor {
     std::fill_n(colors, region.width, Bgra{});
     std::fill_n(second_colors, region.width, Bgra{});
     for (const BlendedRow& row : blender_.choose(y, chosen, thread.blending)) {
-      const Image<Bgr>& texture = frame.rgbd[row.source - 1U].color;
+      const ImageView<Bgr> texture = frame.rgbd[row.source - 1U].color;
       look_up_colors(row, texture, region.width, chosen.source, chosen.depth_m, colors);
       look_up_colors(row, texture, region.width, chosen.second_source, chosen.second_depth_m,
                      second_colors);

@@ -233,7 +233,7 @@ TEST_P(AnyReconstructor, ACameraThatSeesNothingOfTheRegionChangesNothing) {
   const AnalyticScene scene;
   AnalyticFrame frame(scene, {rgbd_eye, {0.5, 0.3, 0.9}});
   const OcclusionMasks masks = empty_masks(frame.rig);
-  frame.frame.rgbd[1].depth.fill(0);
+  frame.frame.rgbd[1].depth.own().fill(0);
   const Reconstruction with = reconstruct(frame, masks);
   frame.frame.rgbd[1].missing = "rgbd1: unplugged";
   const Reconstruction without = reconstruct(frame, masks);

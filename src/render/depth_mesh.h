@@ -30,7 +30,7 @@ class DepthMesh {
 
   /// masks: this camera's.
   struct Frame {
-    const Image<std::uint16_t>& depth;
+    ImageView<std::uint16_t> depth;
     const Mask& depth_mask;
     const Mask& color_mask;
     FloatTransform to_color;

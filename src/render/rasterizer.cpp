@@ -49,7 +49,7 @@ void Layer::clear(int width, int height, const Rect& region) {
   depth_m.fill(region, 0.F);
 }
 
-Bgr sample_bilinear(const Image<Bgr>& image, float u, float v) {
+Bgr sample_bilinear(ImageView<Bgr> image, float u, float v) {
   const int x0 = std::clamp(static_cast<int>(u), 0, image.width() - 1);
   const int y0 = std::clamp(static_cast<int>(v), 0, image.height() - 1);
   const int x1 = std::min(x0 + 1, image.width() - 1);
@@ -66,7 +66,7 @@ Bgr sample_bilinear(const Image<Bgr>& image, float u, float v) {
 }
 
 void draw_triangle(const MeshVertex& a, const MeshVertex& b, const MeshVertex& c,
-                   const Image<Bgr>& texture, const Rect& region, Layer& layer) {
+                   ImageView<Bgr> texture, const Rect& region, Layer& layer) {
   const Rect box = intersect(pixels_of_bounding_box(a, b, c), region);
   if (box.empty()) return;
   const Edge opposite_a(b, c);
@@ -99,7 +99,7 @@ void draw_triangle(const MeshVertex& a, const MeshVertex& b, const MeshVertex& c
   }
 }
 
-void draw_mesh(const Image<MeshVertex>& vertices, const Image<Bgr>& texture,
+void draw_mesh(const Image<MeshVertex>& vertices, ImageView<Bgr> texture,
                const sdct::Threshold& threshold, const Rect& region, Layer& layer) {
   const auto draw = [&](const MeshVertex& a, const MeshVertex& b, const MeshVertex& c) {
     if (a.valid() && b.valid() && c.valid() &&

@@ -21,16 +21,16 @@ struct Layer {
 };
 
 /// Bilinear interpolation, rounded to the nearest level. 0 <= u <= width - 1, 0 <= v <= height - 1.
-Bgr sample_bilinear(const Image<Bgr>& image, float u, float v);
+Bgr sample_bilinear(ImageView<Bgr> image, float u, float v);
 
 /// Draws one triangle (rules 4 and 5 of sdct.h). Looks up its colours in `texture` with
 /// perspective-correct coordinates. The triangle must face forward.
 void draw_triangle(const MeshVertex& a, const MeshVertex& b, const MeshVertex& c,
-                   const Image<Bgr>& texture, const Rect& region, Layer& layer);
+                   ImageView<Bgr> texture, const Rect& region, Layer& layer);
 
 /// Draws the mesh of `vertices` inside `region` (rules 2 and 3). Cost: one pass over the cells and
 /// over the pixels of each triangle's bounding box.
-void draw_mesh(const Image<MeshVertex>& vertices, const Image<Bgr>& texture,
+void draw_mesh(const Image<MeshVertex>& vertices, ImageView<Bgr> texture,
                const sdct::Threshold& threshold, const Rect& region, Layer& layer);
 
 }  // namespace diminish

@@ -48,7 +48,7 @@ struct alignas(64) Places {
   std::int32_t pixels[4][most];  ///< upper left, upper right, lower left, lower right
 };
 
-HWY_INLINE void FindPlaces(const SurfaceRow& row, const Image<Bgr>& texture, int first, int count,
+HWY_INLINE void FindPlaces(const SurfaceRow& row, ImageView<Bgr> texture, int first, int count,
                            const float* depth_m, Places& places) {
   ForEachOverlappingVector(count, [&](auto d, int i) HWY_ATTR {
     const hn::RebindToSigned<decltype(d)> di;
@@ -65,7 +65,7 @@ HWY_INLINE void FindPlaces(const SurfaceRow& row, const Image<Bgr>& texture, int
     };
     const auto x = place(row.u_over_z, texture.width(), places.fx);
     const auto y = place(row.v_over_z, texture.height(), places.fy);
-    const auto row_bytes = hn::Set(di, 3 * texture.width());
+    const auto row_bytes = hn::Set(di, static_cast<std::int32_t>(texture.stride()));
     hn::StoreU(hn::Add(hn::Mul(y, row_bytes), hn::Mul(x, hn::Set(di, 3))), di, places.place + i);
   });
 }
@@ -77,11 +77,11 @@ HWY_INLINE std::uint64_t PixelPair(const std::uint8_t* texture, std::int32_t pla
   return pair;
 }
 
-HWY_INLINE void ReadPixels(const Image<Bgr>& texture, int count, Places& places) {
+HWY_INLINE void ReadPixels(ImageView<Bgr> texture, int count, Places& places) {
   const auto* bytes = reinterpret_cast<const std::uint8_t*>(texture.data());
-  const auto row_bytes = static_cast<std::int32_t>(3 * texture.width());
+  const auto row_bytes = static_cast<std::int32_t>(texture.stride());
   // The last place from which eight bytes can be read.
-  const auto last = static_cast<std::int32_t>(3 * texture.size()) - 8;
+  const auto last = (texture.height() - 1) * row_bytes + 3 * texture.width() - 8;
   for (int i = 0; i < count; ++i) {
     const std::int32_t upper = places.place[i];
     const std::int32_t lower = upper + row_bytes;
@@ -111,7 +111,7 @@ HWY_INLINE hn::Vec<hn::RebindToSigned<D>> BlendChannel(D d, const Places& places
   return hn::NearestInt(hn::MulAdd(fy, hn::Sub(bottom, top), top));
 }
 
-void LookUpColors(const SurfaceRow& row, const Image<Bgr>& texture, int width,
+void LookUpColors(const SurfaceRow& row, ImageView<Bgr> texture, int width,
                   const std::uint8_t* source, const float* depth_m, Bgra* colors) {
   Places places;
   for (int first = 0; first < width; first += Places::most) {
@@ -153,7 +153,7 @@ void choose_source(const std::vector<SurfaceRow>& rows, float agreement_m, int w
   HWY_DYNAMIC_DISPATCH(ChooseSource)(rows, agreement_m, width, source, depth_m);
 }
 
-void look_up_colors(const SurfaceRow& row, const Image<Bgr>& texture, int width,
+void look_up_colors(const SurfaceRow& row, ImageView<Bgr> texture, int width,
                     const std::uint8_t* source, const float* depth_m, Bgra* colors) {
   HWY_DYNAMIC_DISPATCH(LookUpColors)(row, texture, width, source, depth_m, colors);
 }

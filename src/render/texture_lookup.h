@@ -27,7 +27,7 @@ void choose_source(const std::vector<SurfaceRow>& rows, float agreement_m, int w
 
 /// Looks up the colours of the pixels that are taken from `row` in `texture`, as sample_bilinear
 /// does, with alpha 255. Leaves the other pixels alone.
-void look_up_colors(const SurfaceRow& row, const Image<Bgr>& texture, int width,
+void look_up_colors(const SurfaceRow& row, ImageView<Bgr> texture, int width,
                     const std::uint8_t* source, const float* depth_m, Bgra* colors);
 
 }  // namespace diminish

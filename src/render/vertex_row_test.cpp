@@ -18,7 +18,7 @@ void expect_the_plain_versions_vertices() {
     OcclusionMasks masks = testing::empty_masks(scene.rig);
     masks.rgbd_depth[0].fill({30, 40, 37, 21}, 255);
     masks.rgbd_color[0].fill({200, 90, 61, 50}, 255);
-    const Image<std::uint16_t>& depth = scene.frame.rgbd[0].depth;
+    const Image<std::uint16_t> depth = testing::depths_of(scene.frame)[0];
     const FloatTransform to_color(*scene.poses.color_from_depth[0]);
 
     Image<MeshVertex> expected;

@@ -19,7 +19,7 @@ bool is_exposed(const Eigen::Array3f& levels) {
 /// Pairs of each RGB-D camera: more do not improve the map.
 constexpr std::size_t most_pairs = 2000;
 
-void add_pair(const Image<Bgr>& camera, const Mask& occlusion, const SceneSample& sample,
+void add_pair(ImageView<Bgr> camera, const Mask& occlusion, const SceneSample& sample,
               std::vector<ColorPair>& pairs) {
   constexpr int rim = even_color_reach_px;
   const int x = static_cast<int>(std::lrint(sample.pixel.x()));
@@ -42,7 +42,7 @@ void add_pair(const Image<Bgr>& camera, const Mask& occlusion, const SceneSample
 
 }  // namespace
 
-void ColorMaps::fit(const Image<Bgr>& camera, const Mask& occlusion,
+void ColorMaps::fit(ImageView<Bgr> camera, const Mask& occlusion,
                     const std::vector<SceneSample>& samples, ColorMapModel model) {
   std::fill(maps_.begin(), maps_.end(), ColorMap{});
   if (model == ColorMapModel::none) return;

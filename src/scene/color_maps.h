@@ -16,7 +16,7 @@ class ColorMaps {
   /// samples: sorted by camera. occlusion: where `camera` shows an object to remove; not used
   /// there. Cameras without samples keep their colours; with the model `none`, all do. Cost: 0.1 us
   /// per sample.
-  void fit(const Image<Bgr>& camera, const Mask& occlusion, const std::vector<SceneSample>& samples,
+  void fit(ImageView<Bgr> camera, const Mask& occlusion, const std::vector<SceneSample>& samples,
            ColorMapModel model);
   /// By Reconstruction::source.
   ColorMapsBySource by_source() const { return maps_; }

@@ -21,12 +21,12 @@ constexpr float edge = 0.03F;
 constexpr int reach = 2;
 
 /// The distance between samples, in depth pixels.
-int step_of(const Image<std::uint16_t>& depth) {
+int step_of(ImageView<std::uint16_t> depth) {
   const double pixels = static_cast<double>(depth.width()) * depth.height();
   return std::max(1, static_cast<int>(std::lround(std::sqrt(pixels / wanted_samples))));
 }
 
-bool on_surface(const Image<std::uint16_t>& depth, int column, int row) {
+bool on_surface(ImageView<std::uint16_t> depth, int column, int row) {
   const auto own = static_cast<float>(depth(column, row));
   for (const auto& [dx, dy] : {std::pair{-reach, 0}, {reach, 0}, {0, -reach}, {0, reach}}) {
     const auto other = static_cast<float>(depth(column + dx, row + dy));
@@ -74,8 +74,8 @@ void SceneSampler::sample(const FrameSet& frame, const Poses& poses, const Occlu
 }
 
 void SceneSampler::sample_rows(const View& view, Rows rows, Half& half) {
-  const Image<std::uint16_t>& depth = view.images.depth;
-  const Image<Bgr>& image = view.images.color;
+  const ImageView<std::uint16_t> depth = view.images.depth;
+  const ImageView<Bgr> image = view.images.color;
   const int step = step_of(depth);
   constexpr int rim = even_color_reach_px;
   for (int row = reach + step / 2; row < depth.height() - reach; row += step) {

@@ -10,13 +10,15 @@
 namespace diminish {
 namespace {
 
-void stack(const Image<Bgr>& top, const Image<Bgr>& bottom, Image<Bgr>& both) {
+void stack(ImageView<Bgr> top, ImageView<Bgr> bottom, Image<Bgr>& both) {
   both.resize(top.width(), top.height() + bottom.height());
-  std::copy(top.begin(), top.end(), both.begin());
-  std::copy(bottom.begin(), bottom.end(), both.begin() + static_cast<std::ptrdiff_t>(top.size()));
+  for (int y = 0; y < both.height(); ++y) {
+    const Bgr* row = y < top.height() ? top.row(y) : bottom.row(y - top.height());
+    std::copy_n(row, both.width(), both.row(y));
+  }
 }
 
-const Image<Bgr>& picture(const LiveFrame& frame, View view, Image<Bgr>& scratch) {
+ImageView<Bgr> picture(const LiveFrame& frame, View view, Image<Bgr>& scratch) {
   if (view == View::before) return frame.input.color;
   if (view == View::after) return frame.result.picture;
   stack(frame.input.color, frame.result.picture, scratch);

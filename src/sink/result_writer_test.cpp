@@ -27,7 +27,7 @@ class ResultWriterTest : public ::testing::Test {
   ResultWriterTest() {
     rig = testing::small_rig();
     frame.name = result.name = "000007";
-    frame.color.resize(rig.color.width, rig.color.height, {10, 20, 30});
+    frame.color.own().resize(rig.color.width, rig.color.height, {10, 20, 30});
     result.picture.resize(rig.color.width, rig.color.height, {40, 50, 60});
     result.mask.resize(rig.color.width, rig.color.height, 0);
     result.mask.fill({5, 6, 7, 8}, 255);

@@ -65,7 +65,7 @@ class RecordingSource final : public FrameSource {
     frame.index = next_;
     frame.stamp_s = entry.stamp_s;
     frame.faults.clear();
-    read(color_, next_, frame.color, frame.faults);
+    read(color_, next_, frame.color.own(), frame.faults);
     frame.rgbd.resize(rgbd_.size());
     std::vector<std::string> rgbd_names;
     for (std::size_t i = 0; i < rgbd_.size(); ++i) rgbd_names.push_back(read_rgbd(i, frame));
@@ -96,8 +96,8 @@ class RecordingSource final : public FrameSource {
     RgbdStreams& streams = rgbd_[camera];
     rgbd.missing.clear();
     const auto color =
-        read_partner(camera, "color", streams.color, frame, rgbd.color, rgbd.color_stamp_s);
-    read_partner(camera, "depth", streams.depth, frame, rgbd.depth, rgbd.depth_stamp_s);
+        read_partner(camera, "color", streams.color, frame, rgbd.color.own(), rgbd.color_stamp_s);
+    read_partner(camera, "depth", streams.depth, frame, rgbd.depth.own(), rgbd.depth_stamp_s);
     return color ? entry_name(streams.color.entries()[*color], *color) : "";
   }
 

@@ -7,7 +7,7 @@ namespace {
 
 constexpr int bits = 40;
 
-int square_size(const Image<Bgr>& picture) {
+int square_size(ImageView<Bgr> picture) {
   return std::min({16, picture.width() / bits, picture.height()});
 }
 
@@ -28,7 +28,7 @@ void draw_clock_code(std::uint32_t ticks, Image<Bgr>& picture) {
   }
 }
 
-std::optional<std::uint32_t> read_clock_code(const Image<Bgr>& picture) {
+std::optional<std::uint32_t> read_clock_code(ImageView<Bgr> picture) {
   const int size = square_size(picture);
   if (size < 4) return std::nullopt;
   std::uint64_t code = 0;

@@ -14,7 +14,7 @@ namespace diminish {
 void draw_clock_code(std::uint32_t ticks, Image<Bgr>& picture);
 
 /// Reads it; nothing if there is none.
-std::optional<std::uint32_t> read_clock_code(const Image<Bgr>& picture);
+std::optional<std::uint32_t> read_clock_code(ImageView<Bgr> picture);
 
 /// A time on the monotonic clock in tenths of milliseconds; begins anew every five days.
 inline std::uint32_t clock_ticks(double seconds) {

@@ -7,7 +7,7 @@
 
 namespace diminish {
 
-int BlobSegmentation::scale(const Image<Bgr>& image) {
+int BlobSegmentation::scale(ImageView<Bgr> image) {
   // The size of the picture that is divided: enough for blobs of a few pixels, small enough to be
   // quick and to average the noise.
   constexpr int width = 480;
@@ -15,7 +15,7 @@ int BlobSegmentation::scale(const Image<Bgr>& image) {
   return std::min((image.width() + width - 1) / width, largest);
 }
 
-void BlobSegmentation::segment(const Image<Bgr>& image, const Rect& window) {
+void BlobSegmentation::segment(ImageView<Bgr> image, const Rect& window) {
   shrink(image, scale(image), window, sums_, small_);
   smooth_.resize(window.width, window.height);
   for (int y = 0; y < window.height; ++y) {

@@ -17,10 +17,10 @@ class BlobSegmentation {
  public:
   /// A segment pixel covers `scale` x `scale` image pixels; the last ones of a row or column may
   /// stand for up to `scale - 1` more.
-  static int scale(const Image<Bgr>& image);
+  static int scale(ImageView<Bgr> image);
 
   /// Divides a part of the picture; window: in segment pixels.
-  void segment(const Image<Bgr>& image, const Rect& window);
+  void segment(ImageView<Bgr> image, const Rect& window);
 
   /// Of the window: 1 .. blob_count() - 1, or 0 on the lines between blobs.
   const Image<std::uint32_t>& labels() const { return labels_; }

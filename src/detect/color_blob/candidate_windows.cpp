@@ -7,7 +7,7 @@
 
 namespace diminish {
 
-const std::vector<Rect>& CandidateWindows::find(const Image<Bgr>& image, const ColorTable& table,
+const std::vector<Rect>& CandidateWindows::find(ImageView<Bgr> image, const ColorTable& table,
                                                 int pitch, const Limits& limits) {
   take_samples(image, table, pitch, limits);
   // Across a sample that noise or a highlight spoils.
@@ -30,7 +30,7 @@ const std::vector<Rect>& CandidateWindows::find(const Image<Bgr>& image, const C
   return windows_;
 }
 
-void CandidateWindows::take_samples(const Image<Bgr>& image, const ColorTable& table, int pitch,
+void CandidateWindows::take_samples(ImageView<Bgr> image, const ColorTable& table, int pitch,
                                     const Limits& limits) {
   candidates_.resize(std::max(1, image.width() / pitch), std::max(1, image.height() / pitch));
   core_.resize(candidates_.width(), candidates_.height());

@@ -24,12 +24,11 @@ class CandidateWindows {
   /// enough within the core limit; no two overlap. A sample is the mean of two pixels beside each
   /// other in the middle of `pitch` x `pitch` pixels.
   /// Windows are counted in samples.
-  const std::vector<Rect>& find(const Image<Bgr>& image, const ColorTable& table, int pitch,
+  const std::vector<Rect>& find(ImageView<Bgr> image, const ColorTable& table, int pitch,
                                 const Limits& limits);
 
  private:
-  void take_samples(const Image<Bgr>& image, const ColorTable& table, int pitch,
-                    const Limits& limits);
+  void take_samples(ImageView<Bgr> image, const ColorTable& table, int pitch, const Limits& limits);
   void join_overlapping();
 
   Mask candidates_, joined_, scratch_;

@@ -30,7 +30,7 @@ int count_both(const Mask& a, const Mask& b) {
 
 }  // namespace
 
-bool ColorBlobFinder::find(const Image<Bgr>& image, double spread, Mask& mask) {
+bool ColorBlobFinder::find(ImageView<Bgr> image, double spread, Mask& mask) {
   find_windows(image, spread);
   bool found = false;
   double best_score = 0;
@@ -55,7 +55,7 @@ bool ColorBlobFinder::find(const Image<Bgr>& image, double spread, Mask& mask) {
 
 /// The parts of the picture that may show the object: around the connected regions of pixels of its
 /// colour, generously. Dividing the rest into blobs would be in vain.
-void ColorBlobFinder::find_windows(const Image<Bgr>& image, double spread) {
+void ColorBlobFinder::find_windows(ImageView<Bgr> image, double spread) {
   constexpr double smallest_area = 1.0 / 16;  // of the smallest object in the training images
   constexpr double generously = 1.5;
   constexpr int sample = 2;  // segment pixels wide and high
@@ -227,7 +227,7 @@ bool ColorBlobFinder::is_known_outline() {
   return false;
 }
 
-void ColorBlobFinder::refine(const Image<Bgr>& image, const Rect& window, Mask& mask) {
+void ColorBlobFinder::refine(ImageView<Bgr> image, const Rect& window, Mask& mask) {
   const Rect part =
       refinement_.refine(image, region_, window, BlobSegmentation::scale(image), object_);
   object_regions_.find(object_, Pixels::set, Connectivity::eight);

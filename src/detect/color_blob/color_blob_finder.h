@@ -25,10 +25,10 @@ class ColorBlobFinder {
 
   /// Sets the object's pixels in `mask` to 255 and returns whether there are any.
   /// spread: how far its mean colour may be from the model's, in standard deviations.
-  bool find(const Image<Bgr>& image, double spread, Mask& mask);
+  bool find(ImageView<Bgr> image, double spread, Mask& mask);
 
  private:
-  void find_windows(const Image<Bgr>& image, double spread);
+  void find_windows(ImageView<Bgr> image, double spread);
   void find_levels(double spread);
   double find_round_region(double best_score);
   bool find_any_region();
@@ -37,7 +37,7 @@ class ColorBlobFinder {
   void fill_holes(double largest_hole);
   void open_by_disc();
   bool is_known_outline();
-  void refine(const Image<Bgr>& image, const Rect& window, Mask& mask);
+  void refine(ImageView<Bgr> image, const Rect& window, Mask& mask);
   void complete_round_shape(const Rect& part, Mask& mask);
 
   ColorModel model_;

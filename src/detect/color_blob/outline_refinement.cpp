@@ -28,7 +28,7 @@ int squared_distance(const Bgr& a, const Bgr& b) {
 
 }  // namespace
 
-Rect OutlineRefinement::refine(const Image<Bgr>& image, const Mask& region, const Rect& window,
+Rect OutlineRefinement::refine(ImageView<Bgr> image, const Mask& region, const Rect& window,
                                int scale, Mask& object) {
   const Rect box = bounding_box(region);
   if (box.empty()) return {};
@@ -78,7 +78,7 @@ void OutlineRefinement::set_labels(int scale) {
   }
 }
 
-void OutlineRefinement::smooth_band(const Image<Bgr>& image, const Rect& part, int scale) {
+void OutlineRefinement::smooth_band(ImageView<Bgr> image, const Rect& part, int scale) {
   smooth_.resize(labels_.width(), labels_.height());
   for (int y = 0; y < labels_.height(); ++y) {
     const std::uint8_t* const here = cells_.row(y / scale);

@@ -17,13 +17,13 @@ class OutlineRefinement {
   /// Writes the object's pixels (255) and the others around it (0) to `object`, and returns where
   /// that lies in the image. The object's border is inside unless the image cuts it off. Cost:
   /// proportional to the outline's length, except for filling `object`.
-  Rect refine(const Image<Bgr>& image, const Mask& region, const Rect& window, int scale,
+  Rect refine(ImageView<Bgr> image, const Mask& region, const Rect& window, int scale,
               Mask& object);
 
  private:
   void find_band(const Mask& region, const Rect& box);
   void set_labels(int scale);
-  void smooth_band(const Image<Bgr>& image, const Rect& part, int scale);
+  void smooth_band(ImageView<Bgr> image, const Rect& part, int scale);
   void write_object(const Rect& part, const Rect& visible, Mask& object) const;
   std::uint8_t nearest_side(int pixel) const;
 

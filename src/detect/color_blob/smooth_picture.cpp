@@ -20,7 +20,7 @@ void average_columns(const std::uint16_t* sums, int count, std::uint8_t* __restr
 
 }  // namespace
 
-const std::uint8_t* PictureSmoother::row(const Image<Bgr>& picture, int y, int first, int last,
+const std::uint8_t* PictureSmoother::row(ImageView<Bgr> picture, int y, int first, int last,
                                          std::vector<Bgr>& scratch) {
   const Bgr* const pixels = picture.row(std::clamp(y, 0, picture.height() - 1));
   if (first >= 0 && last <= picture.width()) {
@@ -39,7 +39,7 @@ const std::uint8_t* PictureSmoother::row(const Image<Bgr>& picture, int y, int f
   return reinterpret_cast<const std::uint8_t*>(scratch.data());
 }
 
-void PictureSmoother::smooth_row(const Image<Bgr>& picture, const Rect& part, int y, int first,
+void PictureSmoother::smooth_row(ImageView<Bgr> picture, const Rect& part, int y, int first,
                                  int last, Bgr* result) {
   const int left = part.x + first - 1;
   const int right = part.x + last + 1;

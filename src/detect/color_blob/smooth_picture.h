@@ -13,12 +13,12 @@ class PictureSmoother {
  public:
   /// Smooths columns [first, last) of row y of the picture's part `part`. The part may extend
   /// beyond the picture, whose border is then repeated. Coordinates are relative to the part.
-  void smooth_row(const Image<Bgr>& picture, const Rect& part, int y, int first, int last,
+  void smooth_row(ImageView<Bgr> picture, const Rect& part, int y, int first, int last,
                   Bgr* result);
 
  private:
   /// Columns [first, last) of a row of the picture; both may lie outside.
-  const std::uint8_t* row(const Image<Bgr>& picture, int y, int first, int last,
+  const std::uint8_t* row(ImageView<Bgr> picture, int y, int first, int last,
                           std::vector<Bgr>& scratch);
 
   std::vector<Bgr> outside_[3];

@@ -69,7 +69,7 @@ BoardDetector::~BoardDetector() = default;
 BoardDetector::BoardDetector(BoardDetector&&) noexcept = default;
 BoardDetector& BoardDetector::operator=(BoardDetector&&) noexcept = default;
 
-std::optional<BoardView> BoardDetector::detect(const Image<Bgr>& image,
+std::optional<BoardView> BoardDetector::detect(ImageView<Bgr> image,
                                                const std::string& name) const {
   cv::Mat grey;
   cv::cvtColor(as_mat(image), grey, cv::COLOR_BGR2GRAY);

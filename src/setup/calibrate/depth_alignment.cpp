@@ -35,7 +35,7 @@ DepthAlignment::DepthAlignment(const Lens& depth_lens, double depth_unit_m,
                                const RigidTransform& color_from_depth)
     : depth_lens_(depth_lens), depth_unit_m_(depth_unit_m), color_from_depth_(color_from_depth) {}
 
-void DepthAlignment::add(const TargetView& in_color, const Image<std::uint16_t>& depth) {
+void DepthAlignment::add(const TargetView& in_color, ImageView<std::uint16_t> depth) {
   if (planes_.size() == most_planes) return;
   Plane plane{in_color.camera_from_target,
               in_color.alternative,

@@ -21,7 +21,7 @@ class DepthAlignment {
 
   /// Keeps up to 400 depth points around the target, and up to 400 targets. Ignores targets without
   /// enough depth.
-  void add(const TargetView& in_color, const Image<std::uint16_t>& depth);
+  void add(const TargetView& in_color, ImageView<std::uint16_t> depth);
 
   std::size_t size() const { return planes_.size(); }
 

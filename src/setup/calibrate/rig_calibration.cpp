@@ -22,7 +22,7 @@ struct Camera {
 };
 
 /// Where both poses may be right, chooses the one that the measured depth agrees with.
-void settle_by_depth(const Camera& camera, const Image<std::uint16_t>& depth, TargetView& view) {
+void settle_by_depth(const Camera& camera, ImageView<std::uint16_t> depth, TargetView& view) {
   if (!view.doubtful || view.id == TargetView::board_id) return;
   const RigidTransform depth_from_color = camera.rgbd.color_from_depth.inverse();
   const auto error = [&](const RigidTransform& pose) {

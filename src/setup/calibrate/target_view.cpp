@@ -93,7 +93,7 @@ TargetFinder::TargetFinder(const std::string& dictionary, std::map<int, double> 
   if (board) board_.emplace(*board);
 }
 
-std::vector<TargetView> TargetFinder::find(const Image<Bgr>& image, const Lens& lens) {
+std::vector<TargetView> TargetFinder::find(ImageView<Bgr> image, const Lens& lens) {
   std::vector<TargetView> views;
   if (board_) {
     if (auto board = board_->detect(image, "")) {

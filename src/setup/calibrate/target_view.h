@@ -36,7 +36,7 @@ class TargetFinder {
                const std::optional<Board>& board);
 
   /// Of a board's own markers, those that the scene knows are left out where a board is given.
-  std::vector<TargetView> find(const Image<Bgr>& image, const Lens& lens);
+  std::vector<TargetView> find(ImageView<Bgr> image, const Lens& lens);
 
  private:
   std::map<int, double> marker_sizes_m_;

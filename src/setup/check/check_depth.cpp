@@ -32,7 +32,7 @@ std::map<int, DepthRatio> depth_ratios(const Diagnosis& setup, const Rig& rig, s
   std::map<int, std::vector<double>> spreads;
   for (const SetupSurvey::Kept& kept : setup.survey.kept) {
     if (!kept.frame.rgbd[camera].available()) continue;
-    const Image<std::uint16_t> depth = depth_of(kept.frame);
+    const InputImage<std::uint16_t> depth = depth_of(kept.frame);
     if (depth.width() != setup.rig.rgbd[camera].depth.width ||
         depth.height() != setup.rig.rgbd[camera].depth.height) {
       continue;
@@ -83,8 +83,9 @@ bool check_foreign_depth(Diagnosis& setup, std::size_t k) {
                     setup.rig.rgbd[other].name));
     return true;
   }
-  const auto mirrored = depth_ratios(
-      setup, setup.rig, k, [&](const FrameSet& frame) { return flipped(frame.rgbd[k].depth); });
+  const auto mirrored = depth_ratios(setup, setup.rig, k, [&](const FrameSet& frame) {
+    return flipped(frame.rgbd[k].depth.view());
+  });
   if (!all_right(mirrored)) return false;
   setup.find(Severity::serious, "mirrored", name + " depth is mirrored",
              "the depth of its markers is right when the image is flipped left to right",

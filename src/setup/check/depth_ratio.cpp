@@ -11,7 +11,7 @@ namespace {
 
 std::optional<DepthRatio> of_pose(const RigidTransform& depth_from_marker, double size_m,
                                   const Lens& depth_lens, double depth_unit_m,
-                                  const Image<std::uint16_t>& depth) {
+                                  ImageView<std::uint16_t> depth) {
   std::vector<double> ratios;
   for (const MarkerDepth& at :
        marker_depths(depth_from_marker, size_m, depth_lens, depth, depth_unit_m)) {
@@ -29,7 +29,7 @@ std::optional<DepthRatio> of_pose(const RigidTransform& depth_from_marker, doubl
 
 std::optional<DepthRatio> measure_depth_ratio(const Marker& marker, double size_m,
                                               const RgbdCamera& camera,
-                                              const Image<std::uint16_t>& depth) {
+                                              ImageView<std::uint16_t> depth) {
   const Lens depth_lens(camera.depth);
   const auto pose = estimate_marker_pose(marker.corners, size_m, Lens(camera.color));
   if (!pose) return std::nullopt;

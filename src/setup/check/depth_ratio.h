@@ -20,6 +20,6 @@ struct DepthRatio {
 /// measured.
 std::optional<DepthRatio> measure_depth_ratio(const Marker& marker, double size_m,
                                               const RgbdCamera& camera,
-                                              const Image<std::uint16_t>& depth);
+                                              ImageView<std::uint16_t> depth);
 
 }  // namespace diminish

@@ -39,7 +39,7 @@ inline Intrinsics& color_sensor(Rig& rig, std::size_t sensor) {
 inline const Intrinsics& color_sensor(const Rig& rig, std::size_t sensor) {
   return sensor == 0 ? rig.color : rig.rgbd[sensor - 1].color;
 }
-inline const Image<Bgr>& image_of(const SetupSurvey::Kept& kept, std::size_t sensor) {
+inline ImageView<Bgr> image_of(const SetupSurvey::Kept& kept, std::size_t sensor) {
   return sensor == 0 ? kept.frame.color : kept.frame.rgbd[sensor - 1].color;
 }
 

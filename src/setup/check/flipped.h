@@ -9,7 +9,7 @@ namespace diminish {
 
 /// Mirrors left to right.
 template <class Pixel>
-Image<Pixel> flipped(const Image<Pixel>& image) {
+Image<Pixel> flipped(const ImageView<Pixel>& image) {
   Image<Pixel> result(image.width(), image.height());
   cv::Mat mat = as_mat(result);
   cv::flip(as_mat(image), mat, 1);

@@ -31,7 +31,7 @@ Intrinsics shrunk(const Intrinsics& camera) {
   return small;
 }
 
-cv::Mat grey_of(const Image<Bgr>& image) {
+cv::Mat grey_of(ImageView<Bgr> image) {
   cv::Mat grey;
   cv::cvtColor(as_mat(image), grey, cv::COLOR_BGR2GRAY);
   grey.convertTo(grey, CV_32F);

@@ -17,7 +17,7 @@ constexpr std::size_t most_frames_kept = 6;
 constexpr std::size_t most_faults_kept = 3;
 
 /// Measures brightness and overexposure from every eighth pixel.
-void survey_exposure(const Image<Bgr>& image, SensorSurvey& sensor) {
+void survey_exposure(ImageView<Bgr> image, SensorSurvey& sensor) {
   constexpr int step = 8;
   double sum = 0;
   std::size_t over = 0;
@@ -108,7 +108,7 @@ class Surveyor {
     return markers;
   }
 
-  void look_at(const Image<Bgr>& image, const Lens& lens, std::vector<Marker>& markers,
+  void look_at(ImageView<Bgr> image, const Lens& lens, std::vector<Marker>& markers,
                SensorSurvey& sensor) {
     if (image.empty()) return;
     ++sensor.images;

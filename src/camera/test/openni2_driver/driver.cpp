@@ -115,12 +115,12 @@ class RecordingDevice : public DeviceBase {
     const auto source = diminish::open_recording(recording, {});
     for (diminish::FrameSet frame; source->next(frame);) {
       std::vector<char>& rgb = color_.images.emplace_back();
-      for (const diminish::Bgr& pixel : frame.rgbd[0].color) {
+      for (const diminish::Bgr& pixel : frame.rgbd[0].color.own()) {
         for (const std::uint8_t value : {pixel.r, pixel.g, pixel.b}) {
           rgb.push_back(static_cast<char>(value));
         }
       }
-      const auto& depth = frame.rgbd[0].depth;
+      const auto& depth = frame.rgbd[0].depth.own();
       const char* bytes = reinterpret_cast<const char*>(depth.data());
       depth_.images.emplace_back(bytes, bytes + depth.size() * sizeof(std::uint16_t));
     }
