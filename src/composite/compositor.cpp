@@ -31,7 +31,7 @@ void sort_row(const std::uint8_t* mask, const std::uint8_t* source, int begin, i
 }  // namespace
 
 void Compositor::sort(const Inputs& inputs, DiminishedFrame& result) {
-  const Image<Bgr>& camera = inputs.camera;
+  const ImageView<Bgr> camera = inputs.camera;
   const Mask& occlusion = inputs.occlusion;
   const Rect& objects = inputs.objects;
   const int width = camera.width();
@@ -79,13 +79,12 @@ void Compositor::inpaint(const Inputs& inputs, Inpainter& inpainter, DiminishedF
   } else {
     missing_.resize(occlusion.width(), occlusion.height(), 0);
   }
-  missing_part_ = inputs.objects;
-  for (int y = missing_part_.y; y < missing_part_.bottom(); ++y) {
-    const std::uint8_t* origin = result.provenance.row(y);
-    std::uint8_t* missing = missing_.row(y);
-    for (int x = missing_part_.x; x < missing_part_.right(); ++x) {
-      missing[x] = origin[x] == provenance::inpainted ? 255 : 0;
-    }
+  const Rect part = inputs.objects;
+  missing_part_ = part;
+  for (int y = part.y; y < part.bottom(); ++y) {
+    const std::uint8_t* const origin = result.provenance.row(y) + part.x;
+    std::transform(origin, origin + part.width, missing_.row(y) + part.x,
+                   [](std::uint8_t from) { return from == provenance::inpainted ? 255 : 0; });
   }
   if (inpainter.inpaint({missing_, occlusion, result.surfaces}, inputs.options, result.picture)) {
     return;

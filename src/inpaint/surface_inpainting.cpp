@@ -93,7 +93,12 @@ class SurfaceInpainting : public Inpainter {
       std::uint8_t* const open = open_.data();
       const state::Code* const states = states_.data();
       const std::size_t pixels = states_.size();
-      for (std::size_t i = 0; i < pixels; ++i) open[i] = states[i] == code ? 255 : 0;
+      std::uint8_t any = 0;
+      for (std::size_t i = 0; i < pixels; ++i) {
+        open[i] = states[i] == code ? 255 : 0;
+        any |= open[i];
+      }
+      if (any == 0) continue;
       regions_.find(open_, Pixels::set, Connectivity::four);
       if (label != surface_label::unknown) count_rims(label);
       for (std::size_t i = 0; i < regions_.regions().size(); ++i) {
