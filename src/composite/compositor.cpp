@@ -24,7 +24,8 @@ void sort_row(const std::uint8_t* mask, const std::uint8_t* source, int begin, i
     origin[x] = mask[x] != 0 ? provenance::inpainted : provenance::camera;
   }
   for (int x = drawn_begin; x < drawn_end; ++x) {
-    origin[x] = mask[x] != 0 && source[x] != 0 ? source[x] : origin[x];
+    const bool is_seen = (mask[x] != 0) & (source[x] != 0);  // without a branch: vectorised
+    origin[x] = is_seen ? source[x] : origin[x];
   }
 }
 
