@@ -33,7 +33,7 @@ void scaling(benchmark::State& state) {
   FrameSet frame;
   open_recording(recording, {})->next(frame);
   Rig& rig = recording.rig;
-  scale(static_cast<double>(state.range(0)) / 100, rig.color, frame.color);
+  scale(static_cast<double>(state.range(0)) / 100, rig.color, frame.color.own());
   for (int k = 1; k < state.range(1); ++k) {
     rig.rgbd.push_back(rig.rgbd.front());
     rig.rgbd.back().name = "rgbd" + std::to_string(k);
