@@ -33,7 +33,7 @@ struct Cloning {
       cv::RNG random(1);
       random.fill(destination, cv::RNG::UNIFORM, 0, 256);
       cv::GaussianBlur(destination, destination, {}, 4);
-      destination = (destination - cv::Scalar::all(110)) * 6 + cv::Scalar::all(20);
+      destination.convertTo(destination, -1, 6, -640);
       destination.convertTo(source, -1, 0.8, 25);
     }
     copy_from(destination, camera);
