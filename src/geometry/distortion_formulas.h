@@ -32,7 +32,7 @@ DIMINISH_FORMULA void distort_ray(const std::array<Real, 8>& k, Constant constan
                                   Number& distorted_y) {
   const auto one = constant(Real{1});
   if constexpr (model == LensModel::fisheye) {
-    const Number per_radius = angle_over_radius<Real>(constant, r2);
+    const auto per_radius = angle_over_radius<Real>(constant, r2);
     const Number angle2 = per_radius * per_radius * r2;
     const Number series =
         one +

@@ -13,7 +13,7 @@ namespace diminish::gl {
 namespace {
 
 /// The most groups of 64 in one dispatch.
-constexpr std::size_t most_depth_pixels_of_a_camera = 64 * 65535;
+constexpr std::size_t most_depth_pixels_of_a_camera = std::size_t{64} * 65535;
 
 /// The frame's block, then the cameras'.
 constexpr std::size_t block_at(std::size_t index) {
@@ -82,7 +82,7 @@ void FrameUpload::upload_rays(const Rig& rig) {
   ray_texture_.create(rays_, GL_RG32F, all.size());
   MappedBuffer staging(MappedBuffer::Use::upload);
   staging.reserve(std::max<std::size_t>(bytes, 4));
-  std::memcpy(staging.data(), all.data(), bytes);
+  std::memcpy(staging.data(), reinterpret_cast<const float*>(all.data()), bytes);
   copy(staging.name(), rays_.name(), bytes);
   wait_until_done();
 }

@@ -90,6 +90,7 @@ std::string plots(const std::vector<FrameScore>& frames) {
   std::string text = "<div class=plots>\n";
   for (const auto& [title, figure] : figures) {
     std::vector<std::optional<double>> values;
+    values.reserve(frames.size());
     for (const FrameScore& frame : frames) values.push_back(figure(frame));
     text += html::plot(title, values);
   }
@@ -194,8 +195,7 @@ std::string comparison(const RunFolder& folder, const FrameScore& frame) {
 
 nlohmann::json read_summary(const std::filesystem::path& file) {
   constexpr std::size_t most_bytes = 1 << 24;
-  const nlohmann::json summary =
-      nlohmann::json::parse(read_text_file(file, most_bytes), nullptr, false);
+  nlohmann::json summary = nlohmann::json::parse(read_text_file(file, most_bytes), nullptr, false);
   if (summary.is_discarded()) throw Error(Error::input, file.string() + ": is not JSON");
   return summary;
 }
