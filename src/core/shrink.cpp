@@ -48,7 +48,7 @@ void AverageColumns(const std::uint16_t* sums, int columns, int rows, int count,
   for (int i = 0; i < count; i += lanes) {
     auto sum = hn::Add(half, hn::LoadU(d, sums + i));
     for (int column = 1; column < columns; ++column) {
-      sum = hn::Add(sum, hn::LoadU(d, sums + i + 3 * column));
+      sum = hn::Add(sum, hn::LoadU(d, sums + i + std::ptrdiff_t{3} * column));
     }
     // The reciprocal is at most too small: the quotient is right or one less.
     const auto quotient = hn::MulHigh(sum, reciprocal);
@@ -87,7 +87,8 @@ HWY_INLINE int ShrinkGreenVectors(const std::uint8_t* upper, const std::uint8_t*
   };
   int x = 0;
   for (; x + at_once <= count; x += at_once) {
-    const auto pairs = hn::Add(pairs_of(upper + step * x), pairs_of(lower + step * x));
+    const auto pairs = hn::Add(pairs_of(upper + std::ptrdiff_t{step} * x),
+                               pairs_of(lower + std::ptrdiff_t{step} * x));
     const auto sums = hn::Add(AddPairs(d16, d32, pairs), hn::Set(d32, 4));
     hn::StoreU(hn::DemoteTo(d8, hn::BitCast(i32, hn::ShiftRight<3>(sums))), d8, means + x);
   }
@@ -139,7 +140,7 @@ void shrink(ImageView<Bgr> image, int scale, const Rect& part, std::vector<std::
   }
   const int count = 3 * part.width * columns;
   constexpr int beyond = 3 * 16 + HWY_MAX_BYTES;
-  const auto room = static_cast<std::size_t>(count + beyond);
+  const std::size_t room = static_cast<std::size_t>(count) + beyond;
   scratch.resize(room + room / 2 + 1);
   auto* const means = reinterpret_cast<std::uint8_t*>(scratch.data() + room);
   for (int y = 0; y < part.height; ++y) {

@@ -177,7 +177,7 @@ class SurfaceInpainting : public Inpainter {
 
   /// The colour that a known pixel hands on.
   Eigen::Array3f color_of(int x, int y, const Holes& holes, const Image<Bgr>& picture) const {
-    const Eigen::Array3f own = to_channels(picture(x, y));
+    Eigen::Array3f own = to_channels(picture(x, y));
     Eigen::Array3f around;
     const Label label = state_row(y)[x];
     if (holes.occlusion(x, y) != 0 || !plane_colors_.around(x, y, label, around)) return own;
