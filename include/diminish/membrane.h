@@ -22,7 +22,7 @@ class MembraneSolver;
 /// not depend on earlier calls or the number of threads.
 ///
 /// One object serves one thread at a time. Inside a call oneTBB shares the work of large sets
-/// between two threads.
+/// among threads.
 class Membrane {
  public:
   /// A view of 8-bit pixels that belong to someone else: rows `stride` bytes apart (negative:

@@ -31,12 +31,10 @@ void CameraBlender::begin(std::vector<Surface>& surfaces, const Rect& region,
   color_ = color;
   agreement_m_ = agreement_m;
   seen_.resize(region.width, region.height);
+  for (std::vector<Sliver>& slivers : slivers_) slivers.clear();
   for_rows(region.height, [&](Rows rows) {
-    const int thread = rows.first == 0 ? 0 : 1;
-    slivers_[thread].clear();
-    for (int y = rows.first; y < rows.last; ++y) {
-      look_at_row(y, scratch_[thread], slivers_[thread]);
-    }
+    std::vector<Sliver>& slivers = slivers_[rows.band];
+    for (int y = rows.first; y < rows.last; ++y) look_at_row(y, scratch_[rows.band], slivers);
   });
   for (const std::vector<Sliver>& slivers : slivers_) {
     for (const Sliver& sliver : slivers) remove(sliver);
@@ -46,7 +44,7 @@ void CameraBlender::begin(std::vector<Surface>& surfaces, const Rect& region,
     constexpr int cell_px = ConfidenceGrid::cell_px;
     const int last = rows.last == region.height ? grid_.rows() : rows.last / cell_px;
     for (int row = rows.first / cell_px; row < last; ++row) {
-      measure_cells(row, scratch_[rows.first == 0 ? 0 : 1]);
+      measure_cells(row, scratch_[rows.band]);
     }
   });
   oneapi::tbb::parallel_for(std::size_t{0}, surfaces.size(),

@@ -6,13 +6,14 @@
 #include "blend/blend_row.h"
 #include "blend/camera_place.h"
 #include "blend/confidence_grid.h"
+#include "core/rows.h"
 #include "diminish/intrinsics.h"
 #include "diminish/reconstruction.h"
 
 namespace diminish {
 
 /// Blends the views of several RGB-D cameras by the rules of layers.h. Does what blend_layers does,
-/// on vectors of pixels and with the rows in two threads.
+/// on vectors of pixels and with the rows in bands.
 class CameraBlender {
  public:
   /// One camera's surface in the region.
@@ -27,7 +28,7 @@ class CameraBlender {
   void begin(std::vector<Surface>& surfaces, const Rect& region, const Intrinsics& color,
              float agreement_m);
 
-  /// Scratch memory for one row; one for each thread.
+  /// Memory for one row.
   struct Scratch {
     std::vector<BlendedRow> rows;
     std::vector<float> nodes, confidences;
@@ -54,8 +55,8 @@ class CameraBlender {
   float agreement_m_ = 0;
   Image<std::uint8_t> seen_;  ///< which cameras see the nearest surface, one bit each
   ConfidenceGrid grid_;
-  Scratch scratch_[2];  ///< one per thread
-  std::vector<Sliver> slivers_[2];
+  Scratch scratch_[most_bands];
+  std::vector<Sliver> slivers_[most_bands];
 };
 
 }  // namespace diminish

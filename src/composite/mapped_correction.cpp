@@ -33,7 +33,7 @@ class MappedCorrection : public ColorCorrector {
     membrane_.begin(region);
     if (method_.with_membrane) fit_membrane(inputs);
     for_rows(region.height, [&](Rows rows) {
-      std::vector<float>& corrections = corrections_[rows.first == 0 ? 0 : 1];
+      std::vector<float>& corrections = corrections_[rows.band];
       corrections.resize(3 * static_cast<std::size_t>(region.width));
       for (int y = region.y + rows.first; y < region.y + rows.last; ++y) {
         const Rect wanted = bounding_box(inputs.occlusion, {region.x, y, region.width, 1});
@@ -74,7 +74,7 @@ class MappedCorrection : public ColorCorrector {
 
   Method method_;
   SoftMembrane membrane_;
-  std::vector<float> corrections_[2];  ///< of each thread's current row
+  std::vector<float> corrections_[most_bands];  ///< of a row of each band
 };
 
 constexpr std::array<MappedCorrection::Method, 4> methods{{

@@ -179,7 +179,7 @@ void ShadowLifting::measure_distances(const Mask& occlusion, const Rect& part) {
   for_rows(part.height, [&](Rows rows) {
     for (int y = rows.first; y < rows.last; ++y) {
       measure_in_row(occlusion.row(part.y + y) + part.x, part.width, distances_.row(y),
-                     padded_[rows.first == 0 ? 0 : 1]);
+                     padded_[rows.band]);
     }
   });
   const auto pass_on = [width = part.width](const std::uint8_t* from, std::uint8_t* to) {

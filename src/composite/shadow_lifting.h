@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "core/rows.h"
 #include "diminish/image.h"
 #include "diminish/surfaces.h"
 
@@ -23,8 +24,8 @@ class ShadowLifting {
  private:
   void measure_distances(const Mask& occlusion, const Rect& part);
 
-  std::vector<std::uint8_t> padded_[2];  ///< a row for each thread
-  Image<std::uint8_t> distances_;        ///< to the mask's rim, at most `fading_px`
+  std::vector<std::uint8_t> padded_[most_bands];  ///< a row of each band
+  Image<std::uint8_t> distances_;                 ///< to the mask's rim, at most `fading_px`
 };
 
 }  // namespace diminish

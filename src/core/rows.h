@@ -2,40 +2,60 @@
 
 #include <oneapi/tbb/parallel_for.h>
 
+#include <algorithm>
+#include <array>
+
 namespace diminish {
 
-/// Rows [first, last) of an image that threads share.
+/// Rows [first, last) of an image that threads share: one of its bands.
 struct Rows {
   int first, last;
+  int band = 0;  ///< its number, from 0 on: threads that work on different bands share no memory
 };
 
-/// Where rows are divided between two threads; 0: too few rows. A multiple of 32, and the same on
-/// every machine, so that sums over rows are the same too.
-inline int seam(int rows) {
-  constexpr int fewest = 128;
+/// Of one image.
+inline constexpr int most_bands = 8;
+
+/// Bands are the same on every machine, so that sums over them are the same, too, and small enough
+/// that a core that is away delays a frame by one of them. All but the last are this high: a
+/// multiple of 32, at least `least`. An image of few rows is one band.
+inline int band_height(int rows, int least = 64) {
   constexpr int unit = 32;
-  return rows < fewest ? 0 : (rows / 2 + unit - 1) / unit * unit;
+  if (rows < 2 * least) return std::max(rows, 1);
+  const int even = (rows + most_bands - 1) / most_bands;
+  return std::max(least, (even + unit - 1) / unit * unit);
 }
 
-/// Calls visit(rows), in two threads if there are many rows. Returns the sum of the results.
+/// Calls visit(rows) for each band; whichever thread is free takes the next. Returns the sum of the
+/// results, added up in the bands' order.
 template <class Visit>
-auto sum_over_rows(int rows, const Visit& visit) {
-  const int middle = seam(rows);
-  if (middle == 0) return visit(Rows{0, rows});
-  decltype(visit(Rows{})) sums[2];
-  oneapi::tbb::parallel_for(0, 2, [&](int part) {
-    sums[part] = visit(part == 0 ? Rows{0, middle} : Rows{middle, rows});
-  });
-  return sums[0] + sums[1];
+auto sum_over_rows(int rows, const Visit& visit, int least = 64) {
+  const int height = band_height(rows, least);
+  const int bands = (rows + height - 1) / height;
+  if (bands <= 1) return visit(Rows{0, rows});
+  std::array<decltype(visit(Rows{})), most_bands> sums;
+  oneapi::tbb::parallel_for(
+      0, bands,
+      [&](int band) {
+        sums[static_cast<std::size_t>(band)] =
+            visit(Rows{band * height, std::min((band + 1) * height, rows), band});
+      },
+      oneapi::tbb::simple_partitioner());
+  auto sum = sums[0];
+  for (int band = 1; band < bands; ++band) sum = sum + sums[static_cast<std::size_t>(band)];
+  return sum;
 }
 
 /// The same, without a result.
 template <class Visit>
-void for_rows(int rows, const Visit& visit) {
-  sum_over_rows(rows, [&](Rows part) {
-    visit(part);
-    return 0;
-  });
+void for_rows(int rows, const Visit& visit, int least = 64) {
+  sum_over_rows(
+      rows,
+      [&](Rows part) {
+        visit(part);
+        return 0;
+      },
+      least);
 }
 
 }  // namespace diminish

@@ -63,9 +63,10 @@ void DepthCleaner::remove_hidden(const DepthPart& part, float threshold_m,
   const auto margin = margin_px / static_cast<float>(camera_.depth.fx);
   const Rect& bounds = part.bounds();
   for_rows(bounds.height, [&](Rows rows) {
-    Scratch& scratch = scratch_[rows.first == 0 ? 0 : 1];
-    scratch.depth_m.resize(static_cast<std::size_t>(bounds.width + 16));
-    scratch.place.resize(static_cast<std::size_t>(bounds.width + 16));
+    Scratch& scratch = scratch_[rows.band];
+    const std::size_t room = static_cast<std::size_t>(bounds.width) + 16;
+    scratch.depth_m.resize(room);
+    scratch.place.resize(room);
     for (int y = bounds.y + rows.first; y < bounds.y + rows.last; ++y) {
       const DepthPart::Columns& columns = part.columns(y);
       const depth_rows::Places places{ray_side_.row(y) + columns.first,

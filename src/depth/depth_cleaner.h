@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/rows.h"
 #include "depth/depth_part.h"
 #include "depth/depth_rows.h"
 #include "depth/edge_snapping.h"
@@ -42,7 +43,7 @@ class DepthCleaner {
   RgbdCamera camera_;
   /// A pixel's ray (x, y, 1), turned into the colour sensor's frame: its x and z.
   Image<float> ray_side_, ray_ahead_;
-  Scratch scratch_[2];  ///< one per thread
+  Scratch scratch_[most_bands];
   Image<std::uint16_t> half_smooth_;
   EdgeSnapping edge_snapping_;
 };

@@ -48,8 +48,8 @@ class DepthPart {
   std::vector<Columns> columns_;  ///< by band
 };
 
-/// Calls visit(y, columns) for each row in the intersection of part and rectangle, in two threads
-/// if there are many.
+/// Calls visit(y, columns) for each row in the intersection of part and rectangle; bands
+/// of rows are shared by threads.
 template <class Visit>
 void for_each_row(const DepthPart& part, const Rect& rectangle, const Visit& visit) {
   const Rect bounds = intersect(part.bounds(), rectangle);

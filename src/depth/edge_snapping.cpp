@@ -126,7 +126,7 @@ void EdgeSnapping::find_edges(const DepthPart& part) {
   for_rows(bounds.height, [&](Rows rows) {
     for (int y = bounds.y + rows.first; y < bounds.y + rows.last; ++y) {
       std::fill_n(is_edge_.row(y) + bounds.x, bounds.width, std::uint8_t{0});
-      mark_gaps(part, bounds, y, false, scratch_[rows.first == 0 ? 0 : 1]);
+      mark_gaps(part, bounds, y, false, scratch_[rows.band]);
     }
   });
   // Columns are divided between threads as rows are.
@@ -134,7 +134,7 @@ void EdgeSnapping::find_edges(const DepthPart& part) {
     const Rect some{bounds.x + columns.first, bounds.y, columns.last - columns.first,
                     bounds.height};
     for (int y = bounds.y; y < bounds.bottom(); ++y) {
-      mark_gaps(part, some, y, true, scratch_[columns.first == 0 ? 0 : 1]);
+      mark_gaps(part, some, y, true, scratch_[columns.band]);
     }
   });
   widen(is_edge_, bounds, 1, beside_edge_);
@@ -194,7 +194,7 @@ void EdgeSnapping::widen(const Image<std::uint8_t>& flags, const Rect& part, int
   const auto width = static_cast<std::size_t>(part.width);
   const auto margin = static_cast<std::size_t>(by);
   for_rows(part.height, [&](Rows rows) {
-    std::vector<std::uint8_t>& line = scratch_[rows.first == 0 ? 0 : 1].line;
+    std::vector<std::uint8_t>& line = scratch_[rows.band].line;
     line.assign(width + 2 * margin, 0);
     for (int y = part.y + rows.first; y < part.y + rows.last; ++y) {
       std::fill_n(line.data() + margin, width, std::uint8_t{0});

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/rows.h"
 #include "depth/depth_part.h"
 #include "depth/depth_rows.h"
 #include "diminish/image.h"
@@ -77,7 +78,7 @@ class EdgeSnapping {
   Image<std::uint8_t> is_read_;      ///< 1: `colors_` holds a depth pixel's colour
   Image<Bgr3> colors_;
   std::uint16_t closer_than_gap_;  ///< depths this close have no gap between them
-  Scratch scratch_[2];             ///< of each thread
+  Scratch scratch_[most_bands];
 };
 
 }  // namespace diminish

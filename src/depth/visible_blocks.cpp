@@ -68,12 +68,11 @@ VisibleBlocks::VisibleBlocks(const RgbdCamera& camera, const Intrinsics& color)
     : color_(color),
       unit_m_(static_cast<float>(camera.depth_unit_m)),
       image_width_(camera.depth.width),
-      image_height_(camera.depth.height),
-      columns_((image_width_ + width - 1) / width),
-      rows_((image_height_ + height - 1) / height) {
+      image_height_(camera.depth.height) {
+  visible_.resize((image_width_ + width - 1) / width, (image_height_ + height - 1) / height);
   const Lens lens(camera.depth);
-  for (int row = 0; row < rows_; ++row) {
-    for (int column = 0; column < columns_; ++column) {
+  for (int row = 0; row < visible_.rows(); ++row) {
+    for (int column = 0; column < visible_.columns(); ++column) {
       // A block is small: its other rays lie beyond these by less than the margin.
       const Rect pixels = with_neighbours(column, row, camera.depth.bounds());
       Eigen::Array2d least = lens.undistort({pixels.x, pixels.y});
@@ -91,15 +90,18 @@ VisibleBlocks::VisibleBlocks(const RgbdCamera& camera, const Intrinsics& color)
       rays_.push_back({range(0), range(1)});
     }
   }
-  visible_.resize(rays_.size());
+  depth_m_.resize(rays_.size());
 }
 
 void VisibleBlocks::find(ImageView<std::uint16_t> depth, const RigidTransform& color_from_depth,
                          const Rect& region) {
-  find_sides(color_from_depth, region);
+  color_from_depth_ = color_from_depth;
+  region_ = region;
+  sides_ = {};
+  for (const int axis : {0, 1}) add_sides(region, axis, sides_);
   const auto pitch = depth.stride() / std::ptrdiff_t{sizeof(std::uint16_t)};
   for_rows(image_height_, [&](Rows rows) {
-    Depths& depths = depths_[rows.first == 0 ? 0 : 1];
+    Depths& depths = depths_[rows.band];
     depths.nearest.resize(static_cast<std::size_t>(image_width_));
     depths.farthest.resize(depths.nearest.size());
     for (int row = rows.first / height; row * height < rows.last; ++row) {
@@ -107,7 +109,7 @@ void VisibleBlocks::find(ImageView<std::uint16_t> depth, const RigidTransform& c
       HWY_DYNAMIC_DISPATCH(FindDepths)
       (depth.row(band.y), pitch, band.height, depth.width(), depths.nearest.data(),
        depths.farthest.data());
-      for (int column = 0; column < columns_; ++column) {
+      for (int column = 0; column < visible_.columns(); ++column) {
         const Rect pixels = with_neighbours(column, row, depth.bounds());
         const auto first = static_cast<std::size_t>(pixels.x);
         const auto last = static_cast<std::size_t>(pixels.right());
@@ -117,12 +119,10 @@ void VisibleBlocks::find(ImageView<std::uint16_t> depth, const RigidTransform& c
           nearest = std::min(nearest, depths.nearest[x]);
           farthest = std::max(farthest, depths.farthest[x]);
         }
-        const auto block = index(column, row);
-        visible_[block] =
-            farthest > 0 && is_visible(rays_[block], {static_cast<float>(nearest) * unit_m_,
-                                                      static_cast<float>(farthest) * unit_m_})
-                ? 1
-                : 0;
+        Range& depth_m = depth_m_[index(column, row)];
+        depth_m = {static_cast<float>(nearest) * unit_m_, static_cast<float>(farthest) * unit_m_};
+        visible_(column, row) =
+            farthest > 0 && is_inside(sides_, rays_[index(column, row)], depth_m) ? 1 : 0;
       }
     }
   });
@@ -130,65 +130,84 @@ void VisibleBlocks::find(ImageView<std::uint16_t> depth, const RigidTransform& c
 }
 
 void VisibleBlocks::clear() {
-  std::fill(visible_.begin(), visible_.end(), std::uint8_t{0});
+  visible_.clear();
   find_part();
 }
 
-/// The planes that bound the view of the region, as far as its sides have rays.
-void VisibleBlocks::find_sides(const RigidTransform& color_from_depth, const Rect& region) {
-  const Rect wide = grow(region, margin_px);
+Rows VisibleBlocks::find_in_rows(int top, int bottom, BlockSet& visible) const {
+  Sides sides;
+  add_sides({region_.x, top, region_.width, bottom - top}, 1, sides);
+  visible.resize(visible_.columns(), visible_.rows());
+  Rows found{image_height_, 0};
+  for (int row = 0; row < visible_.rows(); ++row) {
+    bool any = false;
+    for (int column = 0; column < visible_.columns(); ++column) {
+      const auto block = index(column, row);
+      const bool is_there =
+          visible_(column, row) != 0 && is_inside(sides, rays_[block], depth_m_[block]);
+      visible(column, row) = is_there ? 1 : 0;
+      any |= is_there;
+    }
+    if (!any) continue;
+    found.first = std::min(found.first, row * height);
+    found.last = std::min((row + 1) * height, image_height_);
+  }
+  return found;
+}
+
+void VisibleBlocks::add_sides(const Rect& rectangle, int axis, Sides& sides) const {
+  const Rect wide = grow(rectangle, margin_px);
   const Eigen::Array2d first(wide.x, wide.y);
   const Eigen::Array2d size(wide.width, wide.height);
-  sides_.clear();
-  for (const int axis : {0, 1}) {
-    for (const int sign : {-1, 1}) {
-      // The coordinate of the ray that is furthest out along this side.
-      double furthest = -std::numeric_limits<double>::infinity();
-      for (int i = 0; i <= points_of_side; ++i) {
-        Eigen::Array2d along;
-        along[axis] = sign < 0 ? 0 : 1;
-        along[1 - axis] = static_cast<double>(i) / points_of_side;
-        const Eigen::Vector2d pixel = first + along * size;
-        const Eigen::Vector2d ray = color_.undistort(pixel);
-        const auto back = color_.distort(ray);
-        const bool has_ray = back && (*back - pixel).norm() < 0.1;
-        furthest = std::max(furthest,
-                            has_ray ? sign * ray[axis] : std::numeric_limits<double>::infinity());
-      }
-      if (!std::isfinite(furthest)) continue;
-      // Beyond it sign * x > furthest * z, in the colour camera's frame.
-      Eigen::Vector3d normal(0, 0, -furthest);
-      normal[axis] = sign;
-      const Eigen::Vector3f in_depth =
-          (color_from_depth.rotation.transpose() * normal).cast<float>();
-      sides_.push_back({in_depth.x(), in_depth.y(), in_depth.z(),
-                        static_cast<float>(normal.dot(color_from_depth.translation))});
+  for (const int sign : {-1, 1}) {
+    // The coordinate of the ray that is furthest out along this side.
+    double furthest = -std::numeric_limits<double>::infinity();
+    for (int i = 0; i <= points_of_side; ++i) {
+      Eigen::Array2d along;
+      along[axis] = sign < 0 ? 0 : 1;
+      along[1 - axis] = static_cast<double>(i) / points_of_side;
+      const Eigen::Vector2d pixel = first + along * size;
+      const Eigen::Vector2d ray = color_.undistort(pixel);
+      const auto back = color_.distort(ray);
+      const bool has_ray = back && (*back - pixel).norm() < 0.1;
+      furthest =
+          std::max(furthest, has_ray ? sign * ray[axis] : std::numeric_limits<double>::infinity());
     }
+    if (!std::isfinite(furthest)) continue;
+    // Beyond it sign * x > furthest * z, in the colour camera's frame.
+    Eigen::Vector3d normal(0, 0, -furthest);
+    normal[axis] = sign;
+    const Eigen::Vector3f in_depth =
+        (color_from_depth_.rotation.transpose() * normal).cast<float>();
+    sides.planes[sides.count++] = {in_depth.x(), in_depth.y(), in_depth.z(),
+                                   static_cast<float>(normal.dot(color_from_depth_.translation))};
   }
 }
 
-bool VisibleBlocks::is_visible(const Rays& rays, const Range& depth_m) const {
-  return std::none_of(sides_.begin(), sides_.end(), [&](const Plane& side) {
+bool VisibleBlocks::is_inside(const Sides& sides, const Rays& rays, const Range& depth_m) {
+  for (std::size_t i = 0; i < sides.count; ++i) {
+    const Plane& side = sides.planes[i];
     // The point of the body that lies least far beyond the plane.
     const float slope = side.x * (side.x > 0 ? rays.x.least : rays.x.greatest) +
                         side.y * (side.y > 0 ? rays.y.least : rays.y.greatest) + side.z;
-    return slope * (slope > 0 ? depth_m.least : depth_m.greatest) + side.offset > 0;
-  });
+    if (slope * (slope > 0 ? depth_m.least : depth_m.greatest) + side.offset > 0) return false;
+  }
+  return true;
 }
 
 void VisibleBlocks::find_part() {
   const auto columns_of = [&](int row) {
-    DepthPart::Columns columns{columns_, 0};
-    if (row < 0 || row >= rows_) return columns;
-    for (int column = 0; column < columns_; ++column) {
-      if (visible_[index(column, row)] == 0) continue;
+    DepthPart::Columns columns{visible_.columns(), 0};
+    if (row < 0 || row >= visible_.rows()) return columns;
+    for (int column = 0; column < visible_.columns(); ++column) {
+      if (visible_(column, row) == 0) continue;
       columns.first = std::min(columns.first, column - 1);
       columns.last = column + 2;
     }
     return columns;
   };
   part_.begin(height);
-  for (int row = 0; row < rows_; ++row) {
+  for (int row = 0; row < visible_.rows(); ++row) {
     DepthPart::Columns columns = columns_of(row);
     for (const int beside : {row - 1, row + 1}) {
       columns.first = std::min(columns.first, columns_of(beside).first);

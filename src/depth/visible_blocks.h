@@ -1,14 +1,46 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
+#include "core/rows.h"
 #include "depth/depth_part.h"
 #include "diminish/image.h"
 #include "diminish/rig.h"
 
 namespace diminish {
+
+/// Some of a depth image's blocks.
+class BlockSet {
+ public:
+  static constexpr int width = 16, height = 8;  ///< of a block, pixels
+
+  void resize(int columns, int rows) {
+    columns_ = columns;
+    set_.resize(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+  }
+  /// For each block along a row of pixels, whether it is in the set.
+  const std::uint8_t* row(int y) const { return set_.data() + index(0, y / height); }
+  std::uint8_t& operator()(int column, int row) { return set_[index(column, row)]; }
+  std::uint8_t operator()(int column, int row) const { return set_[index(column, row)]; }
+  void clear() { std::fill(set_.begin(), set_.end(), std::uint8_t{0}); }
+
+  /// Columns and rows of blocks.
+  int columns() const { return columns_; }
+  int rows() const { return static_cast<int>(set_.size()) / std::max(1, columns_); }
+
+ private:
+  std::size_t index(int column, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+           static_cast<std::size_t>(column);
+  }
+
+  int columns_ = 0;
+  std::vector<std::uint8_t> set_;
+};
 
 /// The blocks of a depth image that may be visible in a region of the colour camera's picture. A
 /// block's rays, between its least and its greatest depth, span a convex body. The block is out of
@@ -17,7 +49,7 @@ namespace diminish {
 /// one.
 class VisibleBlocks {
  public:
-  static constexpr int width = 16, height = 8;  ///< pixels
+  static constexpr int width = BlockSet::width, height = BlockSet::height;
 
   VisibleBlocks(const RgbdCamera& camera, const Intrinsics& color);
 
@@ -27,8 +59,10 @@ class VisibleBlocks {
   /// Nothing is visible.
   void clear();
 
-  /// For each block along a row of pixels, whether it may be visible.
-  const std::uint8_t* row(int y) const { return visible_.data() + index(0, y / height); }
+  const BlockSet& blocks() const { return visible_; }
+  /// Those that may be visible in rows of the picture, [top, bottom). Returns the rows of the depth
+  /// image from the first to the last of them. Cost: 10 ns per visible block.
+  Rows find_in_rows(int top, int bottom, BlockSet& visible) const;
   /// From the first to the last visible block of each row, plus one block on all sides.
   const DepthPart& part() const { return part_; }
 
@@ -48,22 +82,31 @@ class VisibleBlocks {
   struct Plane {
     float x, y, z, offset;
   };
+  struct Sides {
+    std::array<Plane, 4> planes;
+    std::size_t count = 0;
+  };
 
-  void find_sides(const RigidTransform& color_from_depth, const Rect& region);
-  bool is_visible(const Rays& rays, const Range& depth_m) const;
+  /// Adds the planes through the camera and the left and right (axis 0) or the upper and lower
+  /// sides of a rectangle in the picture, if all points of the side have rays.
+  void add_sides(const Rect& rectangle, int axis, Sides& sides) const;
+  static bool is_inside(const Sides& sides, const Rays& rays, const Range& depth_m);
   void find_part();
   std::size_t index(int column, int row) const {
-    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(visible_.columns()) +
            static_cast<std::size_t>(column);
   }
 
   Lens color_;
   float unit_m_;
-  int image_width_, image_height_, columns_, rows_;
-  std::vector<Rays> rays_;
-  std::vector<Plane> sides_;
-  Depths depths_[2];  ///< one per thread
-  std::vector<std::uint8_t> visible_;
+  int image_width_, image_height_;
+  std::vector<Rays> rays_;  ///< by block
+  RigidTransform color_from_depth_;
+  Rect region_;
+  Sides sides_;
+  Depths depths_[most_bands];
+  std::vector<Range> depth_m_;  ///< by block
+  BlockSet visible_;
   DepthPart part_;
 };
 

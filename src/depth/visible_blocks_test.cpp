@@ -43,7 +43,7 @@ bool contains(const Rect& region, const std::optional<Eigen::Vector2d>& place) {
 
 /// A block around a pixel.
 bool is_visible(const VisibleBlocks& blocks, int x, int y) {
-  return blocks.row(y)[x / width] != 0;
+  return blocks.blocks().row(y)[x / width] != 0;
 }
 
 TEST(VisibleBlocks, HoldWhateverIsSeen) {

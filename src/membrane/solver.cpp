@@ -39,8 +39,9 @@ double left_of_error(double change_before, double change) {
 void relax(const MembraneLevel& level, const float* right_side, float* values, bool from_zero) {
   for_rows(level.height,
            [&](Rows rows) { membrane::relax(level, right_side, values, from_zero, rows); });
-  if (const int middle = seam(level.height); middle > 0) {
-    membrane::relax_seam(level, right_side, values, from_zero, middle);
+  const int height = band_height(level.height);
+  for (int row = height; row < level.height; row += height) {
+    membrane::relax_seam(level, right_side, values, from_zero, row);
   }
 }
 double prolong(const MembraneLevel& coarse, const float* coarse_values, bool add,

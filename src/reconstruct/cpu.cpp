@@ -20,98 +20,107 @@ namespace {
 /// Colours are looked up eight bytes at a time.
 constexpr int min_texture_side = 8;
 
-/// Draws one RGB-D camera's mesh in two parts, which two threads may draw at the same time:
-/// alternate bands of the depth image's rows, so that both have about the same work wherever the
-/// objects are.
+/// One RGB-D camera's mesh, drawn in bands of the region's rows, which different threads may draw
+/// at the same time.
 class CameraMesh {
  public:
-  static constexpr int parts = 2;
+  /// The least height of a band: cells that reach into two bands are set up twice.
+  static constexpr int band_px = 128;
 
   CameraMesh(const RgbdCamera& camera, const Intrinsics& color)
       : visible_(camera, color), rows_(camera, color) {
-    for (Part& part : parts_) {
-      for (VertexRow& row : part.vertices) row.resize(rows_.width());
+    for (Band& band : bands_) {
+      for (VertexRow& row : band.vertices) row.resize(rows_.width());
     }
   }
 
-  /// Call before drawing the parts.
+  /// Call before drawing the bands.
   void begin(const Image<std::uint16_t>& depth, const RigidTransform& color_from_depth,
              const Rect& region) {
     visible_.find(depth, color_from_depth, region);
+    region_ = region;
   }
 
-  const VisibleBlocks& visible() const { return visible_; }
+  /// What is to be drawn.
+  struct Input {
+    const Image<std::uint16_t>& depth;
+    const Mask& depth_mask;
+    const Mask& color_mask;
+    FloatTransform to_color;
+    const TiledRegion& region;
+    sdct::Threshold threshold;
+  };
 
-  /// Two rows of vertices at a time. Whole blocks of cells that cannot touch the region are
-  /// skipped.
-  void draw(const VertexRows::Frame& frame, const TiledRegion& region,
-            const sdct::Threshold& threshold, int which) {
-    parts_[which].surface.clear(frame.region);
-    for (int first = which * band; first < rows_.height() - 1; first += parts * band) {
-      draw_band(frame, region, threshold, {first, std::min(first + band, rows_.height() - 1)},
-                parts_[which]);
+  /// rows: counted from the region's first one. Two rows of vertices at a time. Whole blocks of
+  /// cells that cannot touch the region are skipped.
+  void draw(const Input& input, Rows rows) {
+    Band& band = bands_[rows.band];
+    const Rect part{region_.x, region_.y + rows.first, region_.width, rows.last - rows.first};
+    band.surface.clear(part);
+    const Rows vertex_rows = visible_.find_in_rows(part.y, part.bottom(), band.visible);
+    const VertexRows::Frame frame{input.depth, input.depth_mask, input.color_mask, input.to_color,
+                                  part,        band.visible};
+    // A block's cells reach into the next row of blocks.
+    const int first = vertex_rows.first;
+    const int last = std::min(vertex_rows.last, rows_.height() - 1);
+    if (first < last) rows_.project(frame, first, band.vertices[first % 2]);
+    for (int y = first; y < last; ++y) {
+      VertexRow& lower = band.vertices[(y + 1) % 2];
+      rows_.project(frame, y + 1, lower);
+      draw_cells_below(frame, y, input, part, band);
+    }
+    for (int y = part.y; y < part.bottom(); ++y) {
+      input.region.for_each_gap(y, [&](int from, int to) {
+        float* row = band.surface.inverse_z.data() + band.surface.row(y) - part.x;
+        std::fill(row + from, row + to, 0.F);
+      });
     }
   }
 
-  /// Merges a row's parts after they are drawn.
-  void merge(const TiledRegion& region, int y) {
-    SurfaceBuffer& upper = parts_[0].surface;
-    SurfaceBuffer& lower = parts_[1].surface;
-    if (upper.touches(y) && lower.touches(y)) keep_nearest(lower, y, upper);
-    SurfaceBuffer& merged = surface(y);
-    region.for_each_gap(y, [&](int first, int last) {
-      float* row = merged.inverse_z.data() + merged.row(y) - region.x;
-      std::fill(row + first, row + last, 0.F);
-    });
-  }
-
-  /// The merged surface of a row.
-  SurfaceBuffer& surface(int y) { return parts_[parts_[0].surface.touches(y) ? 0 : 1].surface; }
-  const SurfaceBuffer& surface(int y) const {
-    return parts_[parts_[0].surface.touches(y) ? 0 : 1].surface;
-  }
+  /// That holds a row of the picture.
+  SurfaceBuffer& surface(int y) { return bands_[band_of(y)].surface; }
+  const SurfaceBuffer& surface(int y) const { return bands_[band_of(y)].surface; }
 
  private:
-  static constexpr int band = 32;  ///< rows
-
-  struct Part {
+  struct Band {
+    BlockSet visible;
     VertexRow vertices[2];
     SurfaceBuffer surface;
   };
 
-  /// Draws the cells below each of the rows.
-  void draw_band(const VertexRows::Frame& frame, const TiledRegion& region,
-                 const sdct::Threshold& threshold, Rows rows, Part& part) const {
-    auto& [vertices, surface] = part;
-    rows_.project(frame, rows.first, vertices[rows.first % 2]);
-    for (int y = rows.first; y < rows.last; ++y) {
-      VertexRow& upper = vertices[y % 2];
-      VertexRow& lower = vertices[(y + 1) % 2];
-      rows_.project(frame, y + 1, lower);
-      const int blocks = static_cast<int>(upper.beyond.size()) - 1;
-      for (int block = 0; block < blocks; ++block) {
-        const auto b = static_cast<std::size_t>(block);
-        if ((upper.beyond[b] & upper.beyond[b + 1] & lower.beyond[b] & lower.beyond[b + 1]) != 0) {
-          continue;
-        }
-        if (!region.is_whole() &&
-            !region.touches(join(join(upper.bounds[b], upper.bounds[b + 1]),
-                                 join(lower.bounds[b], lower.bounds[b + 1])))) {
-          continue;
-        }
-        for (int k = block; k < std::min(block + 2, blocks); ++k) {
-          const auto i = static_cast<std::size_t>(k);
-          if (!upper.has_colors[i]) rows_.find_colors(frame, y, k, upper);
-          if (!lower.has_colors[i]) rows_.find_colors(frame, y + 1, k, lower);
-        }
-        draw_cells(upper, lower, block, threshold, surface);
+  std::size_t band_of(int y) const {
+    return static_cast<std::size_t>((y - region_.y) / band_height(region_.height, band_px));
+  }
+
+  void draw_cells_below(const VertexRows::Frame& frame, int y, const Input& input, const Rect& part,
+                        Band& band) const {
+    VertexRow& upper = band.vertices[y % 2];
+    VertexRow& lower = band.vertices[(y + 1) % 2];
+    const int blocks = static_cast<int>(upper.beyond.size()) - 1;
+    for (int block = 0; block < blocks; ++block) {
+      const auto b = static_cast<std::size_t>(block);
+      if ((upper.beyond[b] & upper.beyond[b + 1] & lower.beyond[b] & lower.beyond[b + 1]) != 0) {
+        continue;
       }
+      if (!input.region.is_whole() &&
+          !input.region.touches(intersect(join(join(upper.bounds[b], upper.bounds[b + 1]),
+                                               join(lower.bounds[b], lower.bounds[b + 1])),
+                                          part))) {
+        continue;
+      }
+      for (int k = block; k < std::min(block + 2, blocks); ++k) {
+        const auto i = static_cast<std::size_t>(k);
+        if (!upper.has_colors[i]) rows_.find_colors(frame, y, k, upper);
+        if (!lower.has_colors[i]) rows_.find_colors(frame, y + 1, k, lower);
+      }
+      draw_cells(upper, lower, block, input.threshold, band.surface);
     }
   }
 
   VisibleBlocks visible_;
   VertexRows rows_;
-  Part parts_[parts];
+  Rect region_;
+  Band bands_[most_bands];
 };
 
 /// The default: the same rules as ReferenceReconstructor, on vector instructions.
@@ -136,36 +145,42 @@ class VectorizedReconstructor : public Reconstructor {
       drawn_.push_back({k, 0});
       meshes_[k].begin(depths[k], *poses.color_from_depth[k], region);
     }
-    const sdct::Threshold threshold(options.discontinuity_threshold_m,
-                                    options.discontinuity_reach_m);
-    oneapi::tbb::parallel_for(
-        std::size_t{0}, CameraMesh::parts * drawn_.size(), [&](std::size_t i) {
-          const std::size_t k = drawn_[i / CameraMesh::parts].camera;
-          meshes_[k].draw(
-              {depths[k], masks.rgbd_depth[k], masks.rgbd_color[k],
-               FloatTransform(*poses.color_from_depth[k]), region, meshes_[k].visible()},
-              region, threshold, static_cast<int>(i % CameraMesh::parts));
-        });
-    for_rows(region.height, [&](Rows rows) {
-      for (const Drawn& drawn : drawn_) {
-        CameraMesh& mesh = meshes_[drawn.camera];
-        for (int y = rows.first; y < rows.last; ++y) mesh.merge(region, region.y + y);
-      }
-    });
-    if (drawn_.size() > 1) sort_by_coverage(region);
+    const auto draw = [&, threshold = sdct::Threshold(options.discontinuity_threshold_m,
+                                                      options.discontinuity_reach_m)](
+                          const Drawn& drawn, Rows rows) {
+      const std::size_t k = drawn.camera;
+      meshes_[k].draw({depths[k], masks.rgbd_depth[k], masks.rgbd_color[k],
+                       FloatTransform(*poses.color_from_depth[k]), region, threshold},
+                      rows);
+    };
     const auto agreement_m = static_cast<float>(options.depth_agreement_m);
+    if (drawn_.size() < 2) {
+      resize_second(false, color_, reconstruction.second);
+      for_rows(
+          region.height,
+          [&](Rows rows) {
+            for (const Drawn& drawn : drawn_) draw(drawn, rows);
+            color_rows(frame, rows, agreement_m, reconstruction);
+          },
+          CameraMesh::band_px);
+      return;
+    }
+    for_rows(
+        region.height,
+        [&](Rows rows) {
+          oneapi::tbb::parallel_for(std::size_t{0}, drawn_.size(),
+                                    [&](std::size_t i) { draw(drawn_[i], rows); });
+        },
+        CameraMesh::band_px);
+    sort_by_coverage(region);
     const bool blended = drawn_.size() > 1 && drawn_.size() <= blending::most_cameras &&
                          options.merge_cameras == "blend";
     resize_second(blended, color_, reconstruction.second);
     if (blended) begin_blending(poses, region, agreement_m);
     for_rows(region.height, [&](Rows rows) {
-      Thread& thread = threads_[rows.first == 0 ? 0 : 1];
+      if (!blended) return color_rows(frame, rows, agreement_m, reconstruction);
       for (int y = region.y + rows.first; y < region.y + rows.last; ++y) {
-        if (blended) {
-          blend_row(frame, y, thread, reconstruction);
-        } else {
-          color_row(frame, y, agreement_m, thread.surfaces, reconstruction);
-        }
+        blend_row(frame, y, scratch_[rows.band], reconstruction);
       }
     });
   }
@@ -176,8 +191,8 @@ class VectorizedReconstructor : public Reconstructor {
     int pixels;
   };
 
-  /// Scratch memory of one thread for a row.
-  struct Thread {
+  /// Memory for one row.
+  struct Scratch {
     std::vector<SurfaceRow> surfaces;
     std::vector<float> second_depth_m;
     CameraBlender::Scratch blending;
@@ -215,24 +230,32 @@ class VectorizedReconstructor : public Reconstructor {
     blender_.begin(blended_, region, color_, agreement_m);
   }
 
-  void blend_row(const FrameSet& frame, int y, Thread& thread,
+  void blend_row(const FrameSet& frame, int y, Scratch& scratch,
                  Reconstruction& reconstruction) const {
     const Rect& region = reconstruction.region;
     SecondView& second = reconstruction.second;
-    thread.second_depth_m.resize(static_cast<std::size_t>(region.width));
+    scratch.second_depth_m.resize(static_cast<std::size_t>(region.width));
     const TwoSources chosen{reconstruction.source.row(y) + region.x,
                             reconstruction.depth_m.row(y) + region.x,
-                            second.source.row(y) + region.x, thread.second_depth_m.data(),
+                            second.source.row(y) + region.x, scratch.second_depth_m.data(),
                             second.share.row(y) + region.x};
     Bgra* const colors = reconstruction.color.row(y) + region.x;
     Bgra* const second_colors = second.color.row(y) + region.x;
     std::fill_n(colors, region.width, Bgra{});
     std::fill_n(second_colors, region.width, Bgra{});
-    for (const BlendedRow& row : blender_.choose(y, chosen, thread.blending)) {
+    for (const BlendedRow& row : blender_.choose(y, chosen, scratch.blending)) {
       const ImageView<Bgr> texture = frame.rgbd[row.source - 1U].color;
       look_up_colors(row, texture, region.width, chosen.source, chosen.depth_m, colors);
       look_up_colors(row, texture, region.width, chosen.second_source, chosen.second_depth_m,
                      second_colors);
+    }
+  }
+
+  void color_rows(const FrameSet& frame, Rows rows, float agreement_m,
+                  Reconstruction& reconstruction) {
+    const int top = reconstruction.region.y;
+    for (int y = top + rows.first; y < top + rows.last; ++y) {
+      color_row(frame, y, agreement_m, scratch_[rows.band].surfaces, reconstruction);
     }
   }
 
@@ -259,7 +282,7 @@ class VectorizedReconstructor : public Reconstructor {
   std::vector<Drawn> drawn_;
   std::vector<CameraBlender::Surface> blended_;
   CameraBlender blender_;
-  Thread threads_[2];
+  Scratch scratch_[most_bands];  ///< of each band of the region
 };
 
 std::unique_ptr<Reconstructor> make(const Rig& rig) {

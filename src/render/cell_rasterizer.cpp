@@ -204,11 +204,6 @@ struct VertexAt {
   std::int64_t y() const { return row.y[index]; }
 };
 
-HWY_INLINE void Touch(int first_row, int last_row, SurfaceBuffer& surface) {
-  surface.first_row = std::min(surface.first_row, first_row);
-  surface.last_row = std::max(surface.last_row, last_row);
-}
-
 /// Draws a triangle of any size, pixel by pixel with 64-bit numbers, like draw_triangle.
 void DrawLarge(const VertexAt (&p)[3], SurfaceBuffer& surface) {
   const std::int64_t area =
@@ -224,7 +219,6 @@ void DrawLarge(const VertexAt (&p)[3], SurfaceBuffer& surface) {
   const int y0 = std::max(region.y, static_cast<int>((top + sdct::subpixels - 1) >> bits));
   const int y1 = std::min(region.bottom() - 1, static_cast<int>(bottom >> bits));
   if (y0 > y1) return;
-  Touch(y0, y1, surface);
   for (int y = y0; y <= y1; ++y) {
     for (int x = x0; x <= x1; ++x) {
       float inverse_z = 0;
@@ -352,10 +346,6 @@ void DrawCells(const VertexRow& upper, const VertexRow& lower, int block,
     const IntVector one = hn::Set(di, 1);
     hn::Store(hn::Add(hn::Sub(x1, x0), one), di, cells.columns);
     hn::Store(hn::Add(hn::Sub(y1, y0), one), di, cells.rows);
-    const auto drawn_cells = hn::RebindMask(di, hn::Or(first, second));
-    Touch(hn::GetLane(hn::MinOfLanes(di, hn::IfThenElse(drawn_cells, y0, hn::Set(di, INT_MAX)))),
-          hn::GetLane(hn::MaxOfLanes(di, hn::IfThenElse(drawn_cells, y1, hn::Set(di, INT_MIN)))),
-          surface);
     for (; forward != 0; forward &= forward - 1) {
       DrawCell(cells, std::countr_zero(forward), surface);
     }
@@ -376,29 +366,9 @@ void SurfaceBuffer::clear(const Rect& region_) {
   pitch = region.width + VertexRow::block;
   const auto size = static_cast<std::size_t>(pitch) * static_cast<std::size_t>(region.height);
   inverse_z.assign(size, 0.F);
-  first_row = region.bottom();
-  last_row = region.y - 1;
   // Undefined where inverse_z is 0.
   u_over_z.resize(size);
   v_over_z.resize(size);
-}
-
-void keep_nearest(const SurfaceBuffer& from, int y, SurfaceBuffer& into) {
-  const std::ptrdiff_t row = into.row(y);
-  const float* const new_z = from.inverse_z.data() + row;
-  const float* const new_u = from.u_over_z.data() + row;
-  const float* const new_v = from.v_over_z.data() + row;
-  float* const z = into.inverse_z.data() + row;
-  float* const u = into.u_over_z.data() + row;
-  float* const v = into.v_over_z.data() + row;
-  const int width = into.region.width;
-  // Without branches, so that the compiler vectorises it.
-  for (int i = 0; i < width; ++i) {
-    const bool is_nearer = new_z[i] > z[i];
-    z[i] = is_nearer ? new_z[i] : z[i];
-    u[i] = is_nearer ? new_u[i] : u[i];
-    v[i] = is_nearer ? new_v[i] : v[i];
-  }
 }
 
 int count_drawn(const SurfaceBuffer& surface, int y) {

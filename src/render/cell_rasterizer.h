@@ -16,15 +16,9 @@ struct SurfaceBuffer {
   std::vector<float> inverse_z;  ///< 0 where there is nothing
   std::vector<float> u_over_z, v_over_z;
 
-  int first_row = 0, last_row = -1;  ///< rows beyond these are empty
-
   void clear(const Rect& region);
-  bool touches(int y) const { return y >= first_row && y <= last_row; }
   std::ptrdiff_t row(int y) const { return (y - region.y) * pitch; }
 };
-
-/// Copies the pixels of `from` that are nearer into the row of `into`.
-void keep_nearest(const SurfaceBuffer& from, int y, SurfaceBuffer& into);
 
 /// The number of pixels of a row that are drawn.
 int count_drawn(const SurfaceBuffer& surface, int y);

@@ -15,7 +15,7 @@ namespace diminish {
 /// Vertices are processed in blocks. There is one more block than the row needs, of invalid
 /// vertices.
 struct VertexRow {
-  static constexpr int block = VisibleBlocks::width;
+  static constexpr int block = BlockSet::width;
 
   std::vector<std::int32_t> x, y;         ///< in the colour camera's image, in 1/256 pixels
   std::vector<float> depth_m;             ///< z in the depth sensor's frame
@@ -43,7 +43,7 @@ class VertexRows {
     const Mask& color_mask;
     FloatTransform to_color;
     Rect region;
-    const VisibleBlocks& visible;  ///< invisible blocks are skipped
+    const BlockSet& visible;  ///< other blocks are skipped
   };
   /// Computes everything except the places of the colours.
   void project(const Frame& frame, int row, VertexRow& vertices) const;

@@ -29,8 +29,8 @@ void expect_the_plain_versions_vertices() {
     VisibleBlocks visible(camera, scene.rig.color);
     visible.find(depth, *scene.poses.color_from_depth[0], region);
     const VertexRows rows(camera, scene.rig.color);
-    const VertexRows::Frame frame{
-        depth, masks.rgbd_depth[0], masks.rgbd_color[0], to_color, region, visible};
+    const VertexRows::Frame frame{depth,  masks.rgbd_depth[0], masks.rgbd_color[0], to_color,
+                                  region, visible.blocks()};
     VertexRow row;
     row.resize(depth.width());
     int vertices = 0;
@@ -38,7 +38,7 @@ void expect_the_plain_versions_vertices() {
       rows.project(frame, y, row);
       for (int x = 0; x < depth.width(); ++x) {
         const int block = x / VertexRow::block;
-        if (visible.row(y)[block] == 0) continue;
+        if (visible.blocks().row(y)[block] == 0) continue;
         if (x % VertexRow::block == 0) rows.find_colors(frame, y, block, row);
         const auto i = static_cast<std::size_t>(x);
         const MeshVertex& vertex = expected(x, y);

@@ -45,12 +45,12 @@ SceneSampler::SceneSampler(const Rig& rig) {
 
 void SceneSampler::sample(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks,
                           SceneSamples& samples) {
-  constexpr std::size_t halves = std::tuple_size_v<decltype(Camera::halves)>;
-  oneapi::tbb::parallel_for(std::size_t{0}, halves * by_camera_.size(), [&](std::size_t i) {
-    const std::size_t k = i / halves;
-    Half& half = by_camera_[k].halves[i % halves];
-    half.samples.clear();
-    half.object_points_m.clear();
+  constexpr std::size_t bands = std::tuple_size_v<decltype(Camera::bands)>;
+  oneapi::tbb::parallel_for(std::size_t{0}, bands * by_camera_.size(), [&](std::size_t i) {
+    const std::size_t k = i / bands;
+    Band& band = by_camera_[k].bands[i % bands];
+    band.samples.clear();
+    band.object_points_m.clear();
     const RgbdFrame& rgbd = frame.rgbd[k];
     if (!rgbd.available() || !poses.color_from_depth[k]) return;
     const View view{rgbd,
@@ -58,31 +58,32 @@ void SceneSampler::sample(const FrameSet& frame, const Poses& poses, const Occlu
                     {rgbd.depth, masks.rgbd_depth[k], masks.rgbd_color[k],
                      FloatTransform(*poses.color_from_depth[k])},
                     static_cast<std::uint8_t>(k + 1)};
-    const int middle = rgbd.depth.height() / 2;
-    sample_rows(view, i % halves == 0 ? Rows{0, middle} : Rows{middle, rgbd.depth.height()}, half);
+    const int height = band_height(rgbd.depth.height());
+    const int first = static_cast<int>(i % bands) * height;
+    sample_rows(view, {first, std::min(first + height, rgbd.depth.height())}, band);
   });
   std::vector<SceneSample>& surfaces = samples.surfaces;
   std::vector<Eigen::Vector3f>& points = samples.object_points_m;
   surfaces.clear();
   points.clear();
   for (const Camera& camera : by_camera_) {
-    for (const Half& half : camera.halves) {
-      surfaces.insert(surfaces.end(), half.samples.begin(), half.samples.end());
-      points.insert(points.end(), half.object_points_m.begin(), half.object_points_m.end());
+    for (const Band& band : camera.bands) {
+      surfaces.insert(surfaces.end(), band.samples.begin(), band.samples.end());
+      points.insert(points.end(), band.object_points_m.begin(), band.object_points_m.end());
     }
   }
 }
 
-void SceneSampler::sample_rows(const View& view, Rows rows, Half& half) {
+void SceneSampler::sample_rows(const View& view, Rows rows, Band& band) {
   const ImageView<std::uint16_t> depth = view.images.depth;
   const ImageView<Bgr> image = view.images.color;
   const int step = step_of(depth);
   constexpr int rim = even_color_reach_px;
-  for (int row = reach + step / 2; row < depth.height() - reach; row += step) {
-    if (row < rows.first || row >= rows.last) continue;
+  for (int row = reach + step / 2; row < std::min(depth.height() - reach, rows.last); row += step) {
+    if (row < rows.first) continue;
     for (int column = reach + step / 2; column < depth.width() - reach; column += step) {
       if (view.frame.depth_mask(column, row) != 0 && on_surface(depth, column, row)) {
-        half.object_points_m.push_back(view.mesh.point_m(view.frame, column, row));
+        band.object_points_m.push_back(view.mesh.point_m(view.frame, column, row));
         continue;
       }
       const MeshVertex vertex = view.mesh.vertex(view.frame, column, row);
@@ -105,7 +106,7 @@ void SceneSampler::sample_rows(const View& view, Rows rows, Half& half) {
       sample.color = {level(0), level(1), level(2)};
       sample.source = view.source;
       sample.even = color.even;
-      half.samples.push_back(sample);
+      band.samples.push_back(sample);
     }
   }
 }

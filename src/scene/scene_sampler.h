@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "core/rows.h"
-
 #include "diminish/frame_set.h"
 #include "diminish/occlusion_masks.h"
 #include "diminish/poses.h"
@@ -25,14 +24,14 @@ class SceneSampler {
               SceneSamples& samples);
 
  private:
-  /// Samples from some rows of a depth image.
-  struct Half {
+  /// Samples from a band of a depth image.
+  struct Band {
     std::vector<SceneSample> samples;
     std::vector<Eigen::Vector3f> object_points_m;
   };
   struct Camera {
     DepthMesh mesh;
-    std::array<Half, 2> halves;
+    std::array<Band, most_bands> bands;
   };
   struct View {
     const RgbdFrame& images;
@@ -40,7 +39,7 @@ class SceneSampler {
     DepthMesh::Frame frame;
     std::uint8_t source;
   };
-  static void sample_rows(const View& view, Rows rows, Half& half);
+  static void sample_rows(const View& view, Rows rows, Band& band);
 
   std::vector<Camera> by_camera_;
 };
