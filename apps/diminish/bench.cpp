@@ -7,6 +7,7 @@
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <stop_token>
 #include <string>
 #include <thread>
 
@@ -45,6 +46,7 @@ struct BenchCommand {
   std::filesystem::path recording;
   std::filesystem::path json;
   int threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  int busy = 0;  ///< threads that compute something else
   std::size_t frames = 0;
   double seconds = 3;
   Options options;
@@ -64,6 +66,22 @@ struct BenchCommand {
 Allocations allocations_until_now() {
   return count_allocations ? count_allocations() : Allocations{};
 }
+
+/// Threads that keep a core busy each, as other programs do.
+class BusyThreads {
+ public:
+  explicit BusyThreads(int count) {
+    for (int i = 0; i < count; ++i) {
+      threads_.emplace_back([](const std::stop_token& stop) {
+        while (!stop.stop_requested()) {
+        }
+      });
+    }
+  }
+
+ private:
+  std::vector<std::jthread> threads_;
+};
 
 class NoSink : public FrameSink {
  public:
@@ -237,6 +255,7 @@ void write_json(const BenchCommand& command, const Figures& figures) {
   json["recording"] = command.recording.string();
   json["frames"] = figures.frames;
   json["threads"] = command.threads;
+  json["busy"] = command.busy;
   json["machine"] = {{"cpu", cpu_name()}, {"cores", std::thread::hardware_concurrency()}};
   json["latency_ms"] = to_json(total);
   json["latency_fps"] = 1000 / total.average;
@@ -262,6 +281,7 @@ int BenchCommand::execute() const {
   const Recording input = load_recording(recording);
   Figures figures;
   std::vector<FrameSet> loaded = load(input, figures);
+  const BusyThreads others(busy);
   measure_latency(input, loaded, figures);
   if (options.backend != "cpu") measure_backend(input, loaded, figures);
   measure_throughput(input, std::move(loaded), figures);
@@ -285,6 +305,9 @@ void add_bench(CLI::App& program, int& exit_code) {
                   "Frames to process at a time when measuring throughput")
       ->capture_default_str()
       ->check(CLI::Range(1, 1024))
+      ->type_name("N");
+  sub->add_option("--busy", command->busy, "Threads that keep a core busy each beside it")
+      ->check(CLI::Range(0, 1024))
       ->type_name("N");
   sub->add_option("--frames", command->frames, "Use only the first N frames; default: all")
       ->check(CLI::Range(1, 1000000))

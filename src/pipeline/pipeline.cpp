@@ -1,6 +1,7 @@
 #include "diminish/pipeline.h"
 
 #include <oneapi/tbb/parallel_invoke.h>
+#include <oneapi/tbb/task_arena.h>
 
 #include <vector>
 
@@ -105,6 +106,8 @@ struct Pipeline::Implementation {
     if (correction) refinement.apply(*correction, poses, samples);
   }
 
+  void process(const FrameSet& frame, DiminishedFrame& result);
+
   Rig rig;
   Scene scene;
   Options options;
@@ -161,79 +164,83 @@ const Options& Pipeline::options() const {
   return implementation_->options;
 }
 
-// Meerits & Saito 2015, section 3, in its order.
 void Pipeline::process(const FrameSet& frame, DiminishedFrame& result) {
-  Implementation& self = *implementation_;
+  // A thread that waits for another within this frame must not begin something else.
+  oneapi::tbb::this_task_arena::isolate([&] { implementation_->process(frame, result); });
+}
+
+// Meerits & Saito 2015, section 3, in its order.
+void Pipeline::Implementation::process(const FrameSet& frame, DiminishedFrame& result) {
   FrameReport& report = result.report;
-  expect_sizes(frame, self.rig);
+  expect_sizes(frame, rig);
   begin(frame, result);
-  self.texture.begin_frame();
-  self.backend.begin_frame();
+  texture.begin_frame();
+  backend.begin_frame();
   if (report.skipped) return;
 
   const ScopedTimer frame_timer(report.frame_ms);
   const auto stage = [&](Stage which, const auto& work) {
-    if (self.backend.has_done(which)) return;
+    if (backend.has_done(which)) return;
     const ScopedTimer timer(report.milliseconds[static_cast<std::size_t>(which)]);
     work();
   };
-  const Options& options = self.options;
-  const OcclusionMasks& masks = self.occluders.masks();
-  const Rect& objects = self.occluders.objects();
+  const OcclusionMasks& masks = occluders.masks();
+  const Rect& objects = occluders.objects();
 
   // 3.2 Camera poses, objects to remove
   stage(Stage::poses, [&] {
-    self.markers.find(frame, report.markers);
-    self.camera_poses.estimate(frame, report.markers, self.measured_poses);
+    markers.find(frame, report.markers);
+    camera_poses.estimate(frame, report.markers, measured_poses);
   });
   stage(Stage::objects, [&] {
-    self.occluders.detect({frame, report.markers, self.measured_poses, options}, report.occluders);
+    occluders.detect({frame, report.markers, measured_poses, options}, report.occluders);
   });
 
   // 3.3 Reconstruction of what is behind them
   oneapi::tbb::parallel_invoke(
       [&] {
         stage(Stage::depth, [&] {
-          const Rect drawn = options.remove_shadows ? self.rig.color.bounds() : self.surroundings();
-          self.depth.clean(frame, self.measured_poses, masks, drawn, options);
+          const Rect drawn = options.remove_shadows ? rig.color.bounds() : surroundings();
+          depth.clean(frame, measured_poses, masks, drawn, options);
         });
       },
       [&] {
-        stage(Stage::samples,
-              [&] { self.sampler.sample(frame, self.measured_poses, masks, self.samples); });
-        stage(Stage::refinement, [&] { self.refine_poses(frame, report.poses); });
-        stage(Stage::background,
-              [&] { self.background.find(objects, self.samples, self.wanted_background()); });
-        stage(Stage::color_maps, [&] {
-          self.color_maps.fit(frame.color, masks.color, self.samples.surfaces,
-                              self.methods.color.maps);
-        });
+        stage(Stage::samples, [&] { sampler.sample(frame, measured_poses, masks, samples); });
+        stage(Stage::refinement, [&] { refine_poses(frame, report.poses); });
+        oneapi::tbb::parallel_invoke(
+            [&] {
+              stage(Stage::background,
+                    [&] { background.find(objects, samples, wanted_background()); });
+            },
+            [&] {
+              stage(Stage::color_maps, [&] {
+                color_maps.fit(frame.color, masks.color, samples.surfaces, methods.color.maps);
+              });
+            });
       });
   stage(Stage::drawing, [&] {
-    self.choose_region();
-    self.backend.draw(
-        {frame, self.depth.depths(), report.poses, masks, objects, self.region, options,
-         self.methods, self.background.planes(), self.background.shadows(),
-         self.color_maps.by_source(), self.wants_reconstruction, self.texture.output()},
-        result);
+    choose_region();
+    backend.draw({frame, depth.depths(), report.poses, masks, objects, region, options, methods,
+                  background.planes(), background.shadows(), color_maps.by_source(),
+                  wants_reconstruction, texture.output()},
+                 result);
   });
 
   // 3.4 Compositing, colour correction, inpainting; a backend may have done these
   const Compositor::Inputs inputs{frame.color, masks.color, objects, options};
   stage(Stage::compositing, [&] {
-    self.background.label(result.reconstruction, result.surfaces);
+    background.label(result.reconstruction, result.surfaces);
     Compositor::sort(inputs, result);
   });
-  stage(Stage::colors, [&] {
-    self.compositor.correct_colors(inputs, self.color_maps.by_source(), *self.corrector, result);
-  });
-  stage(Stage::inpainting, [&] { self.compositor.inpaint(inputs, *self.inpainter, result); });
-  stage(Stage::finish, [&] { self.compositor.finish(inputs, *self.mode, result); });
+  stage(Stage::colors,
+        [&] { compositor.correct_colors(inputs, color_maps.by_source(), *corrector, result); });
+  stage(Stage::inpainting, [&] { compositor.inpaint(inputs, *inpainter, result); });
+  stage(Stage::finish, [&] { compositor.finish(inputs, *mode, result); });
 
-  for (const std::string* message : {&self.occluders.message(), &self.backend.message()}) {
+  for (const std::string* message : {&occluders.message(), &backend.message()}) {
     if (!message->empty()) report.messages.push_back(*message);
   }
-  self.texture.finish_frame(self.backend.has_done(Stage::finish), result);
+  texture.finish_frame(backend.has_done(Stage::finish), result);
   for (const std::string& message : report.poses.messages) report.messages.push_back(message);
   for (const OccluderReport& occluder : report.occluders) {
     if (!occluder.message.empty()) report.messages.push_back(occluder.message);

@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/task_arena.h>
 
 #include <cstdlib>
@@ -39,6 +40,39 @@ TEST(PipelineThreads, AreThoseOfTheCallersArena) {
   EXPECT_EXIT(std::_Exit(threads_started_in_arena_of(1)), ::testing::ExitedWithCode(0), "");
   if (std::thread::hardware_concurrency() < 2) return;
   EXPECT_EXIT(std::_Exit(threads_started_in_arena_of(2)), ::testing::ExitedWithCode(1), "");
+}
+
+class ManyThreads : public ::testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Recordings, ManyThreads,
+                         ::testing::Values("calendar", "ball", "workbench"),
+                         [](const auto& test) { return std::string(test.param); });
+
+// More of them than there are cores, so that they are taken away from one another.
+TEST_P(ManyThreads, MakeTheSameBytes) {
+  namespace tbb = oneapi::tbb;
+  const tbb::global_control enough(tbb::global_control::max_allowed_parallelism, 16);
+  const Recording recording =
+      load_recording(std::filesystem::path(testing::recordings_dir()) / GetParam());
+  Options options;
+  options.remove_shadows = true;
+  FrameSet frame;
+  ASSERT_TRUE(open_recording(recording, options)->next(frame));
+  DiminishedFrame expected;
+  for (const int threads : {1, 2, 3, 4, 7, 16}) {
+    DiminishedFrame result;
+    tbb::task_arena(threads).execute([&] {
+      Pipeline pipeline(recording.rig, recording.scene, options);
+      for (int time = 0; time < 3; ++time) pipeline.process(frame, result);
+    });
+    if (threads == 1) expected = result;
+    ASSERT_GT(result.report.valid_pixels, 1000U);
+    EXPECT_EQ(result.picture, expected.picture) << threads;
+    EXPECT_EQ(result.provenance, expected.provenance) << threads;
+    EXPECT_EQ(result.mask, expected.mask) << threads;
+    EXPECT_EQ(result.reconstruction.color, expected.reconstruction.color) << threads;
+    EXPECT_EQ(result.reconstruction.depth_m, expected.reconstruction.depth_m) << threads;
+    EXPECT_EQ(result.surfaces.light, expected.surfaces.light) << threads;
+  }
 }
 
 }  // namespace
