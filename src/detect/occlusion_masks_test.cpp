@@ -85,7 +85,7 @@ class BrokenDrawer : public MaskDrawer {
   void draw(std::span<MaskDrawing>) override { throw Error("the driver lost the context"); }
 };
 
-TEST(OccluderStage, WhereTheGpuFailsTheProcessorDraws) {
+TEST(OccluderStage, WhereTheGpuFailsTheCpuDraws) {
   Registry<MaskDrawer>::add("broken", [] { return std::make_unique<BrokenDrawer>(); });
   Detection detection(small_rig());
   detection.frame.masks = {pixel("a", detection.rig, 10, 10)};

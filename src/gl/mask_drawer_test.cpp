@@ -20,7 +20,7 @@ INSTANTIATE_TEST_SUITE_P(Recordings, MasksOfRecordings,
 
 // Hulls, meshes, and what a detector has set itself; usual margins, none, and one that is too wide
 // for the GPU.
-TEST_P(MasksOfRecordings, AreTheProcessorsOnTheGpu) {
+TEST_P(MasksOfRecordings, AreTheCpusOnTheGpu) {
   const Recording recording =
       load_recording(std::filesystem::path(testing::recordings_dir()) / GetParam());
   Pipeline pipeline(recording.rig, recording.scene, {});
@@ -113,7 +113,7 @@ class RandomPolygons : public ::testing::Test {
   int drawn = 0, not_drawn = 0;  ///< objects
 };
 
-TEST_F(RandomPolygons, AreTheProcessorsOnTheGpu) {
+TEST_F(RandomPolygons, AreTheCpusOnTheGpu) {
   for (int i = 0; i < 60; ++i) {
     std::vector<Mask> masks;
     std::vector<Polygons> polygons;

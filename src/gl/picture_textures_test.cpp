@@ -175,7 +175,7 @@ TEST_F(Textures, LeaveTheApplicationsContextCurrent) {
 }
 
 // From a backend of the CPU's, a GPU's that leaves the rest to it, or one that fails.
-TEST_F(Textures, HoldTheProcessorsPicturesToo) {
+TEST_F(Textures, HoldTheCpusPicturesToo) {
   Registry<Reconstructor>::add("broken", [](const Rig&) -> std::unique_ptr<Reconstructor> {
     class Broken : public Reconstructor {
       void reconstruct(const FrameSet&, const DepthImages&, const Poses&, const OcclusionMasks&,

@@ -264,7 +264,7 @@ class GlSurfaceFillingOnRecordings : public ::testing::TestWithParam<const char*
 INSTANTIATE_TEST_SUITE_P(Recordings, GlSurfaceFillingOnRecordings,
                          ::testing::Values("calendar", "ball", "workbench"));
 
-TEST_P(GlSurfaceFillingOnRecordings, FillsAsTheProcessorDoes) {
+TEST_P(GlSurfaceFillingOnRecordings, FillsAsTheCpuDoes) {
   const Recording recording =
       load_recording(std::filesystem::path(testing::recordings_dir()) / GetParam());
   const auto source = open_recording(recording, {});

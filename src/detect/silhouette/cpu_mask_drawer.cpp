@@ -7,7 +7,7 @@
 namespace diminish {
 namespace {
 
-class ProcessorMaskDrawer : public MaskDrawer {
+class CpuMaskDrawer : public MaskDrawer {
  public:
   void draw(std::span<MaskDrawing> drawings) override {
     tools_.resize(drawings.size());
@@ -29,7 +29,7 @@ class ProcessorMaskDrawer : public MaskDrawer {
 };
 
 const bool registered =
-    Registry<MaskDrawer>::add("cpu", [] { return std::make_unique<ProcessorMaskDrawer>(); });
+    Registry<MaskDrawer>::add("cpu", [] { return std::make_unique<CpuMaskDrawer>(); });
 
 }  // namespace
 }  // namespace diminish
