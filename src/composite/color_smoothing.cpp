@@ -229,12 +229,6 @@ HWY_EXPORT(SplitChannels);
 HWY_EXPORT(AverageAlongRow);
 HWY_EXPORT(MakeGuide);
 
-namespace {
-
-constexpr int reach = ColorSmoothing::reach;
-
-}  // namespace
-
 void ColorSmoothing::smooth(const Mask& origins, const Rect& box, Image<Bgr>& picture) {
   begin(box);
   for_rows(box.height, [&](Rows rows) {

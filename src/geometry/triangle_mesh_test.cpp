@@ -58,7 +58,7 @@ TEST(TriangleMesh, MalformedLinesAreNamed) {
       {"", "a.obj: expected at least one face"},
   };
   for (const auto& [lines, message] : cases) {
-    EXPECT_EQ(error_of([&] { read(square + lines); }), message);
+    EXPECT_EQ(error_of([text = square + lines] { read(text); }), message);
   }
 }
 

@@ -203,7 +203,7 @@ void CastShadows::draw_light(Image<Eigen::Array3f>& light) {
     }
   }
   dark_.resize(grid_cells, grid_cells, Eigen::Array4f::Zero());
-  Rect shadow;
+  Rect shaded;
   for (int y = 0; y < grid_cells; ++y) {
     const std::uint64_t* hidden = hidden_.row(y);
     int first = grid_cells;
@@ -218,10 +218,10 @@ void CastShadows::draw_light(Image<Eigen::Array3f>& light) {
       for_each_direction(bits.data(), [&](std::size_t direction) { dark += shares[direction]; });
       dark_(x, y) = dark;
     }
-    if (last >= 0) shadow = join(shadow, {first, y, last + 1 - first, 1});
+    if (last >= 0) shaded = join(shaded, {first, y, last + 1 - first, 1});
   }
   // Lights have a size, so take the mean of three by three cells.
-  const Rect part = intersect(grow(shadow, 1), {1, 1, grid_cells - 2, grid_cells - 2});
+  const Rect part = intersect(grow(shaded, 1), {1, 1, grid_cells - 2, grid_cells - 2});
   light.resize(grid_cells, grid_cells, Eigen::Array3f::Ones());
   for (int y = part.y; y < part.bottom(); ++y) {
     const Eigen::Array4f* const above = dark_.row(y - 1);
