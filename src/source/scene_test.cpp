@@ -56,7 +56,7 @@ TEST(Scene, EachWrongValueIsNamed) {
       {"occluder: []\n", "scene.yaml:1: occluder: unknown key, expected one of"},
   };
   for (const auto& [yaml, message] : cases) {
-    EXPECT_THAT(error_of([&] { read(yaml); }), HasSubstr(message));
+    EXPECT_THAT(error_of([&yaml = yaml] { read(yaml); }), HasSubstr(message));
   }
 }
 

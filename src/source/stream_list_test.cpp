@@ -48,7 +48,8 @@ TEST(StreamList, MalformedLinesAreNamed) {
       {"2 a.png\n2 b.png\n", "color.txt:2: expected a timestamp after 2.000000, got 2.000000"},
       {"# nothing\n\n", "color.txt: expected at least one line of \"timestamp filename\""},
   };
-  for (const auto& [text, message] : cases) EXPECT_EQ(error_of([&] { read(text); }), message);
+  for (const auto& [text, message] : cases)
+    EXPECT_EQ(error_of([&text = text] { read(text); }), message);
 }
 
 TEST(StreamList, LinesOfOneVideoAreItsFrames) {

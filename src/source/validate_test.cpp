@@ -78,9 +78,10 @@ TEST(Validate, SaysOfAProgramsRigWhatIsSaidOfAFile) {
     SCOPED_TRACE(to);
     Rig rig = good;
     make(rig);
-    expect_same(
-        error_of([&] { read_rig(Config::parse(replaced(rig_yaml, from, to), "rig.yaml")); }),
-        error_of([&] { validate(rig); }));
+    expect_same(error_of([&from = from, &to = to] {
+                  read_rig(Config::parse(replaced(rig_yaml, from, to), "rig.yaml"));
+                }),
+                error_of([&] { validate(rig); }));
   }
 }
 
