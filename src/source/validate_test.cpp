@@ -137,7 +137,7 @@ TEST(Validate, SaysOfAProgramsSceneWhatIsSaidOfAFile) {
     SCOPED_TRACE(to);
     Scene scene = good;
     make(scene);
-    expect_same(error_of([&] {
+    expect_same(error_of([&, &from = from, &to = to] {
                   validate(read_scene(Config::parse(replaced(scene_yaml, from, to), "scene.yaml")),
                            rig);
                 }),
