@@ -12,11 +12,11 @@
 #include "diminish/view_mode.h"
 #include "expect_error.h"
 #include "mask_overlap.h"
+#include "paths.h"
 #include "picture_difference.h"
 #include "score/image_quality.h"
 #ifdef DIMINISH_HAS_GL
 #include "gl/context.h"
-#include "paths.h"
 #endif
 
 namespace diminish {
