@@ -15,6 +15,7 @@
 #include "commands.h"
 #include "diminish/diminish.h"
 #include "diminish/runner.h"
+#include "frame_trace.h"
 #include "option_flags.h"
 #include "preloaded_source.h"
 #include "sink/distribution.h"
@@ -39,12 +40,14 @@ struct Figures {
   std::vector<std::pair<std::string, double>> gpu_passes_ms;  ///< medians
   double frame_ms = 0, cpu_frame_ms = 0;                      ///< medians, by turns
   Distribution allocated_bytes, allocations;                  ///< per frame
+  WorkAndSpan cost{};
   std::size_t peak_memory_bytes = 0;
 };
 
 struct BenchCommand {
   std::filesystem::path recording;
   std::filesystem::path json;
+  std::filesystem::path trace;
   int threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   int busy = 0;  ///< threads that compute something else
   std::size_t frames = 0;
@@ -213,6 +216,9 @@ void print(const Figures& figures, int threads) {
              figures.measured, figures.left_out);
   fmt::print("One at a time: p50 {:.2f}, p95 {:.2f}, p99 {:.2f} ms; {:.1f} frames/s\n", total.p50,
              total.p95, total.p99, 1000 / total.average);
+  fmt::print("Work {:.2f} ms, span {:.2f} ms: at best {:.1f} times as fast as on one core\n",
+             figures.cost.work_ms, figures.cost.span_ms,
+             figures.cost.work_ms / std::max(figures.cost.span_ms, 1e-6));
   fmt::print("Pipelined, {} threads: {:.1f} frames/s\n", threads, figures.throughput_fps);
   if (figures.frame_ms > 0) {
     fmt::print("Frame on {}: p50 {:.2f} ms; with the CPU backend {:.2f} ms, ratio {:.2f}\n",
@@ -260,6 +266,8 @@ void write_json(const BenchCommand& command, const Figures& figures) {
   json["latency_ms"] = to_json(total);
   json["latency_fps"] = 1000 / total.average;
   json["throughput_fps"] = figures.throughput_fps;
+  json["work_ms"] = figures.cost.work_ms;
+  json["span_ms"] = figures.cost.span_ms;
   for (std::size_t row = 0; row < time_row_count; ++row) {
     json["stages"][time_rows()[row].key] = to_json(figures.times_ms[row]);
   }
@@ -283,6 +291,8 @@ int BenchCommand::execute() const {
   std::vector<FrameSet> loaded = load(input, figures);
   const BusyThreads others(busy);
   measure_latency(input, loaded, figures);
+  figures.cost = measure_work_and_span(input, loaded, options);
+  if (!trace.empty()) write_trace(input, loaded, options, trace);
   if (options.backend != "cpu") measure_backend(input, loaded, figures);
   measure_throughput(input, std::move(loaded), figures);
   rusage usage{};
@@ -317,6 +327,9 @@ void add_bench(CLI::App& program, int& exit_code) {
       ->check(CLI::Range(0.0, 3600.0))
       ->type_name("S");
   sub->add_option("--json", command->json, "Also write the figures to this file")
+      ->type_name("FILE");
+  sub->add_option("--trace", command->trace,
+                  "Also write who did what, when, to this file (a Chrome trace, for Perfetto)")
       ->type_name("FILE");
   add_option_flags(*sub, command->options);
   sub->callback([command, &exit_code] { exit_code = command->execute(); });

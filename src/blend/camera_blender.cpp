@@ -1,7 +1,5 @@
 #include "blend/camera_blender.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -11,6 +9,7 @@
 #include "blend/layers.h"
 #include "core/rows.h"
 #include "core/runs.h"
+#include "core/tasks.h"
 #include "depth/depth_noise.h"
 
 namespace diminish {
@@ -47,8 +46,7 @@ void CameraBlender::begin(std::vector<Surface>& surfaces, const Rect& region,
       measure_cells(row, scratch_[rows.band]);
     }
   });
-  oneapi::tbb::parallel_for(std::size_t{0}, surfaces.size(),
-                            [&](std::size_t k) { grid_.finish(k, surfaces[k].place); });
+  for_tasks(surfaces.size(), [&](std::size_t k) { grid_.finish(k, surfaces[k].place); });
 }
 
 /// y: relative to the region's corner, here and below.

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
+
+#include "core/tasks.h"
 
 namespace diminish {
 
@@ -34,13 +34,10 @@ auto sum_over_rows(int rows, const Visit& visit, int least = 64) {
   const int bands = (rows + height - 1) / height;
   if (bands <= 1) return visit(Rows{0, rows});
   std::array<decltype(visit(Rows{})), most_bands> sums;
-  oneapi::tbb::parallel_for(
-      0, bands,
-      [&](int band) {
-        sums[static_cast<std::size_t>(band)] =
-            visit(Rows{band * height, std::min((band + 1) * height, rows), band});
-      },
-      oneapi::tbb::simple_partitioner());
+  for_tasks(static_cast<std::size_t>(bands), [&](std::size_t i) {
+    const auto band = static_cast<int>(i);
+    sums[i] = visit(Rows{band * height, std::min((band + 1) * height, rows), band});
+  });
   auto sum = sums[0];
   for (int band = 1; band < bands; ++band) sum = sum + sums[static_cast<std::size_t>(band)];
   return sum;

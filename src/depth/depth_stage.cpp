@@ -1,6 +1,6 @@
 #include "depth/depth_stage.h"
 
-#include <oneapi/tbb/parallel_for.h>
+#include "core/tasks.h"
 
 namespace diminish {
 namespace {
@@ -19,7 +19,7 @@ DepthStage::DepthStage(const Rig& rig) : depths_(rig.rgbd.size()) {
 
 void DepthStage::clean(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks,
                        const Rect& drawn, const Options& options) {
-  oneapi::tbb::parallel_for(std::size_t{0}, depths_.size(), [&](std::size_t k) {
+  for_tasks(depths_.size(), [&](std::size_t k) {
     const RgbdFrame& rgbd = frame.rgbd[k];
     if (!rgbd.available()) return;
     if (poses.color_from_depth[k]) {

@@ -1,9 +1,8 @@
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <optional>
 #include <vector>
 
+#include "core/tasks.h"
 #include "detect/color_blob/color_blob_finder.h"
 #include "diminish/occluder_detector.h"
 #include "diminish/occluder_settings.h"
@@ -30,7 +29,7 @@ class ColorBlobDetector : public OccluderDetector {
     report.name = name_;
     // One image a core. (Not std::vector<bool>: its elements share bytes.)
     std::vector<char> found(rgbd_.size() + 1, 0);
-    oneapi::tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t i) {
+    for_tasks(found.size(), [&](std::size_t i) {
       if (i == 0) {
         found[i] =
             !frame.color.empty() && color_->find(frame.color, options.blob_spread, masks.color);

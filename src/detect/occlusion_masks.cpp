@@ -1,6 +1,6 @@
 #include "detect/occlusion_masks.h"
 
-#include <oneapi/tbb/parallel_for.h>
+#include "core/tasks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -82,7 +82,7 @@ void OccluderStage::draw(const Options& options, std::vector<OccluderReport>& re
 
 /// Only where something may be set. Until the frame is done, that is anywhere.
 void OccluderStage::clear() {
-  oneapi::tbb::parallel_for(std::size_t{0}, parts_.size(), [&](std::size_t i) {
+  for_tasks(parts_.size(), [&](std::size_t i) {
     Mask& mask = i == 0       ? masks_.color
                  : i % 2 == 1 ? masks_.rgbd_color[i / 2]
                               : masks_.rgbd_depth[i / 2 - 1];
@@ -107,7 +107,7 @@ void OccluderStage::list_drawings(const Options& options) {
     list(2 + 2 * k, outlines_.rgbd_depth[k], depth_margin_px(rig_.rgbd[k], margin_px),
          masks_.rgbd_depth[k]);
   }
-  oneapi::tbb::parallel_for(std::size_t{0}, drawings_.size(), [&](std::size_t i) {
+  for_tasks(drawings_.size(), [&](std::size_t i) {
     MaskDrawing& drawing = drawings_[i];
     drawing.part = join(drawing.polygons->bounds(drawing.mask->bounds()),
                         is_blank_ ? Rect{} : bounding_box(*drawing.mask));

@@ -1,6 +1,3 @@
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/parallel_invoke.h>
-
 #include <algorithm>
 #include <array>
 #include <vector>
@@ -8,6 +5,7 @@
 #include "core/channels.h"
 #include "core/connected_regions.h"
 #include "core/rows.h"
+#include "core/tasks.h"
 #include "diminish/inpainter.h"
 #include "inpaint/plane_colors.h"
 #include "inpaint/surface_rules.h"
@@ -39,17 +37,15 @@ class SurfaceInpainting : public Inpainter {
   bool inpaint(const Holes& holes, const Options&, Image<Bgr>& picture) override {
     window_ = grow(bounding_box(holes.missing), 1);
     if (window_.empty()) return true;
-    oneapi::tbb::parallel_invoke(
-        [&] { plane_colors_.collect(holes.occlusion, holes.surfaces, picture); },
-        [&] {
-          collect_states(holes);
-          find_holes();
-        });
+    do_both([&] { plane_colors_.collect(holes.occlusion, holes.surfaces, picture); },
+            [&] {
+              collect_states(holes);
+              find_holes();
+            });
     // They do not depend on each other: what one fills no other takes for known.
     std::array<bool, label_count> filled{};
-    oneapi::tbb::parallel_for(std::size_t{0}, label_count, [&](std::size_t k) {
-      filled[k] = fill(static_cast<Label>(k), holes, picture);
-    });
+    for_tasks(label_count,
+              [&](std::size_t k) { filled[k] = fill(static_cast<Label>(k), holes, picture); });
     return fill_rest(filled, holes, picture);
   }
 

@@ -1,6 +1,6 @@
 #include "diminish/pipeline.h"
+#include "core/tasks.h"
 
-#include <oneapi/tbb/parallel_invoke.h>
 #include <oneapi/tbb/task_arena.h>
 
 #include <vector>
@@ -181,6 +181,7 @@ void Pipeline::Implementation::process(const FrameSet& frame, DiminishedFrame& r
   const ScopedTimer frame_timer(report.frame_ms);
   const auto stage = [&](Stage which, const auto& work) {
     if (backend.has_done(which)) return;
+    const tracing::Scope scope(stage_names[static_cast<std::size_t>(which)]);
     const ScopedTimer timer(report.milliseconds[static_cast<std::size_t>(which)]);
     work();
   };
@@ -197,7 +198,7 @@ void Pipeline::Implementation::process(const FrameSet& frame, DiminishedFrame& r
   });
 
   // 3.3 Reconstruction of what is behind them
-  oneapi::tbb::parallel_invoke(
+  do_both(
       [&] {
         stage(Stage::depth, [&] {
           const Rect drawn = options.remove_shadows ? rig.color.bounds() : surroundings();
@@ -207,7 +208,7 @@ void Pipeline::Implementation::process(const FrameSet& frame, DiminishedFrame& r
       [&] {
         stage(Stage::samples, [&] { sampler.sample(frame, measured_poses, masks, samples); });
         stage(Stage::refinement, [&] { refine_poses(frame, report.poses); });
-        oneapi::tbb::parallel_invoke(
+        do_both(
             [&] {
               stage(Stage::background,
                     [&] { background.find(objects, samples, wanted_background()); });

@@ -1,6 +1,6 @@
 #include "pose/frame_markers.h"
 
-#include <oneapi/tbb/parallel_for.h>
+#include "core/tasks.h"
 
 namespace diminish {
 
@@ -16,7 +16,7 @@ void FrameMarkers::find(const FrameSet& frame, Markers& markers) {
   markers.color.clear();
   markers.rgbd.resize(frame.rgbd.size());
   for (auto& list : markers.rgbd) list.clear();
-  oneapi::tbb::parallel_for(std::size_t{0}, cameras_.size(), [&](std::size_t i) {
+  for_tasks(cameras_.size(), [&](std::size_t i) {
     auto& [lens, detector] = cameras_[i];
     if (i == 0) {
       detector.detect(frame.color, lens, markers.color);

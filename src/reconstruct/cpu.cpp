@@ -1,11 +1,10 @@
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <vector>
 
 #include "blend/camera_blender.h"
 #include "blend/layers.h"
 #include "core/rows.h"
+#include "core/tasks.h"
 #include "diminish/error.h"
 #include "diminish/reconstructor.h"
 #include "reconstruct/clear_outside.h"
@@ -167,10 +166,7 @@ class VectorizedReconstructor : public Reconstructor {
     }
     for_rows(
         region.height,
-        [&](Rows rows) {
-          oneapi::tbb::parallel_for(std::size_t{0}, drawn_.size(),
-                                    [&](std::size_t i) { draw(drawn_[i], rows); });
-        },
+        [&](Rows rows) { for_tasks(drawn_.size(), [&](std::size_t i) { draw(drawn_[i], rows); }); },
         CameraMesh::band_px);
     sort_by_coverage(region);
     const bool blended = drawn_.size() > 1 && drawn_.size() <= blending::most_cameras &&

@@ -1,12 +1,11 @@
 #include "scene/color_maps.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "core/channels.h"
 #include "core/even_color.h"
+#include "core/tasks.h"
 
 namespace diminish {
 namespace {
@@ -55,7 +54,7 @@ void ColorMaps::fit(ImageView<Bgr> camera, const Mask& occlusion,
     pairs_.resize(sources_.size());
     fits_.resize(sources_.size());
   }
-  oneapi::tbb::parallel_for(std::size_t{0}, sources_.size(), [&](std::size_t k) {
+  for_tasks(sources_.size(), [&](std::size_t k) {
     const auto [begin, end] = sources_[k];
     pairs_[k].clear();
     const std::size_t step = (end - begin + most_pairs - 1) / most_pairs;

@@ -1,11 +1,10 @@
 #include "scene/scene_sampler.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "core/even_color.h"
+#include "core/tasks.h"
 #include "render/sdct.h"
 
 namespace diminish {
@@ -46,7 +45,7 @@ SceneSampler::SceneSampler(const Rig& rig) {
 void SceneSampler::sample(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks,
                           SceneSamples& samples) {
   constexpr std::size_t bands = std::tuple_size_v<decltype(Camera::bands)>;
-  oneapi::tbb::parallel_for(std::size_t{0}, bands * by_camera_.size(), [&](std::size_t i) {
+  for_tasks(bands * by_camera_.size(), [&](std::size_t i) {
     const std::size_t k = i / bands;
     Band& band = by_camera_[k].bands[i % bands];
     band.samples.clear();

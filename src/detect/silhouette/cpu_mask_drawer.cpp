@@ -1,5 +1,4 @@
-#include <oneapi/tbb/parallel_for.h>
-
+#include "core/tasks.h"
 #include "detect/silhouette/disc_dilation.h"
 #include "detect/silhouette/mask_drawer.h"
 #include "detect/silhouette/polygon_filler.h"
@@ -11,7 +10,7 @@ class CpuMaskDrawer : public MaskDrawer {
  public:
   void draw(std::span<MaskDrawing> drawings) override {
     tools_.resize(drawings.size());
-    oneapi::tbb::parallel_for(std::size_t{0}, drawings.size(), [&](std::size_t i) {
+    for_tasks(drawings.size(), [&](std::size_t i) {
       MaskDrawing& drawing = drawings[i];
       tools_[i].filler.fill(*drawing.polygons, *drawing.mask, drawing.covers);
       if (drawing.margin_px == 0) return;

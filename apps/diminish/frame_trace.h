@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "diminish/diminish.h"
+
+namespace diminish {
+
+/// Of a frame, medians.
+struct WorkAndSpan {
+  double work_ms;  ///< on one thread
+  double span_ms;  ///< the longest chain of parts that wait for one another: any number of threads
+};
+
+/// Measured on one thread, so that nothing else takes part.
+WorkAndSpan measure_work_and_span(const Recording& input, const std::vector<FrameSet>& frames,
+                                  const Options& options);
+
+/// Writes who did what, when, in up to 20 of the frames, as a Chrome trace (JSON), which Perfetto
+/// shows. Throws Error if the file cannot be written.
+void write_trace(const Recording& input, const std::vector<FrameSet>& frames,
+                 const Options& options, const std::filesystem::path& file);
+
+}  // namespace diminish

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <cstddef>
+
+#include "core/tracing.h"
+
+namespace diminish {
+
+// Where a frame forks and joins: all threads of the caller's arena share the tasks.
+
+/// Calls visit(i) for each i below `count`; whichever thread is free takes the next.
+template <class Visit>
+void for_tasks(std::size_t count, const Visit& visit) {
+  if (count == 1) return visit(std::size_t{0});
+  tracing::Region region(count);
+  oneapi::tbb::parallel_for(
+      std::size_t{0}, count,
+      [&](std::size_t i) {
+        const tracing::Region::Task task(region, i);
+        visit(i);
+      },
+      oneapi::tbb::simple_partitioner());
+}
+
+/// Calls both, at the same time if a thread is free.
+template <class First, class Second>
+void do_both(const First& first, const Second& second) {
+  for_tasks(2, [&](std::size_t i) { i == 0 ? first() : second(); });
+}
+
+}  // namespace diminish
