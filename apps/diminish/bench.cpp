@@ -112,12 +112,8 @@ std::vector<FrameSet> BenchCommand::load(const Recording& input, Figures& figure
 
 void BenchCommand::measure_latency(const Recording& input, const std::vector<FrameSet>& loaded,
                                    Figures& figures) const {
-  Pipeline pipeline(input.rig, input.scene, options);
-  pipeline.want_reconstruction(false);
   DiminishedFrame result;
-  for (const FrameSet& frame : loaded)
-    pipeline.process(frame, result);  // lets memory grow to its final size
-
+  Pipeline pipeline = warm_pipeline(input, loaded, options, result);
   constexpr std::size_t fewest_frames = 20;
   std::array<std::vector<double>, time_row_count> times;
   std::vector<double> bytes;
@@ -289,9 +285,9 @@ int BenchCommand::execute() const {
   const Recording input = load_recording(recording);
   Figures figures;
   std::vector<FrameSet> loaded = load(input, figures);
+  figures.cost = measure_work_and_span(input, loaded, options);
   const BusyThreads others(busy);
   measure_latency(input, loaded, figures);
-  figures.cost = measure_work_and_span(input, loaded, options);
   if (!trace.empty()) write_trace(input, loaded, options, trace);
   if (options.backend != "cpu") measure_backend(input, loaded, figures);
   measure_throughput(input, std::move(loaded), figures);

@@ -14,7 +14,8 @@ namespace {
 
 constexpr std::size_t most_traced = 20;
 
-/// A pipeline whose memory has grown to its size.
+}  // namespace
+
 Pipeline warm_pipeline(const Recording& input, const std::vector<FrameSet>& frames,
                        const Options& options, DiminishedFrame& result) {
   Pipeline pipeline(input.rig, input.scene, options);
@@ -22,8 +23,6 @@ Pipeline warm_pipeline(const Recording& input, const std::vector<FrameSet>& fram
   for (const FrameSet& frame : frames) pipeline.process(frame, result);
   return pipeline;
 }
-
-}  // namespace
 
 WorkAndSpan measure_work_and_span(const Recording& input, const std::vector<FrameSet>& frames,
                                   const Options& options) {

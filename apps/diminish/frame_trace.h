@@ -7,6 +7,11 @@
 
 namespace diminish {
 
+/// A pipeline that has made all frames once, so that its memory, and `result`'s, has its final
+/// size.
+Pipeline warm_pipeline(const Recording& input, const std::vector<FrameSet>& frames,
+                       const Options& options, DiminishedFrame& result);
+
 /// Of a frame, medians.
 struct WorkAndSpan {
   double work_ms;  ///< on one thread

@@ -15,11 +15,13 @@ struct Rows {
 
 /// Of one image.
 inline constexpr int most_bands = 8;
+/// Rows; fewer are not worth a task.
+inline constexpr int least_band = 64;
 
 /// Bands are the same on every machine, so that sums over them are the same, too, and small enough
 /// that a core that is away delays a frame by one of them. All but the last are this high: a
 /// multiple of 32, at least `least`. An image of few rows is one band.
-inline int band_height(int rows, int least = 64) {
+inline int band_height(int rows, int least = least_band) {
   constexpr int unit = 32;
   if (rows < 2 * least) return std::max(rows, 1);
   const int even = (rows + most_bands - 1) / most_bands;
@@ -29,7 +31,7 @@ inline int band_height(int rows, int least = 64) {
 /// Calls visit(rows) for each band; whichever thread is free takes the next. Returns the sum of the
 /// results, added up in the bands' order.
 template <class Visit>
-auto sum_over_rows(int rows, const Visit& visit, int least = 64) {
+auto sum_over_rows(int rows, const Visit& visit, int least = least_band) {
   const int height = band_height(rows, least);
   const int bands = (rows + height - 1) / height;
   if (bands <= 1) return visit(Rows{0, rows});
@@ -45,7 +47,7 @@ auto sum_over_rows(int rows, const Visit& visit, int least = 64) {
 
 /// The same, without a result.
 template <class Visit>
-void for_rows(int rows, const Visit& visit, int least = 64) {
+void for_rows(int rows, const Visit& visit, int least = least_band) {
   sum_over_rows(
       rows,
       [&](Rows part) {

@@ -7,23 +7,13 @@
 #include <random>
 
 #include "core/mat.h"
+#include "noise.h"
 
 namespace diminish {
 namespace {
 
-Image<Bgr> noise(int width, int height) {
-  Image<Bgr> image(width, height);
-  std::mt19937 random(5);
-  for (Bgr& color : image) {
-    const std::uint_fast32_t value = random();
-    color = {static_cast<std::uint8_t>(value), static_cast<std::uint8_t>(value >> 8),
-             static_cast<std::uint8_t>(value >> 16 & 1 ? 255 : 0)};
-  }
-  return image;
-}
-
 TEST(Shrink, IsTheRoundedMean) {
-  const Image<Bgr> image = noise(101, 83);
+  const Image<Bgr> image = testing::noise(101, 83);
   std::vector<std::uint16_t> scratch;
   Image<Bgr> small;
   for (int scale = 1; scale <= 16; ++scale) {
@@ -55,7 +45,7 @@ TEST(Shrink, APictureThinnerThanTheScaleBecomesOnePixelWide) {
 }
 
 TEST(Shrink, APartIsThePartOfTheWhole) {
-  const Image<Bgr> image = noise(101, 83);
+  const Image<Bgr> image = testing::noise(101, 83);
   const Rect part{4, 7, 19, 11};
   std::vector<std::uint16_t> scratch;
   Image<Bgr> whole, small;

@@ -123,7 +123,7 @@ Region::~Region() {
 Region::Task::Task(Region& region, std::size_t index) : region_(region), index_(index) {
   if (!region_.is_on_) return;
   begin_ns_ = recorder().now_ns();
-  chain_.name = std::exchange(this_thread.name, region_.name_);
+  name_before_ = std::exchange(this_thread.name, region_.name_);
   chain_.since_ns = begin_ns_;
   before_ = std::exchange(this_thread.chain, &chain_);
 }
@@ -134,7 +134,7 @@ Region::Task::~Task() {
   close_segment(chain_, end_ns);
   region_.costs_[index_] = chain_.cost;
   this_thread.chain = before_;
-  this_thread.name = chain_.name;
+  this_thread.name = name_before_;
   record(region_.name_, static_cast<int>(index_), begin_ns_, end_ns);
 }
 

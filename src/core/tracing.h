@@ -37,7 +37,6 @@ std::vector<Span> stop();
 namespace detail {
 inline std::atomic<bool> on = false;
 struct Chain {
-  const char* name = "";
   std::int64_t since_ns = 0;  ///< when its last region ended
   Cost cost;
 };
@@ -98,6 +97,7 @@ class Region {
     std::size_t index_;
     detail::Chain chain_;
     detail::Chain* before_ = nullptr;
+    const char* name_before_ = nullptr;
     std::int64_t begin_ns_ = 0;
   };
 

@@ -119,10 +119,10 @@ void VisibleBlocks::find(ImageView<std::uint16_t> depth, const RigidTransform& c
           nearest = std::min(nearest, depths.nearest[x]);
           farthest = std::max(farthest, depths.farthest[x]);
         }
-        Range& depth_m = depth_m_[index(column, row)];
+        Range& depth_m = depth_m_[visible_.index(column, row)];
         depth_m = {static_cast<float>(nearest) * unit_m_, static_cast<float>(farthest) * unit_m_};
         visible_(column, row) =
-            farthest > 0 && is_inside(sides_, rays_[index(column, row)], depth_m) ? 1 : 0;
+            farthest > 0 && is_inside(sides_, rays_[visible_.index(column, row)], depth_m) ? 1 : 0;
       }
     }
   });
@@ -142,7 +142,7 @@ Rows VisibleBlocks::find_in_rows(int top, int bottom, BlockSet& visible) const {
   for (int row = 0; row < visible_.rows(); ++row) {
     bool any = false;
     for (int column = 0; column < visible_.columns(); ++column) {
-      const auto block = index(column, row);
+      const auto block = visible_.index(column, row);
       const bool is_there =
           visible_(column, row) != 0 && is_inside(sides, rays_[block], depth_m_[block]);
       visible(column, row) = is_there ? 1 : 0;

@@ -31,13 +31,13 @@ class BlockSet {
   /// Columns and rows of blocks.
   int columns() const { return columns_; }
   int rows() const { return static_cast<int>(set_.size()) / std::max(1, columns_); }
-
- private:
+  /// Of a block, row by row.
   std::size_t index(int column, int row) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
            static_cast<std::size_t>(column);
   }
 
+ private:
   int columns_ = 0;
   std::vector<std::uint8_t> set_;
 };
@@ -92,10 +92,6 @@ class VisibleBlocks {
   void add_sides(const Rect& rectangle, int axis, Sides& sides) const;
   static bool is_inside(const Sides& sides, const Rays& rays, const Range& depth_m);
   void find_part();
-  std::size_t index(int column, int row) const {
-    return static_cast<std::size_t>(row) * static_cast<std::size_t>(visible_.columns()) +
-           static_cast<std::size_t>(column);
-  }
 
   Lens color_;
   float unit_m_;

@@ -74,8 +74,7 @@ double monotonic_radius_squared(const Coefficients& k) {
 }
 
 template <LensModel model>
-[[gnu::always_inline]] inline Eigen::Vector2d distorted(const Coefficients& k,
-                                                        const Eigen::Vector2d& ray) {
+Eigen::Vector2d distorted(const Coefficients& k, const Eigen::Vector2d& ray) {
   const double r2 = ray.squaredNorm();
   Eigen::Vector2d result;
   plain::distort_ray<model>(

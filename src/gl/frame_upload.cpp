@@ -92,21 +92,14 @@ void FrameUpload::pack(const FrameSet& frame, const DepthImages& depths, const P
                        const Options& options) {
   blocks_.clear();
   std::size_t at = block_at(1 + of_rig_.size());
-  // Rows of bytes; the first one's place, in words.
-  const auto append_rows = [&](const auto* first, std::size_t count, int rows,
-                               std::ptrdiff_t stride) {
+  const auto append = [&]<class Pixel>(const ImageView<Pixel>& image) {
     const std::size_t start = at;
-    const std::size_t row_bytes = count * sizeof(*first);
-    const auto* from = reinterpret_cast<const std::byte*>(first);
-    for (int y = 0; y < rows; ++y, at += row_bytes) {
-      std::memcpy(mapped_.data() + at, from + y * stride, row_bytes);
+    const std::size_t row_bytes = static_cast<std::size_t>(image.width()) * sizeof(Pixel);
+    for (int y = 0; y < image.height(); ++y, at += row_bytes) {
+      std::memcpy(mapped_.data() + at, image.row(y), row_bytes);
     }
     at = start + whole_words(at - start);
     return static_cast<std::uint32_t>(start / 4);
-  };
-  const auto append = [&]<class Pixel>(const ImageView<Pixel>& image) {
-    return append_rows(image.data(), static_cast<std::size_t>(image.width()), image.height(),
-                       image.stride());
   };
   for (std::size_t k = 0; k < of_rig_.size(); ++k) {
     if (!frame.rgbd[k].available() || !poses.color_from_depth[k]) continue;
@@ -126,7 +119,7 @@ void FrameUpload::pack(const FrameSet& frame, const DepthImages& depths, const P
   frame_.tiles_y = tiles.y;
   frame_.tiles_width = tiles.width;
   const std::vector<std::uint8_t>& kept = region.kept_tiles();
-  frame_.tiles_at = append_rows(kept.data(), kept.size(), 1, 0);
+  frame_.tiles_at = append(ImageView(kept.data(), static_cast<int>(kept.size()), 1, 0));
   bytes_ = at + 4;
 
   const sdct::Threshold threshold(options.discontinuity_threshold_m, options.discontinuity_reach_m);

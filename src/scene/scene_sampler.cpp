@@ -44,22 +44,21 @@ SceneSampler::SceneSampler(const Rig& rig) {
 
 void SceneSampler::sample(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks,
                           SceneSamples& samples) {
-  constexpr std::size_t bands = std::tuple_size_v<decltype(Camera::bands)>;
-  for_tasks(bands * by_camera_.size(), [&](std::size_t i) {
-    const std::size_t k = i / bands;
-    Band& band = by_camera_[k].bands[i % bands];
-    band.samples.clear();
-    band.object_points_m.clear();
+  for_tasks(by_camera_.size(), [&](std::size_t k) {
+    Camera& camera = by_camera_[k];
+    for (Band& band : camera.bands) {
+      band.samples.clear();
+      band.object_points_m.clear();
+    }
     const RgbdFrame& rgbd = frame.rgbd[k];
     if (!rgbd.available() || !poses.color_from_depth[k]) return;
     const View view{rgbd,
-                    by_camera_[k].mesh,
+                    camera.mesh,
                     {rgbd.depth, masks.rgbd_depth[k], masks.rgbd_color[k],
                      FloatTransform(*poses.color_from_depth[k])},
                     static_cast<std::uint8_t>(k + 1)};
-    const int height = band_height(rgbd.depth.height());
-    const int first = static_cast<int>(i % bands) * height;
-    sample_rows(view, {first, std::min(first + height, rgbd.depth.height())}, band);
+    for_rows(rgbd.depth.height(),
+             [&](Rows rows) { sample_rows(view, rows, camera.bands[rows.band]); });
   });
   std::vector<SceneSample>& surfaces = samples.surfaces;
   std::vector<Eigen::Vector3f>& points = samples.object_points_m;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "core/rows.h"
@@ -31,7 +30,7 @@ class SceneSampler {
   };
   struct Camera {
     DepthMesh mesh;
-    std::array<Band, most_bands> bands;
+    Band bands[most_bands];
   };
   struct View {
     const RgbdFrame& images;

@@ -1,26 +1,15 @@
 #include <gtest/gtest.h>
 
 #include <opencv2/imgproc.hpp>
-#include <random>
 
 #include "core/mat.h"
 #include "detect/color_blob/extremum_filters.h"
 #include "detect/color_blob/smooth_picture.h"
 #include "each_vector_target.h"
+#include "noise.h"
 
 namespace diminish {
 namespace {
-
-Image<Bgr> noise(int width, int height) {
-  Image<Bgr> image(width, height);
-  std::mt19937 random(5);
-  for (Bgr& color : image) {
-    const std::uint_fast32_t value = random();
-    color = {static_cast<std::uint8_t>(value), static_cast<std::uint8_t>(value >> 8),
-             static_cast<std::uint8_t>(value >> 16 & 1 ? 255 : 0)};
-  }
-  return image;
-}
 
 template <class Pixel>
 void expect_same(const Image<Pixel>& image, const cv::Mat& expected) {
@@ -29,7 +18,7 @@ void expect_same(const Image<Pixel>& image, const cv::Mat& expected) {
 }
 
 TEST(PictureSmoother, IsOpenCvsGaussian) {
-  const Image<Bgr> image = noise(61, 37);
+  const Image<Bgr> image = testing::noise(61, 37);
   cv::Mat expected;
   cv::GaussianBlur(as_mat(image), expected, {3, 3}, 0, 0, cv::BORDER_REPLICATE);
   PictureSmoother smoother;
@@ -39,7 +28,7 @@ TEST(PictureSmoother, IsOpenCvsGaussian) {
 }
 
 TEST(PictureSmoother, APartMayReachBeyondThePicture) {
-  const Image<Bgr> image = noise(30, 20);
+  const Image<Bgr> image = testing::noise(30, 20);
   const Rect part{-5, 9, 40, 17};
   cv::Mat larger;
   cv::copyMakeBorder(as_mat(image), larger, 10, 10, 10, 10, cv::BORDER_REPLICATE);
@@ -51,7 +40,7 @@ TEST(PictureSmoother, APartMayReachBeyondThePicture) {
 }
 
 TEST(ExtremumFilters, AreOpenCvs) {
-  const Image<Bgr> image = noise(45, 31);
+  const Image<Bgr> image = testing::noise(45, 31);
   Mask mask;
   cv::Mat blue;
   cv::extractChannel(as_mat(image), blue, 0);
