@@ -17,13 +17,25 @@
 #define DIMINISH_COMPOSITE_COLOR_SMOOTHING_ROWS
 namespace diminish {
 
-/// The rows around the one being smoothed. Pointers are to its first pixel and to those above and
-/// below it; there are `ColorSmoothing::reach` pixels to the left and a vector to the right.
+// Pointers are to a row's first pixel and to those above and below it; there are
+// `ColorSmoothing::reach` pixels to the left and a vector to the right.
+
+/// A row, and those below it, to be compared with its neighbours.
+struct ComparedRow {
+  static constexpr int rows = ColorSmoothing::reach + 1;
+  const std::uint8_t* guide[3][rows];
+  const std::uint8_t* seen[rows];
+  std::uint8_t* weights[ColorSmoothing::later_count];
+};
+
+/// The rows around the one being smoothed.
 struct SmoothedRow {
   static constexpr int rows = 2 * ColorSmoothing::reach + 1;
   const std::int16_t* values[3][rows];
-  const std::uint8_t* guide[3][rows];
-  const std::uint8_t* seen[rows];
+  const std::uint8_t* seen;
+  /// Of the later neighbours, and of the pixels of which this is the later one.
+  const std::uint8_t* later[ColorSmoothing::later_count];
+  const std::uint8_t* earlier[ColorSmoothing::later_count];
 };
 
 /// Padding beyond a row's last pixel.
@@ -83,39 +95,43 @@ struct Division {
   }
 };
 
-HWY_INLINE bool AnySeen(const SmoothedRow& row, int x) {
+HWY_INLINE bool AnySeen(const std::uint8_t* seen) {
   const AllBytes d;
   auto any = hn::Zero(d);
   for (int i = 0; i < block; i += static_cast<int>(hn::Lanes(d))) {
-    any = hn::Or(any, hn::LoadU(d, row.seen[ColorSmoothing::reach] + x + i));
+    any = hn::Or(any, hn::LoadU(d, seen + i));
   }
   return !hn::AllTrue(d, hn::Eq(any, hn::Zero(d)));
 }
 
-/// How alike the first neighbour is for each pixel of the block that begins in column x, then the
-/// second, and so on; 0 for neighbours that were not seen.
-HWY_INLINE void Compare(const SmoothedRow& row, int x, std::uint8_t* likeness) {
-  constexpr int reach = ColorSmoothing::reach;
+/// The weight of each later neighbour; 0 where one of the two was not seen.
+void CompareRow(const ComparedRow& row, int width) {
   const AllBytes d;
+  const auto lanes = static_cast<int>(hn::Lanes(d));
   const auto largest = hn::Set(d, static_cast<std::uint8_t>(ColorSmoothing::largest_difference));
-  for (int i = 0; i < block; i += static_cast<int>(hn::Lanes(d))) {
-    hn::Vec<AllBytes> own[3];
-    for (int c = 0; c < 3; ++c) own[c] = hn::LoadU(d, row.guide[c][reach] + x + i);
-    std::uint8_t* to = likeness + i;
-    for (int dy = -reach; dy <= reach; ++dy) {
-      for (int dx = -reach; dx <= reach; ++dx) {
-        if (!ColorSmoothing::is_neighbour(dx, dy)) continue;
-        const int at = x + i + dx;
+  // Those beyond the row, which were not seen, are looked at from there.
+  for (int first = 0; first < width + ColorSmoothing::reach; first += block) {
+    const bool is_any = AnySeen(row.seen[0] + first);
+    for (int x = first; x < first + block; x += lanes) {
+      hn::Vec<AllBytes> own[3];
+      for (int c = 0; c < 3; ++c) own[c] = hn::LoadU(d, row.guide[c][0] + x);
+      const auto is_seen = hn::LoadU(d, row.seen[0] + x);
+      if (!is_any) {
+        for (std::uint8_t* const weights : row.weights) hn::StoreU(hn::Zero(d), d, weights + x);
+        continue;
+      }
+#pragma GCC unroll 10
+      for (std::size_t k = 0; k < ColorSmoothing::later.size(); ++k) {
+        const ColorSmoothing::Offset offset = ColorSmoothing::later[k];
         auto difference = hn::Zero(d);
         for (int c = 0; c < 3; ++c) {
-          const auto other = hn::LoadU(d, row.guide[c][reach + dy] + at);
+          const auto other = hn::LoadU(d, row.guide[c][offset.y] + x + offset.x);
           const auto step = hn::Sub(hn::Max(other, own[c]), hn::Min(other, own[c]));
           difference = c == 0 ? step : hn::SaturatedAdd(difference, step);
         }
-        const auto is_seen = hn::LoadU(d, row.seen[reach + dy] + at);
-        const auto left = hn::And(hn::SaturatedSub(largest, difference), is_seen);
-        hn::Store(left, d, to);
-        to += block;
+        const auto both = hn::And(hn::LoadU(d, row.seen[offset.y] + x + offset.x), is_seen);
+        const auto left = hn::And(hn::SaturatedSub(largest, difference), both);
+        hn::StoreU(hn::ShiftRight<weight_bits>(left), d, row.weights[k] + x);
       }
     }
   }
@@ -123,33 +139,34 @@ HWY_INLINE void Compare(const SmoothedRow& row, int x, std::uint8_t* likeness) {
 
 void SmoothRow(const SmoothedRow& row, int width, std::uint8_t* picture) {
   constexpr int reach = ColorSmoothing::reach;
-  constexpr int square = (2 * reach + 1) * (2 * reach + 1);
+  constexpr auto own_weight =
+      static_cast<std::int16_t>(ColorSmoothing::largest_difference / ColorSmoothing::weight_part);
   const Bytes bytes;
   const Words words;
   const auto lanes = static_cast<int>(hn::Lanes(bytes));
-  HWY_ALIGN std::uint8_t likeness[square * block];
   for (int x = 0; x < width; x += lanes) {
-    if (x % block == 0 && AnySeen(row, x)) Compare(row, x, likeness);
-    const auto is_seen = hn::Gt(hn::LoadU(bytes, row.seen[reach] + x), hn::Zero(bytes));
+    const auto is_seen = hn::Gt(hn::LoadU(bytes, row.seen + x), hn::Zero(bytes));
     if (hn::AllFalse(bytes, is_seen)) continue;
-    const std::uint8_t* own = likeness + x % block;
-    hn::Vec<Words> sum[3] = {hn::Zero(words), hn::Zero(words), hn::Zero(words)};
-    auto weights = hn::Zero(words);
-    for (int dy = -reach; dy <= reach; ++dy) {
-      for (int dx = -reach; dx <= reach; ++dx) {
-        if (!ColorSmoothing::is_neighbour(dx, dy)) continue;
-        const auto weight =
-            hn::ShiftRight<weight_bits>(hn::PromoteTo(words, hn::LoadU(bytes, own)));
-        own += block;
-        weights = hn::Add(weights, weight);
-        for (int c = 0; c < 3; ++c) {
-          const auto value = hn::LoadU(words, row.values[c][reach + dy] + x + dx);
-          sum[c] = hn::Add(sum[c], hn::Mul(weight, value));
-        }
-      }
+    auto weights = hn::Set(words, own_weight);
+    hn::Vec<Words> sum[3];
+    for (int c = 0; c < 3; ++c) {
+      sum[c] = hn::Mul(weights, hn::LoadU(words, row.values[c][reach] + x));
     }
-    // Pixels that were not seen may have no neighbours.
-    const Division mean(hn::Max(weights, hn::Set(words, 1)));
+    const auto add = [&](const std::uint8_t* weight_row, int dx, int dy) HWY_ATTR {
+      const auto weight = hn::PromoteTo(words, hn::LoadU(bytes, weight_row + x));
+      weights = hn::Add(weights, weight);
+      for (int c = 0; c < 3; ++c) {
+        const auto value = hn::LoadU(words, row.values[c][reach + dy] + x + dx);
+        sum[c] = hn::Add(sum[c], hn::Mul(weight, value));
+      }
+    };
+#pragma GCC unroll 10
+    for (std::size_t k = 0; k < ColorSmoothing::later.size(); ++k) {
+      const ColorSmoothing::Offset offset = ColorSmoothing::later[k];
+      add(row.later[k], offset.x, offset.y);
+      add(row.earlier[k] - offset.x, -offset.x, -offset.y);
+    }
+    const Division mean(weights);
     hn::Vec<Bytes> result[3];
     for (int c = 0; c < 3; ++c) {
       const auto value = hn::DemoteTo(bytes, hn::LoadU(words, row.values[c][reach] + x));
@@ -224,6 +241,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace diminish {
 
+HWY_EXPORT(CompareRow);
 HWY_EXPORT(SmoothRow);
 HWY_EXPORT(SplitChannels);
 HWY_EXPORT(AverageAlongRow);
@@ -238,7 +256,16 @@ void ColorSmoothing::smooth(const Mask& origins, const Rect& box, Image<Bgr>& pi
     for (int y = rows.first; y < rows.last; ++y) guide_row(y, box.width);
   });
   for_rows(box.height, [&](Rows rows) {
-    for (int y = rows.first; y < rows.last; ++y) smooth_row(box, y, picture);
+    // By row, in turn: a row's neighbours above it were compared with it.
+    Weights* const weights = weights_[rows.band];
+    const auto weights_of = [&](int y) { return &weights[(y + reach) % (reach + 1)]; };
+    for (int y = rows.first - reach; y < rows.first; ++y) {
+      compare_row(y, box.width, *weights_of(y));
+    }
+    for (int y = rows.first; y < rows.last; ++y) {
+      compare_row(y, box.width, *weights_of(y));
+      smooth_row(box, y, {weights_of(y), weights_of(y - 1), weights_of(y - 2)}, picture);
+    }
   });
 }
 
@@ -295,14 +322,36 @@ void ColorSmoothing::guide_row(int y, int width) {
   }
 }
 
-void ColorSmoothing::smooth_row(const Rect& box, int y, Image<Bgr>& picture) const {
+void ColorSmoothing::compare_row(int y, int width, Weights& weights) const {
+  weights.resize(reach + width + padding, later_count);
+  ComparedRow row{};
+  for (int k = 0; k < later_count; ++k) {
+    std::fill_n(weights.row(k), reach, std::uint8_t{0});
+    row.weights[k] = weights.row(k) + reach;
+  }
+  if (y < 0) {
+    weights.fill(0);
+    return;
+  }
+  for (int i = 0; i < ComparedRow::rows; ++i) {
+    row.seen[i] = seen_.row(y + reach + i) + reach;
+    for (int c = 0; c < 3; ++c) row.guide[c][i] = guide_[c].row(y + reach + i) + reach;
+  }
+  HWY_DYNAMIC_DISPATCH(CompareRow)(row, width);
+}
+
+void ColorSmoothing::smooth_row(const Rect& box, int y,
+                                const std::array<const Weights*, reach + 1>& weights,
+                                Image<Bgr>& picture) const {
   SmoothedRow row{};
+  row.seen = seen_.row(y + reach) + reach;
   for (int i = 0; i < SmoothedRow::rows; ++i) {
-    row.seen[i] = seen_.row(y + i) + reach;
-    for (int c = 0; c < 3; ++c) {
-      row.values[c][i] = words_[c].row(y + i) + reach;
-      row.guide[c][i] = guide_[c].row(y + i) + reach;
-    }
+    for (int c = 0; c < 3; ++c) row.values[c][i] = words_[c].row(y + i) + reach;
+  }
+  for (int k = 0; k < later_count; ++k) {
+    const int above = later[static_cast<std::size_t>(k)].y;
+    row.later[k] = weights[0]->row(k) + reach;
+    row.earlier[k] = weights[static_cast<std::size_t>(above)]->row(k) + reach;
   }
   HWY_DYNAMIC_DISPATCH(SmoothRow)
   (row, box.width, reinterpret_cast<std::uint8_t*>(picture.row(box.y + y) + box.x));

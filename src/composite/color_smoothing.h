@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 
+#include "core/rows.h"
 #include "diminish/image.h"
 
 namespace diminish {
@@ -23,6 +25,15 @@ class ColorSmoothing {
   static constexpr int largest_difference = 36;
   static constexpr std::uint32_t weight_part = 4;
 
+  /// Two pixels are as alike one way round as the other, so a pixel is compared with those
+  /// neighbours only that come after it.
+  struct Offset {
+    int x, y;
+  };
+  static constexpr int later_count = 10;
+  static constexpr std::array<Offset, later_count> later{
+      {{1, 0}, {2, 0}, {-2, 1}, {-1, 1}, {0, 1}, {1, 1}, {2, 1}, {-1, 2}, {0, 2}, {1, 2}}};
+
   /// The quotient of two sums of weights, the first multiplied by levels, in 16-bit numbers; exact
   /// to a tenth of a level.
   static constexpr std::uint32_t one = 1U << 19;
@@ -40,14 +51,21 @@ class ColorSmoothing {
   void begin(const Rect& box);
   void split_row(const Mask& origins, const Image<Bgr>& picture, const Rect& box, int y);
   void guide_row(int y, int width);
-  void smooth_row(const Rect& box, int y, Image<Bgr>& picture) const;
+  /// The weights of some rows' later neighbours.
+  using Weights = Image<std::uint8_t>;
+  /// Those of row y: each neighbour's in a row of the image, from column `reach` on.
+  void compare_row(int y, int width, Weights& weights) const;
+  /// weights: of this row, the one above, and so on.
+  void smooth_row(const Rect& box, int y, const std::array<const Weights*, reach + 1>& weights,
+                  Image<Bgr>& picture) const;
 
   // These cover the box, and `reach` pixels and a few more around it.
-  Mask seen_;                         ///< 255 or 0
-  Image<std::uint8_t> values_[3];     ///< channels
-  Image<std::int16_t> words_[3];      ///< likewise
-  Image<std::uint8_t> row_means_[3];  ///< with the neighbours to the left and right
-  Image<std::uint8_t> guide_[3];      ///< and above and below
+  Mask seen_;                               ///< 255 or 0
+  Image<std::uint8_t> values_[3];           ///< channels
+  Image<std::int16_t> words_[3];            ///< likewise
+  Image<std::uint8_t> row_means_[3];        ///< with the neighbours to the left and right
+  Image<std::uint8_t> guide_[3];            ///< and above and below
+  Weights weights_[most_bands][reach + 1];  ///< of the last rows of each band
 };
 
 }  // namespace diminish

@@ -115,7 +115,18 @@ class Plain {
 
 TEST(ColorSmoothing, DoesWhatThePlainVersionDoes) {
   std::mt19937 random(7);
-  for (const auto& [width, height] : {std::pair{1, 1}, {3, 7}, {31, 33}, {150, 301}}) {
+  // One after the other: what larger pictures left behind must not matter.
+  ColorSmoothing smoothing;
+  for (const auto& [width, height] : {std::pair{150, 301},
+                                      {96, 270},
+                                      {120, 300},
+                                      {64, 270},
+                                      {90, 300},
+                                      {32, 270},
+                                      {63, 20},
+                                      {31, 33},
+                                      {3, 7},
+                                      {1, 1}}) {
     Image<Bgr> picture = with_noise(two_walls(width + 9, height + 5));
     Mask origins(width + 9, height + 5);
     for (std::uint8_t& origin : origins) {
@@ -128,7 +139,8 @@ TEST(ColorSmoothing, DoesWhatThePlainVersionDoes) {
     }
     for (int i = 0; i < 20; ++i) picture.data()[random() % picture.size()] = {255, 255, 255};
     const Rect box{4, 2, width, height};
-    const Image<Bgr> result = smoothed(picture, origins, box);
+    Image<Bgr> result = picture;
+    smoothing.smooth(origins, box, result);
     const Plain plain(picture, origins, box);
     for (int y = 0; y < picture.height(); ++y) {
       for (int x = 0; x < picture.width(); ++x) {

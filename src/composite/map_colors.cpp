@@ -38,6 +38,9 @@ using Floats = hn::CappedTag<float, block>;
 using Ints = hn::RebindToSigned<Floats>;
 using Bytes = hn::Rebind<std::uint8_t, Floats>;
 using Vector = hn::Vec<Floats>;
+/// Interleaved bytes are taken apart as many at a time as fill a vector, or a block.
+using AllBytes = hn::CappedTag<std::uint8_t, block>;
+constexpr int part_count = static_cast<int>(hn::MaxLanes(AllBytes()) / hn::MaxLanes(Floats()));
 
 HWY_INLINE Vector Set(float value) {
   return hn::Set(Floats(), value);
@@ -46,48 +49,84 @@ HWY_INLINE Vector ToFloats(hn::Vec<Bytes> bytes) {
   return hn::ConvertTo(Floats(), hn::PromoteTo(Ints(), bytes));
 }
 
-/// A vector of pixels from column i of the row on, of which `chosen` are written.
+/// The bytes of one, two or four vectors, one after the other.
+template <class Part>
+HWY_INLINE Part Joined(const Part (&parts)[1]) {
+  return parts[0];
+}
+#if HWY_TARGET != HWY_SCALAR
+template <class Part>
+HWY_INLINE hn::Vec<AllBytes> Joined(const Part (&parts)[2]) {
+  return hn::Combine(AllBytes(), parts[1], parts[0]);
+}
+template <class Part>
+HWY_INLINE hn::Vec<AllBytes> Joined(const Part (&parts)[4]) {
+  const hn::Half<AllBytes> half;
+  return hn::Combine(AllBytes(), hn::Combine(half, parts[3], parts[2]),
+                     hn::Combine(half, parts[1], parts[0]));
+}
+#endif
+
+/// As many pixels as a vector has bytes from column i of the row on, of which `chosen` are written.
 HWY_INLINE void MapPixels(const ColorMap& map, const MappedRow& row, int i,
-                          hn::Mask<Bytes> chosen) {
+                          hn::Mask<AllBytes> chosen) {
   const Bytes bytes;
-  hn::Vec<Bytes> color[4];
-  hn::LoadInterleaved4(bytes, reinterpret_cast<const std::uint8_t*>(row.colors + i), color[0],
-                       color[1], color[2], color[3]);
-  const Vector blue = ToFloats(color[0]);
-  const Vector green = ToFloats(color[1]);
-  const Vector red = ToFloats(color[2]);
+  const AllBytes all;
+  const auto lanes = static_cast<int>(hn::Lanes(bytes));
+  hn::Vec<AllBytes> colors[4];
+  hn::LoadInterleaved4(all, reinterpret_cast<const std::uint8_t*>(row.colors + i), colors[0],
+                       colors[1], colors[2], colors[3]);
+  auto* pixels = reinterpret_cast<std::uint8_t*>(row.picture + i);
+  hn::Vec<AllBytes> old[3];
+  hn::LoadInterleaved3(all, pixels, old[0], old[1], old[2]);
+  // To be read in parts.
+  HWY_ALIGN std::uint8_t color[3][block];
+  HWY_ALIGN std::uint8_t before[3][block];
+  for (int c = 0; c < 3; ++c) {
+    hn::Store(colors[c], all, color[c]);
+    hn::Store(old[c], all, before[c]);
+  }
   // The field is a quadratic polynomial of the column.
   const float scale = 1 / map.half_width;
   const float v = (static_cast<float>(row.y) - map.center.y()) * scale;
   const Vector constant = Set(1 + map.field[1] * v + map.field[4] * v * v);
   const Vector linear = Set(map.field[0] + map.field[3] * v);
-  const Vector first = Set((static_cast<float>(row.x + i) - map.center.x()) * scale);
-  const Vector u = hn::MulAdd(hn::Iota(Floats(), 0), Set(scale), first);
-  Vector field = hn::MulAdd(hn::MulAdd(Set(map.field[2]), u, linear), u, constant);
-  field = hn::Min(hn::Max(field, Set(ColorMap::least_field)), Set(ColorMap::greatest_field));
-  auto* pixels = reinterpret_cast<std::uint8_t*>(row.picture + i);
-  hn::Vec<Bytes> old[3], result[3];
-  hn::LoadInterleaved3(bytes, pixels, old[0], old[1], old[2]);
-  for (int c = 0; c < 3; ++c) {
-    Vector sum = hn::MulAdd(Set(map.matrix(c, 0)), blue, Set(map.offset[c]));
-    sum = hn::MulAdd(Set(map.matrix(c, 1)), green, sum);
-    sum = hn::MulAdd(Set(map.matrix(c, 2)), red, sum);
-    sum = hn::MulAdd(field, sum, hn::LoadU(Floats(), row.correction + c * row.channel_step + i));
-    auto level = hn::DemoteTo(bytes, hn::NearestInt(sum));
-    if (row.shares) {
-      const Vector share = hn::Mul(ToFloats(hn::LoadU(bytes, row.shares + i)), Set(1 / 255.F));
-      const Vector before = ToFloats(old[c]);
-      const Vector mixed = hn::MulAdd(share, hn::Sub(ToFloats(level), before), before);
-      level = hn::DemoteTo(bytes, hn::NearestInt(mixed));
+  hn::Vec<Bytes> result[3][part_count];
+  for (int part = 0; part < part_count; ++part) {
+    const int at = part * lanes;
+    const auto load = [&](const std::uint8_t* from)
+                          HWY_ATTR { return ToFloats(hn::LoadU(bytes, from + at)); };
+    const Vector blue = load(color[0]);
+    const Vector green = load(color[1]);
+    const Vector red = load(color[2]);
+    const Vector first = Set((static_cast<float>(row.x + i + at) - map.center.x()) * scale);
+    const Vector u = hn::MulAdd(hn::Iota(Floats(), 0), Set(scale), first);
+    Vector field = hn::MulAdd(hn::MulAdd(Set(map.field[2]), u, linear), u, constant);
+    field = hn::Min(hn::Max(field, Set(ColorMap::least_field)), Set(ColorMap::greatest_field));
+    for (int c = 0; c < 3; ++c) {
+      Vector sum = hn::MulAdd(Set(map.matrix(c, 0)), blue, Set(map.offset[c]));
+      sum = hn::MulAdd(Set(map.matrix(c, 1)), green, sum);
+      sum = hn::MulAdd(Set(map.matrix(c, 2)), red, sum);
+      sum = hn::MulAdd(field, sum,
+                       hn::LoadU(Floats(), row.correction + c * row.channel_step + i + at));
+      auto level = hn::DemoteTo(bytes, hn::NearestInt(sum));
+      if (row.shares) {
+        const Vector share = hn::Mul(load(row.shares + i), Set(1 / 255.F));
+        const Vector own = load(before[c]);
+        const Vector mixed = hn::MulAdd(share, hn::Sub(ToFloats(level), own), own);
+        level = hn::DemoteTo(bytes, hn::NearestInt(mixed));
+      }
+      result[c][part] = level;
     }
-    result[c] = hn::IfThenElse(chosen, level, old[c]);
   }
-  hn::StoreInterleaved3(result[0], result[1], result[2], bytes, pixels);
+  hn::Vec<AllBytes> mapped[3];
+  for (int c = 0; c < 3; ++c) mapped[c] = hn::IfThenElse(chosen, Joined(result[c]), old[c]);
+  hn::StoreInterleaved3(mapped[0], mapped[1], mapped[2], all, pixels);
 }
 
 /// `count` is a multiple of 16. maps: by source.
 void MapRow(const ColorMap* maps, const MappedRow& row) {
-  const Bytes bytes;
+  const AllBytes bytes;
   const auto lanes = static_cast<int>(hn::Lanes(bytes));
   for (int i = 0; i < row.count; i += lanes) {
     const auto sources = hn::LoadU(bytes, row.sources + i);

@@ -1,6 +1,7 @@
 #include "core/shrunk_picture.h"
 
 #include <algorithm>
+#include <atomic>
 
 namespace diminish {
 namespace {
@@ -21,15 +22,21 @@ void ShrunkPicture::begin(ImageView<Bgr> picture, const Mask& occlusion, int shr
 bool ShrunkPicture::look_up(float x, float y, Brightness& found) {
   const int column = static_cast<int>(x);
   const int row = static_cast<int>(y);
-  const float* upper = levels_.row(row) + column;
-  const float* lower = levels_.row(row + 1) + column;
-  const auto least = [&] {
+  float* const first = levels_.row(row) + column;
+  float* const second = levels_.row(row + 1) + column;
+  float upper[2];
+  float lower[2];
+  const auto read = [&] {
+    for (int i = 0; i < 2; ++i) {
+      upper[i] = std::atomic_ref(first[i]).load(std::memory_order_relaxed);
+      lower[i] = std::atomic_ref(second[i]).load(std::memory_order_relaxed);
+    }
     return std::min(std::min(upper[0], upper[1]), std::min(lower[0], lower[1]));
   };
-  if (least() < 0) {
+  if (read() < 0) {
     fill_in(column, row);
     fill_in(column, row + 1);
-    if (least() < 0) return false;
+    if (read() < 0) return false;
   }
   const float u = x - static_cast<float>(column);
   const float v = y - static_cast<float>(row);
@@ -44,7 +51,11 @@ bool ShrunkPicture::look_up(float x, float y, Brightness& found) {
 
 void ShrunkPicture::fill_in(int column, int row) {
   for (int x = column; x < column + 2; ++x) {
-    if (levels_(x, row) == not_yet) levels_(x, row) = shrink(x, row);
+    // Two threads that fill in the same pixel write the same.
+    const std::atomic_ref<float> own(levels_(x, row));
+    if (own.load(std::memory_order_relaxed) == not_yet) {
+      own.store(shrink(x, row), std::memory_order_relaxed);
+    }
   }
 }
 

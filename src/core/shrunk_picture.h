@@ -12,7 +12,8 @@ inline float brightness(int blue, int green, int red) {
 }
 
 /// The brightness of a picture that is made smaller by a whole factor. Its pixels are made when
-/// they are asked for: what reads it here and there pays for what it reads.
+/// they are asked for: what reads it here and there pays for what it reads. Threads may read it at
+/// the same time.
 class ShrunkPicture {
  public:
   /// Both must outlive what is read. occlusion: of the picture's size; what shows an object is not

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
-#include <vector>
 
 #include "diminish/image.h"
 #include "diminish/surfaces.h"
@@ -30,22 +30,18 @@ class PlaneColors {
  private:
   /// Sums of blue, green and red, and their count.
   using Sum = Eigen::Array<std::uint32_t, 4, 1>;
-  struct Cell {
-    Sum sums[planes];
+  /// A plane's sums, of all cells above and to the left.
+  struct Table {
+    bool is_used;  ///< whether the plane is seen in this frame; if not, nothing else is valid
+    Image<Sum> sums;
   };
   void find_objects(const Mask& occlusion);
   void add_row(int row, const Image<std::uint8_t>& labels, const Image<Bgr>& picture);
-  Cell* cell_row(int row) {
-    return table_.data() + static_cast<std::ptrdiff_t>(row) * (columns_ + 1);
-  }
-  const Cell* cell_row(int row) const {
-    return table_.data() + static_cast<std::ptrdiff_t>(row) * (columns_ + 1);
-  }
 
   Rect region_;
   int columns_ = 0, rows_ = 0;
-  std::vector<Cell> table_;  ///< sums of all cells above and to the left
-  Mask has_object_, near_object_;
+  std::array<Table, planes> tables_;
+  Mask has_object_, near_column_, near_object_;
 };
 
 }  // namespace diminish

@@ -210,12 +210,7 @@ class SurfaceInpainting : public Inpainter {
     }
     filling.solve();
     filling.for_each_run([&](int y, int first, int last, const Eigen::Array4f* colors) {
-      Bgr* const row = picture.row(y);
-      for (int x = first; x < last; ++x) {
-        const Eigen::Array4i levels = (colors[x].max(0.F).min(255.F) + 0.5F).cast<int>();
-        const auto level = [&](int c) { return static_cast<std::uint8_t>(levels[c]); };
-        row[x] = {level(0), level(1), level(2)};
-      }
+      filling_rows::round(colors + first, last - first, picture.row(y) + first);
     });
     return true;
   }

@@ -104,37 +104,17 @@ void SmoothFilling::Grid::coarsen(const Grid& fine) {
   }
 }
 
-/// Bilinear, of the cells that are there. Black cells alone: the red ones are relaxed next, from
-/// these; but for single cells, which may have no neighbour at all.
 void SmoothFilling::Grid::interpolate_row(const Grid& coarse, int y) {
-  for_each_run(y, [&](Run run) {
-    const Color* const near_row = coarse.color_row(y >> 1);
-    const Color* const far_row = coarse.color_row((y >> 1) + (y % 2 == 0 ? -1 : 1));
-    Color* const here = color_row(y);
-    const bool is_single = run.last - run.first == 1;
-    for (int x = run.first + (is_single ? 0 : (run.first + y + 1) & 1); x < run.last; x += 2) {
-      const int near = x >> 1;
-      const int far = near + (x % 2 == 0 ? -1 : 1);
-      const Color sum = 9 * near_row[near] + 3 * (near_row[far] + far_row[near]) + far_row[far];
-      here[x] = sum / Color::Constant(sum[3]);
-    }
-  });
+  const std::span<const Run> own = runs_of(y);
+  if (own.empty()) return;
+  filling_rows::interpolate(own, y, coarse.color_row(y >> 1),
+                            coarse.color_row((y >> 1) + (y % 2 == 0 ? -1 : 1)), color_row(y));
 }
 
-/// The cells where x + y is even (parity 0: red) or odd (1: black).
 void SmoothFilling::Grid::relax_row(int y, int parity, float factor) {
-  for_each_run(y, [&](Run run) {
-    const Color* const above = color_row(y - 1);
-    const Color* const below = color_row(y + 1);
-    Color* const here = color_row(y);
-    for (int x = run.first + ((run.first + y + parity) & 1); x < run.last; x += 2) {
-      const Color sum = (here[x - 1] + here[x + 1]) + (above[x] + below[x]);
-      if (sum[3] == 0) continue;
-      const Color mean = sum / Color::Constant(sum[3]);
-      // The first time there is nothing to start from.
-      here[x] = factor == 1 ? mean : here[x] + factor * (mean - here[x]);
-    }
-  });
+  const std::span<const Run> own = runs_of(y);
+  if (own.empty()) return;
+  filling_rows::relax(own, y, parity, factor, color_row(y - 1), color_row(y + 1), color_row(y));
 }
 
 /// All sweeps go over the grid together, each a row behind the one before it: what they read is in

@@ -3,9 +3,11 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "diminish/image.h"
+#include "membrane/filling_rows.h"
 
 namespace diminish {
 
@@ -65,20 +67,16 @@ class SmoothFilling {
   void for_each_run(const Visit& visit) const {
     const Grid& grid = grids_.front();
     for (int y = grid.box.y; y < grid.box.bottom(); ++y) {
-      grid.for_each_run(y, [&](Run run) { visit(y, run.first, run.last, grid.color_row(y)); });
+      for (const Run run : grid.runs_of(y)) visit(y, run.first, run.last, grid.color_row(y));
     }
   }
 
  private:
-  /// The channels, and 1; all 0 for what is not there, so that sums count their terms.
-  using Color = Eigen::Array4f;
+  using Color = filling_rows::Color;
   struct Place {
     int x, y;
   };
-  /// Columns [first, last) of a row.
-  struct Run {
-    int first, last;
-  };
+  using Run = filling_rows::Run;
 
   struct Grid {
     Rect box;  ///< of the open cells; the images have a rim of 1 around it
@@ -95,11 +93,11 @@ class SmoothFilling {
     const Color* color_row(int y) const { return colors.row(y - box.y + 1) - (box.x - 1); }
     void find_open();
     void find_known();
-    template <class Visit>
-    void for_each_run(int y, const Visit& visit) const {
-      if (y < box.y || y >= box.bottom()) return;
-      const auto i = static_cast<std::size_t>(y - box.y);
-      for (std::size_t run = row_begin[i]; run < row_begin[i + 1]; ++run) visit(runs[run]);
+    /// None beyond the box.
+    std::span<const Run> runs_of(int y) const {
+      if (y < box.y || y >= box.bottom()) return {};
+      const std::size_t* const begin = &row_begin[static_cast<std::size_t>(y - box.y)];
+      return {runs.data() + begin[0], runs.data() + begin[1]};
     }
     /// To be the coarser grid.
     void coarsen(const Grid& fine);

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "core/robust.h"
+#include "core/tasks.h"
 
 namespace diminish {
 namespace {
@@ -97,8 +99,8 @@ std::size_t PoseRefinement::linearise(const RigidTransform& correction) {
   const float center = static_cast<float>(shrinkage_ / 2) / 2;
   const auto last_column = static_cast<float>(small_.width() - 2);
   const auto last_row = static_cast<float>(small_.height() - 2);
-  std::size_t count = 0;
-  for (Points& points : points_) {
+  const auto linearise_some = [&](Points& points) {
+    std::size_t count = 0;
     const auto coordinate = [&](int i) {
       return r(i, 0) * points.x_m + r(i, 1) * points.y_m + r(i, 2) * points.z_m + t[i];
     };
@@ -139,8 +141,17 @@ std::size_t PoseRefinement::linearise(const RigidTransform& correction) {
     const Lanes v = dy * inverse_z * (scale * lens.fy);
     const Lanes w = -(u * x + v * y);
     points.derivative = {u, v, w, py * w - pz * v, pz * u - px * w, px * v - py * u};
-  }
-  return count;
+    return count;
+  };
+  constexpr std::size_t tasks = 8;
+  std::array<std::size_t, tasks> counts{};
+  for_tasks(tasks, [&](std::size_t task) {
+    for (std::size_t i = task * points_.size() / tasks; i < (task + 1) * points_.size() / tasks;
+         ++i) {
+      counts[task] += linearise_some(points_[i]);
+    }
+  });
+  return std::accumulate(counts.begin(), counts.end(), std::size_t{0});
 }
 
 void PoseRefinement::fit_lines() {

@@ -5,10 +5,12 @@
 #include <bit>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "core/channels.h"
 #include "core/rows.h"
 #include "core/runs.h"
+#include "core/tasks.h"
 #include "depth/depth_noise.h"
 #include "scene/surface_rows.h"
 
@@ -79,23 +81,28 @@ void CastShadows::find(const std::vector<BackgroundPlane>& planes,
   Eigen::Vector3f middle = Eigen::Vector3f::Zero();
   for (const Eigen::Vector3f& point : object_points_m) middle += point;
   middle /= static_cast<float>(object_points_m.size());
-  for (std::size_t k = 0; k < planes.size(); ++k) {
+  searches_.resize(planes.size());
+  for_tasks(planes.size(), [&](std::size_t k) {
+    Search& search = searches_[k];
     const Ground ground(planes[k], middle);
-    choose_blockers(ground, planes, object_points_m);
-    choose_lit(ground, samples);
-    if (blockers_.size() < fewest_blockers || lit_.size() < fewest_lit) continue;
-    if (!fit()) continue;
+    search.choose_blockers(ground, planes, object_points_m);
+    search.choose_lit(ground, samples);
+    search.is_found = search.find(slopes_u_, slopes_v_);
+    if (!search.is_found) return;
+    search.found.ground = ground;
+    search.found.label = static_cast<std::uint8_t>(surface_label::first_plane + k);
+  });
+  for (Search& search : searches_) {
+    if (!search.is_found) continue;
     if (shadows_.size() == shadow_count_) shadows_.emplace_back();
-    Shadow& found = shadows_[shadow_count_++];
-    found.ground = ground;
-    found.label = static_cast<std::uint8_t>(surface_label::first_plane + k);
-    draw_light(found.light);
+    std::swap(shadows_[shadow_count_++], search.found);
   }
 }
 
 /// The points that are on no plane.
-void CastShadows::choose_blockers(const Ground& ground, const std::vector<BackgroundPlane>& planes,
-                                  const std::vector<Eigen::Vector3f>& object_points_m) {
+void CastShadows::Search::choose_blockers(const Ground& ground,
+                                          const std::vector<BackgroundPlane>& planes,
+                                          const std::vector<Eigen::Vector3f>& object_points_m) {
   blockers_.clear();
   const std::size_t step = 1 + object_points_m.size() / most_blockers;
   for (std::size_t i = 0; i < object_points_m.size(); i += step) {
@@ -108,7 +115,8 @@ void CastShadows::choose_blockers(const Ground& ground, const std::vector<Backgr
 }
 
 /// Uses the camera that sees most of the plane, because two cameras' colours differ.
-void CastShadows::choose_lit(const Ground& ground, const std::vector<SceneSample>& samples) {
+void CastShadows::Search::choose_lit(const Ground& ground,
+                                     const std::vector<SceneSample>& samples) {
   const auto is_on = [&](const SceneSample& sample) {
     return std::abs(ground.plane.height_m(sample.point_m)) <= 2 * noise.at(sample.point_m.z()) &&
            ground.coordinates(sample.point_m).cwiseAbs().maxCoeff() < cell_m * grid_cells / 2;
@@ -132,6 +140,14 @@ void CastShadows::choose_lit(const Ground& ground, const std::vector<SceneSample
   }
 }
 
+bool CastShadows::Search::find(const ByDirection& slopes_u, const ByDirection& slopes_v) {
+  if (blockers_.size() < fewest_blockers || lit_.size() < fewest_lit) return false;
+  find_hidden(slopes_u, slopes_v);
+  if (!fit()) return false;
+  draw_light();
+  return true;
+}
+
 template <class Visit>
 void CastShadows::for_each_direction(const std::uint64_t* bits, const Visit& visit) {
   for (std::size_t word = 0; word < words; ++word) {
@@ -142,13 +158,13 @@ void CastShadows::for_each_direction(const std::uint64_t* bits, const Visit& vis
 
 /// A blocker is as large as a few cells: it darkens the cell that its shadow falls on and those
 /// around it.
-void CastShadows::find_hidden() {
+void CastShadows::Search::find_hidden(const ByDirection& slopes_u, const ByDirection& slopes_v) {
   constexpr int rim = 2;
   constexpr int width = grid_cells + 2 * rim;
   constexpr float last = width - 1;
   struck_.resize(words * width, width, 0);
-  const ByDirection along_u = slopes_u_ / cell_m;
-  const ByDirection along_v = slopes_v_ / cell_m;
+  const ByDirection along_u = slopes_u / cell_m;
+  const ByDirection along_v = slopes_v / cell_m;
   for (const Blocker& blocker : blockers_) {
     // Rounds: adds half a cell and truncates.
     const Eigen::Vector2f at = to_cells(blocker.place) + Eigen::Vector2f::Constant(rim + 0.5F);
@@ -175,8 +191,7 @@ void CastShadows::find_hidden() {
   }
 }
 
-bool CastShadows::fit() {
-  find_hidden();
+bool CastShadows::Search::fit() {
   fit_.begin(directions);
   for (const Lit& lit : lit_) {
     const Rect cell = cell_of(lit.place);
@@ -192,7 +207,8 @@ bool CastShadows::fit() {
 }
 
 /// Adds up the hidden light, cell by cell.
-void CastShadows::draw_light(Image<Eigen::Array3f>& light) {
+void CastShadows::Search::draw_light() {
+  Image<Eigen::Array3f>& light = found.light;
   std::array<Eigen::Array4f, directions> shares;
   std::array<std::uint64_t, words> has_share{};
   for (std::size_t d = 0; d < directions; ++d) {

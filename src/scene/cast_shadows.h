@@ -54,7 +54,7 @@ class CastShadows {
   explicit CastShadows(const Intrinsics& color);
 
   /// Finds the shadows. samples, object_points_m: in the colour camera's frame. Cost: one to three
-  /// milliseconds.
+  /// milliseconds; planes are searched at the same time.
   void find(const std::vector<BackgroundPlane>& planes, const std::vector<SceneSample>& samples,
             const std::vector<Eigen::Vector3f>& object_points_m);
   void clear() { shadow_count_ = 0; }
@@ -85,14 +85,35 @@ class CastShadows {
     Eigen::Vector2f place;
     Eigen::Array3f levels;
   };
-  void choose_blockers(const Ground& ground, const std::vector<BackgroundPlane>& planes,
-                       const std::vector<Eigen::Vector3f>& object_points_m);
-  void choose_lit(const Ground& ground, const std::vector<SceneSample>& samples);
-  void find_hidden();
-  bool fit();
+  /// The search for one plane's shadow.
+  class Search {
+   public:
+    void choose_blockers(const Ground& ground, const std::vector<BackgroundPlane>& planes,
+                         const std::vector<Eigen::Vector3f>& object_points_m);
+    void choose_lit(const Ground& ground, const std::vector<SceneSample>& samples);
+    /// Finds the light that is left, with what was chosen; returns whether there is a shadow.
+    bool find(const ByDirection& slopes_u, const ByDirection& slopes_v);
+
+    bool is_found = false;
+    Shadow found;
+
+   private:
+    void find_hidden(const ByDirection& slopes_u, const ByDirection& slopes_v);
+    bool fit();
+    void draw_light();
+
+    std::vector<Blocker> blockers_;
+    std::vector<Lit> lit_;
+    std::vector<std::uint32_t> on_plane_;  ///< samples
+    /// Words of cells. The first has a rim of one cell around the grid, plus one cell for
+    /// everything beyond.
+    Image<std::uint64_t> struck_, struck_in_column_, hidden_;
+    std::vector<std::uint8_t> hidden_from_;
+    ShadowFit fit_;
+    Image<Eigen::Array4f> dark_;
+  };
   template <class Visit>
   static void for_each_direction(const std::uint64_t* bits, const Visit& visit);
-  void draw_light(Image<Eigen::Array3f>& light);
   static Eigen::Array3f dark_at(const Shadow& cast, const Eigen::Vector2f& ray);
   void find_nodes(const Rect& region);
   void shade_row(int y, const Image<float>& depth_m, Surfaces& surfaces) const;
@@ -100,16 +121,8 @@ class CastShadows {
   Lens lens_;
   RayGrid rays_;
   ByDirection slopes_u_, slopes_v_;  ///< metres along the plane per metre of height
-  std::vector<Blocker> blockers_;
-  std::vector<Lit> lit_;
-  std::vector<std::uint32_t> on_plane_;  ///< samples
-  /// Words of cells. The first has a rim of one cell around the grid, plus one cell for everything
-  /// beyond.
-  Image<std::uint64_t> struck_, struck_in_column_, hidden_;
-  std::vector<std::uint8_t> hidden_from_;
-  ShadowFit fit_;
-  Image<Eigen::Array4f> dark_;
-  std::vector<Shadow> shadows_;  ///< the first shadow_count_ are this frame's
+  std::vector<Search> searches_;     ///< by plane
+  std::vector<Shadow> shadows_;      ///< the first shadow_count_ are this frame's
   std::size_t shadow_count_ = 0;
   Rect nodes_box_;  ///< the nodes around the region, counted from the picture's corner
   /// By shadow: dark_at, and the height above the plane per metre of z.

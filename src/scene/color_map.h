@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <vector>
 
 #include "diminish/color_map.h"
@@ -24,14 +25,28 @@ class ColorMapFit {
   ColorMap fit(const std::vector<ColorPair>& pairs, ColorMapModel model, const Rect& bounds);
 
  private:
+  /// Pairs that are worked on together; those after the last have no weight.
+  static constexpr int lanes = 8;
+  using Lanes = Eigen::Array<float, lanes, 1>;
+  struct Pairs {
+    std::array<Lanes, 3> rgbd, camera;  ///< channels
+    std::array<Lanes, 5> terms;         ///< of the field
+    Lanes residual, weight;
+    int count;
+  };
+  void collect(const std::vector<ColorPair>& pairs);
   void start_with_gains(const std::vector<ColorPair>& pairs);
-  void weigh(const std::vector<ColorPair>& pairs);
-  void fit_channels(const std::vector<ColorPair>& pairs, ColorMapModel model);
-  void fit_field(const std::vector<ColorPair>& pairs);
+  void weigh();
+  void fit_channels(ColorMapModel model);
+  void fit_field();
+  Lanes field_of(const Pairs& pairs) const;
+  /// By matrix and offset.
+  Lanes flat(const Pairs& pairs, int channel) const;
 
   ColorMap map_;
   Eigen::Vector3f gains_;
-  std::vector<float> residuals_, weights_, values_;
+  std::vector<Pairs> pairs_;
+  std::vector<float> values_;
 };
 
 }  // namespace diminish
