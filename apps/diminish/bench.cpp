@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <stop_token>
 #include <string>
@@ -16,6 +17,7 @@
 #include "diminish/diminish.h"
 #include "diminish/runner.h"
 #include "frame_trace.h"
+#include "looped_recording.h"
 #include "option_flags.h"
 #include "preloaded_source.h"
 #include "sink/distribution.h"
@@ -36,7 +38,8 @@ struct Figures {
   std::size_t frames = 0, left_out = 0, measured = 0;
   std::array<Distribution, time_row_count> times_ms;  ///< by row of the table of times
   double throughput_fps = 0;
-  std::string device;                                         ///< the GPU; empty: the CPU
+  double reading_fps = 0, run_fps = 0;  ///< from files: without the pipeline, and with it
+  std::string device;                   ///< the GPU; empty: the CPU
   std::vector<std::pair<std::string, double>> gpu_passes_ms;  ///< medians
   double frame_ms = 0, cpu_frame_ms = 0;                      ///< medians, by turns
   Distribution allocated_bytes, allocations;                  ///< per frame
@@ -57,6 +60,9 @@ struct BenchCommand {
   int execute() const;
 
  private:
+  /// Frames that let each thread's memory grow to its size.
+  std::size_t warm_up() const { return static_cast<std::size_t>(2 * threads); }
+
   std::vector<FrameSet> load(const Recording& input, Figures& figures) const;
   void measure_latency(const Recording& input, const std::vector<FrameSet>& frames,
                        Figures& figures) const;
@@ -64,6 +70,8 @@ struct BenchCommand {
                        Figures& figures) const;
   void measure_throughput(const Recording& input, std::vector<FrameSet> frames,
                           Figures& figures) const;
+  double run_fps(const Recording& input, FrameSource& source) const;
+  double reading_fps(FrameSource& source) const;
 };
 
 Allocations allocations_until_now() {
@@ -177,23 +185,51 @@ void BenchCommand::measure_backend(const Recording& input, const std::vector<Fra
 void BenchCommand::measure_throughput(const Recording& input, std::vector<FrameSet> loaded,
                                       Figures& figures) const {
   const double frame_s = figures.times_ms[whole_frame_row].average / 1000;
-  const auto count = std::max<std::size_t>(
-      20, static_cast<std::size_t>(seconds / std::max(frame_s, 1e-6) * threads));
+  const auto count =
+      warm_up() + std::max<std::size_t>(
+                      20, static_cast<std::size_t>(seconds / std::max(frame_s, 1e-6) * threads));
+  PreloadedSource preloaded(std::move(loaded), count);
+  figures.throughput_fps = run_fps(input, preloaded);
+  LoopedRecording to_read(input, options, count);
+  figures.reading_fps = reading_fps(to_read);
+  LoopedRecording to_run(input, options, count);
+  figures.run_fps = run_fps(input, to_run);
+}
+
+/// Frames a second of a run that writes nothing.
+double BenchCommand::run_fps(const Recording& input, FrameSource& source) const {
   NoSink sink;
   RunnerOptions runner;
   runner.threads = threads;
   runner.reconstructions = false;
   Clock::time_point start;
   std::size_t timed = 0;
-  // The first frames allocate each thread's memory.
-  const std::size_t warm_up = static_cast<std::size_t>(2 * threads);
   runner.progress = [&](std::size_t done) {
-    if (done == warm_up) start = Clock::now();
-    timed = done - std::min(done, warm_up);
+    if (done == warm_up()) start = Clock::now();
+    timed = done - std::min(done, warm_up());
   };
-  PreloadedSource source(std::move(loaded), count + warm_up);
   run(source, input.rig, input.scene, options, sink, runner);
-  figures.throughput_fps = static_cast<double>(timed) / seconds_since(start);
+  return static_cast<double>(timed) / seconds_since(start);
+}
+
+/// Frames a second that as many threads read and decode.
+double BenchCommand::reading_fps(FrameSource& source) const {
+  std::mutex order;
+  std::size_t begun = 0;
+  Clock::time_point start;
+  {
+    std::vector<std::jthread> readers;
+    for (int i = 0; i < threads; ++i) {
+      readers.emplace_back([&] {
+        for (FrameSet frame;; source.read_images(frame)) {
+          const std::lock_guard lock(order);
+          if (!source.begin(frame)) return;
+          if (begun++ == warm_up()) start = Clock::now();
+        }
+      });
+    }
+  }
+  return static_cast<double>(begun - warm_up()) / seconds_since(start);
 }
 
 void print(const Figures& figures, int threads) {
@@ -216,6 +252,8 @@ void print(const Figures& figures, int threads) {
              figures.cost.work_ms, figures.cost.span_ms,
              figures.cost.work_ms / std::max(figures.cost.span_ms, 1e-6));
   fmt::print("Pipelined, {} threads: {:.1f} frames/s\n", threads, figures.throughput_fps);
+  fmt::print("From files: {:.1f} frames/s; reading alone {:.1f} frames/s, ratio {:.2f}\n",
+             figures.run_fps, figures.reading_fps, figures.run_fps / figures.reading_fps);
   if (figures.frame_ms > 0) {
     fmt::print("Frame on {}: p50 {:.2f} ms; with the CPU backend {:.2f} ms, ratio {:.2f}\n",
                figures.device.empty() ? "the CPU" : figures.device, figures.frame_ms,
@@ -262,6 +300,8 @@ void write_json(const BenchCommand& command, const Figures& figures) {
   json["latency_ms"] = to_json(total);
   json["latency_fps"] = 1000 / total.average;
   json["throughput_fps"] = figures.throughput_fps;
+  json["from_files_fps"] = figures.run_fps;
+  json["reading_fps"] = figures.reading_fps;
   json["work_ms"] = figures.cost.work_ms;
   json["span_ms"] = figures.cost.span_ms;
   for (std::size_t row = 0; row < time_row_count; ++row) {
@@ -318,7 +358,7 @@ void add_bench(CLI::App& program, int& exit_code) {
   sub->add_option("--frames", command->frames, "Use only the first N frames; default: all")
       ->check(CLI::Range(1, 1000000))
       ->type_name("N");
-  sub->add_option("--seconds", command->seconds, "Duration of each of the two measurements")
+  sub->add_option("--seconds", command->seconds, "Duration of each measurement")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 3600.0))
       ->type_name("S");

@@ -21,6 +21,14 @@ class DIMINISH_EXPORT FrameSource {
   /// a fault of its frame, not an error.
   virtual bool next(FrameSet& frame) = 0;
 
+  // The same in two steps, to read several frames at a time.
+
+  /// The part that needs order. False at the end.
+  virtual bool begin(FrameSet& frame) { return next(frame); }
+  /// The part that needs no order, such as decoding pictures. May be called for several frames at
+  /// the same time from several threads.
+  virtual void read_images(FrameSet&) {}
+
   /// The number of frames if known in advance, else 0.
   virtual std::size_t frame_count() const { return 0; }
 

@@ -22,8 +22,6 @@ namespace {
 
 constexpr std::size_t most_waiting = 8;
 constexpr int jpeg_quality = 95;
-/// Half the size of the raw image, in a third of the time of level 6.
-constexpr int png_compression = 1;
 
 void make_folder(const std::filesystem::path& folder) {
   std::error_code error;
@@ -198,9 +196,9 @@ void RecordingWriter::Implementation::write_image(Stream& stream, const InputIma
   constexpr bool is_color = std::is_same_v<Pixel, Bgr>;
   const std::string name =
       fmt::format("{}/{:06}.{}", stream.folder, stream.images, is_color ? "jpg" : "png");
-  const std::vector<int> parameters =
-      is_color ? std::vector<int>{cv::IMWRITE_JPEG_QUALITY, jpeg_quality}
-               : std::vector<int>{cv::IMWRITE_PNG_COMPRESSION, png_compression};
+  const std::vector<int> parameters = is_color
+                                          ? std::vector<int>{cv::IMWRITE_JPEG_QUALITY, jpeg_quality}
+                                          : std::vector<int>{};  // without a level, as in write_png
   if (!cv::imencode(is_color ? ".jpg" : ".png", as_mat(image), bytes_, parameters)) {
     throw Error(Error::io, (folder_ / name).string() + ": cannot be encoded");
   }

@@ -61,7 +61,7 @@ std::size_t run(FrameSource& source, const Rig& rig, const Scene& scene, const O
     }
     bool is_there = false;
     slot->error = nullptr;
-    attempt(slot->error, [&] { is_there = source.next(slot->frame); });
+    attempt(slot->error, [&] { is_there = source.begin(slot->frame); });
     if (is_there || slot->error) return slot;
     control.stop();
     return nullptr;
@@ -69,6 +69,7 @@ std::size_t run(FrameSource& source, const Rig& rig, const Scene& scene, const O
   const auto process = [&](Slot* slot) {
     if (slot->error) return slot;
     attempt(slot->error, [&] {
+      source.read_images(slot->frame);
       slot->pipeline.process(slot->frame, slot->result);
       if (!slot->result.report.skipped) sink.write_images(slot->frame, slot->result);
     });

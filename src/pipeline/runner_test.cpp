@@ -1,7 +1,11 @@
 #include "diminish/runner.h"
 
 #include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
 
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
 #include <mutex>
 #include <numeric>
 #include <set>
@@ -97,6 +101,17 @@ TEST_F(Runner, FramesBeforeAnErrorAreDelivered) {
     std::unique_ptr<FrameSource> whole_;
     int frames_ = 0;
   };
+  class TornImage : public FrameSource {
+   public:
+    explicit TornImage(std::unique_ptr<FrameSource> whole) : whole_(std::move(whole)) {}
+    bool next(FrameSet& frame) override { return whole_->next(frame); }
+    void read_images(FrameSet& frame) override {
+      if (frame.index == 1) throw Error("color: no memory");
+    }
+
+   private:
+    std::unique_ptr<FrameSource> whole_;
+  };
   for (const int threads : {1, 2, 3}) {
     FullDisk disk;
     EXPECT_THROW(run_with(disk, {.threads = threads}), Error);
@@ -105,6 +120,56 @@ TEST_F(Runner, FramesBeforeAnErrorAreDelivered) {
     TornStream torn(open_recording(recording, {}));
     EXPECT_THROW(run(torn, recording.rig, recording.scene, {}, sink, {.threads = threads}), Error);
     EXPECT_EQ(sink.names, (std::vector<std::string>{"000000", "000001"}));
+    MemorySink first_only;
+    TornImage image(open_recording(recording, {}));
+    EXPECT_THROW(run(image, recording.rig, recording.scene, {}, first_only, {.threads = threads}),
+                 Error);
+    EXPECT_EQ(first_only.names, std::vector<std::string>{"000000"});
+  }
+}
+
+TEST_F(Runner, ReadsSeveralFramesAtATimeButNoMoreThanThreads) {
+  // Each frame waits in `read_images` until as many are there as threads.
+  class Watched : public FrameSource {
+   public:
+    Watched(std::unique_ptr<FrameSource> whole, int threads)
+        : whole_(std::move(whole)), threads_(threads) {}
+    bool next(FrameSet& frame) override { return whole_->next(frame); }
+    bool begin(FrameSet& frame) override {
+      if (!whole_->begin(frame)) return false;
+      ++begun;
+      most_begun = std::max(most_begun, begun - done);
+      return true;
+    }
+    void read_images(FrameSet& frame) override {
+      whole_->read_images(frame);
+      std::unique_lock lock(mutex_);
+      ++reading_;
+      changed_.notify_all();
+      together = together && changed_.wait_for(lock, std::chrono::seconds(60),
+                                               [&] { return reading_ >= threads_; });
+    }
+
+    int begun = 0, done = 0, most_begun = 0;
+    bool together = true;
+
+   private:
+    std::unique_ptr<FrameSource> whole_;
+    int threads_;
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    int reading_ = 0;
+  };
+  const oneapi::tbb::global_control as_many_threads(
+      oneapi::tbb::global_control::max_allowed_parallelism, 3);
+  for (const int threads : {1, 2, 3}) {
+    Watched source(open_recording(recording, {}), threads);
+    MemorySink sink;
+    RunnerOptions options{.threads = threads};
+    options.progress = [&](std::size_t) { ++source.done; };
+    EXPECT_EQ(run(source, recording.rig, recording.scene, {}, sink, options), 3U);
+    EXPECT_TRUE(source.together);
+    EXPECT_LE(source.most_begun, threads);
   }
 }
 

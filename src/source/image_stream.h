@@ -25,8 +25,11 @@ class ImageStream {
 
   const std::vector<StreamEntry>& entries() const { return entries_; }
 
-  /// Fast if `index` never goes down between calls. Throws Error with the file's name as in the
-  /// list and what was expected. `image` is empty then.
+  /// Whether an image is one of a video's. Those are read one after another, fast if `index` never
+  /// goes down between calls. All others may be read by several threads at the same time.
+  bool needs_order(std::size_t index) const { return entries_[index].frame.has_value(); }
+
+  /// Throws Error with the file's name as in the list and what was expected. `image` is empty then.
   void read(std::size_t index, Image<Pixel>& image);
 
  private:

@@ -1,9 +1,11 @@
 #include <fmt/format.h>
+#include <oneapi/tbb/task_arena.h>
 
 #include <optional>
 #include <system_error>
 #include <unordered_map>
 
+#include "core/tasks.h"
 #include "diminish/error.h"
 #include "diminish/frame_source.h"
 #include "diminish/validate.h"
@@ -59,69 +61,96 @@ class RecordingSource final : public FrameSource {
   }
 
   bool next(FrameSet& frame) override {
+    if (!begin(frame)) return false;
+    read_images(frame);
+    return true;
+  }
+
+  bool begin(FrameSet& frame) override {
     if (next_ == frame_count()) return false;
     const StreamEntry& entry = color_.entries()[next_];
     frame.name = entry_name(entry, next_);
     frame.index = next_;
     frame.stamp_s = entry.stamp_s;
-    frame.faults.clear();
-    read(color_, next_, frame.color.own(), frame.faults);
     frame.rgbd.resize(rgbd_.size());
-    std::vector<std::string> rgbd_names;
-    for (std::size_t i = 0; i < rgbd_.size(); ++i) rgbd_names.push_back(read_rgbd(i, frame));
-    frame.masks.resize(masks_.size());
-    for (std::size_t i = 0; i < masks_.size(); ++i) {
-      read_given_mask(masks_[i], rig_, rgbd_names, frame, frame.masks[i]);
-    }
+    frame.faults.assign(1 + 2 * rgbd_.size(), "");
+    read_sensors(Part::videos, frame);
     ++next_;
     return true;
   }
 
- private:
-  template <class Pixel>
-  static bool read(ImageStream<Pixel>& stream, std::size_t index, Image<Pixel>& image,
-                   std::vector<std::string>& faults) {
-    try {
-      stream.read(index, image);
-      return true;
-    } catch (const Error& error) {
-      faults.push_back(error.what());
-      return false;
+  void read_images(FrameSet& frame) override {
+    read_sensors(Part::files, frame);
+    std::vector<std::string> rgbd_names;
+    for (std::size_t i = 0; i < rgbd_.size(); ++i) rgbd_names.push_back(describe_rgbd(i, frame));
+    std::erase(frame.faults, "");
+    frame.masks.resize(masks_.size());
+    for (std::size_t i = 0; i < masks_.size(); ++i) {
+      read_given_mask(masks_[i], rig_, rgbd_names, frame, frame.masks[i]);
     }
   }
 
-  /// Returns the name of the camera's colour image; empty if it has none.
-  std::string read_rgbd(std::size_t camera, FrameSet& frame) {
+ private:
+  enum class Part { videos, files };
+
+  template <class Pixel>
+  std::optional<std::size_t> partner(const ImageStream<Pixel>& stream,
+                                     const FrameSet& frame) const {
+    return nearest_entry(stream.entries(), frame.stamp_s, tolerance_s_);
+  }
+
+  /// Reads the images of all sensors that are frames of videos, or files. The faults of sensor i
+  /// become `faults[i]`: 0 is the colour camera, then come each RGB-D camera's two.
+  void read_sensors(Part part, FrameSet& frame) {
+    const auto read_sensor = [&](std::size_t sensor) {
+      std::string& fault = frame.faults[sensor];
+      if (sensor == 0) return read(color_, frame.index, part, frame.color.own(), fault);
+      const std::size_t camera = (sensor - 1) / 2;
+      RgbdStreams& streams = rgbd_[camera];
+      RgbdFrame& rgbd = frame.rgbd[camera];
+      if (sensor % 2 == 1) {
+        read(streams.color, partner(streams.color, frame), part, rgbd.color.own(), fault);
+      } else {
+        read(streams.depth, partner(streams.depth, frame), part, rgbd.depth.own(), fault);
+      }
+    };
+    // A thread that waits for an image must not begin something else.
+    oneapi::tbb::this_task_arena::isolate([&] { for_tasks(frame.faults.size(), read_sensor); });
+  }
+
+  template <class Pixel>
+  static void read(ImageStream<Pixel>& stream, std::optional<std::size_t> index, Part part,
+                   Image<Pixel>& image, std::string& fault) {
+    if (!index) return image.resize(0, 0);
+    if (stream.needs_order(*index) != (part == Part::videos)) return;
+    try {
+      stream.read(*index, image);
+    } catch (const Error& error) {
+      fault = error.what();
+    }
+  }
+
+  /// When an RGB-D camera's images were taken, and what is missing. Returns the name of its colour
+  /// image; empty if it has none.
+  std::string describe_rgbd(std::size_t camera, FrameSet& frame) const {
+    const RgbdStreams& streams = rgbd_[camera];
     RgbdFrame& rgbd = frame.rgbd[camera];
-    RgbdStreams& streams = rgbd_[camera];
-    rgbd.missing.clear();
-    const auto color =
-        read_partner(camera, "color", streams.color, frame, rgbd.color.own(), rgbd.color_stamp_s);
-    read_partner(camera, "depth", streams.depth, frame, rgbd.depth.own(), rgbd.depth_stamp_s);
+    const std::string* faults = &frame.faults[1 + 2 * camera];
+    const auto color = partner(streams.color, frame);
+    const auto depth = partner(streams.depth, frame);
+    rgbd.color_stamp_s = color ? streams.color.entries()[*color].stamp_s : 0;
+    rgbd.depth_stamp_s = depth ? streams.depth.entries()[*depth].stamp_s : 0;
+    rgbd.missing = problem_of(camera, "color", color, faults[0]);
+    if (rgbd.missing.empty()) rgbd.missing = problem_of(camera, "depth", depth, faults[1]);
     return color ? entry_name(streams.color.entries()[*color], *color) : "";
   }
 
-  /// Reads the image of an RGB-D camera's sensor that goes with the frame; returns which one it is.
-  template <class Pixel>
-  std::optional<std::size_t> read_partner(std::size_t camera, const char* sensor,
-                                          ImageStream<Pixel>& stream, FrameSet& frame,
-                                          Image<Pixel>& image, double& stamp_s) {
-    std::string& missing = frame.rgbd[camera].missing;
-    const auto partner = nearest_entry(stream.entries(), frame.stamp_s, tolerance_s_);
+  std::string problem_of(std::size_t camera, const char* sensor, std::optional<std::size_t> image,
+                         const std::string& fault) const {
     const std::string& name = rig_.rgbd[camera].name;
-    std::string reason;
-    if (!partner) {
-      image.resize(0, 0);
-      stamp_s = 0;
-      reason = fmt::format("{}: no {} image within {:.2g} s", name, sensor, tolerance_s_);
-    } else {
-      stamp_s = stream.entries()[*partner].stamp_s;
-      if (!read(stream, *partner, image, frame.faults)) {
-        reason = fmt::format("{}: its {} image cannot be used", name, sensor);
-      }
-    }
-    if (missing.empty()) missing = reason;
-    return partner;
+    if (!image) return fmt::format("{}: no {} image within {:.2g} s", name, sensor, tolerance_s_);
+    if (!fault.empty()) return fmt::format("{}: its {} image cannot be used", name, sensor);
+    return {};
   }
 
   Rig rig_;

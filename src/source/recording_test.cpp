@@ -1,10 +1,12 @@
 #include <gmock/gmock.h>
 
 #include <opencv2/videoio.hpp>
+#include <thread>
 
 #include "core/mat.h"
 #include "expect_error.h"
 #include "paths.h"
+#include "same_pixels.h"
 #include "source/tiny_recording.h"
 
 namespace diminish {
@@ -239,6 +241,38 @@ TEST(Recording, FramesOfVideos) {
   // More lines than frames.
   recording.write("color.txt", "1 a.avi\n2 a.avi\n3 a.avi\n4 a.avi\n5 a.avi\n6 a.avi\n");
   EXPECT_THAT(recording.read()[5].faults, ElementsAre("a.avi frame 5: cannot be decoded"));
+}
+
+TEST(Recording, SeveralFramesAreReadAtATimeAsOneAfterAnother) {
+  const TinyRecording recording;
+  recording.write("rgbd0_depth.txt", "1000.001 " + testing::source_test_data() + "/depth.mkv\n");
+  recording.write("rgbd0_color/1.png", "no picture");
+  recording.write("color/2.png", black(40, 31, CV_8UC3));
+  const auto expected = recording.read();
+  ASSERT_EQ(expected.size(), 3U);
+
+  const auto source = recording.open();
+  std::vector<FrameSet> frames(3);
+  for (FrameSet& frame : frames) ASSERT_TRUE(source->begin(frame));
+  FrameSet none;
+  EXPECT_FALSE(source->begin(none));
+  {
+    std::vector<std::jthread> readers;
+    for (FrameSet& frame : frames) readers.emplace_back([&] { source->read_images(frame); });
+  }
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    EXPECT_EQ(frames[i].name, expected[i].name);
+    EXPECT_EQ(frames[i].faults, expected[i].faults);
+    EXPECT_TRUE(testing::same_pixels(frames[i].color, expected[i].color));
+    const RgbdFrame& rgbd = frames[i].rgbd[0];
+    const RgbdFrame& expected_rgbd = expected[i].rgbd[0];
+    EXPECT_EQ(rgbd.missing, expected_rgbd.missing);
+    EXPECT_EQ(rgbd.depth_stamp_s, expected_rgbd.depth_stamp_s);
+    EXPECT_TRUE(testing::same_pixels(rgbd.color, expected_rgbd.color));
+    EXPECT_TRUE(testing::same_pixels(rgbd.depth, expected_rgbd.depth));
+  }
+  EXPECT_THAT(frames[1].faults, ElementsAre("rgbd0_color/1.png: cannot be decoded"));
+  EXPECT_EQ(frames[2].rgbd[0].depth(0, 0), 2000) << "the depth video's third frame";
 }
 
 TEST(Recording, VideosThatCannotBeDepthStopAtTheStart) {

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "diminish/frame_source.h"
+
+namespace diminish {
+
+/// A recording's frames again and again, `count` in all, read from its files each time.
+class LoopedRecording : public FrameSource {
+ public:
+  LoopedRecording(const Recording& recording, const Options& options, std::size_t count)
+      : recording_(recording), options_(options), count_(count) {}
+
+  bool next(FrameSet& frame) override {
+    if (!begin(frame)) return false;
+    read_images(frame);
+    return true;
+  }
+
+  bool begin(FrameSet& frame) override {
+    if (done_ == count_) return false;
+    if (laps_.empty() || !laps_.back()->begin(frame)) {
+      laps_.push_back(open_recording(recording_, options_));
+      if (!laps_.back()->begin(frame)) return false;
+    }
+    ++done_;
+    return true;
+  }
+
+  /// All laps are alike, and a frame in progress outlives none of them.
+  void read_images(FrameSet& frame) override { laps_.front()->read_images(frame); }
+
+ private:
+  const Recording& recording_;
+  const Options& options_;
+  std::size_t count_;
+  std::size_t done_ = 0;
+  std::vector<std::unique_ptr<FrameSource>> laps_;
+};
+
+}  // namespace diminish
