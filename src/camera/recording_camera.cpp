@@ -13,9 +13,6 @@
 namespace diminish {
 namespace {
 
-/// Recordings up to this size are decoded once when they are looped.
-constexpr double max_kept_bytes = 2e9;
-
 /// When a recording's images are due.
 struct Timeline {
   double epoch_s = 0;  ///< of the recording's first colour image, on the monotonic clock
@@ -42,11 +39,7 @@ class Replay {
   Replay(const std::filesystem::path& list, const Intrinsics& sensor, const Timeline& timeline,
          bool loop, EmptyList empty = EmptyList::is_error)
       : stream_(list, sensor, empty), timeline_(timeline), loop_(loop) {
-    const auto count = static_cast<double>(stream_.entries().size());
     period_s_ = median_period_s(stream_.entries()) / timeline.rate;
-    if (!loop || count * sensor.width * sensor.height * sizeof(Pixel) > max_kept_bytes) return;
-    kept_.resize(stream_.entries().size());
-    for (std::size_t i = 0; i < kept_.size(); ++i) read(i, kept_[i]);
   }
 
   bool is_over() const {
@@ -57,43 +50,42 @@ class Replay {
     return timeline_.due_s(stream_.entries()[next_ % count].stamp_s, next_ / count);
   }
 
-  /// Images that were due long ago are left out, as a camera's driver does.
+  /// Images that were due long ago are left out, as a camera's driver does, unless they are decoded
+  /// already.
   std::size_t skip_late(double now_s) {
     const std::size_t before = next_;
-    while (!is_over() && due_s() + 2 * period_s_ < now_s) ++next_;
+    while (!is_over() && prepared_ != next_ && due_s() + 2 * period_s_ < now_s) ++next_;
     return next_ - before;
   }
 
-  void take(CameraImage& image) {
-    const std::size_t index = next_ % stream_.entries().size();
-    image.stamp_s = due_s();
-    ++next_;
-    Image<Pixel>& target = pixels(image, Pixel{});
-    if (kept_.empty()) {
-      image.fault = read(index, target);
-    } else {
-      target = kept_[index];
-      image.fault = target.empty() ? describe(stream_.entries()[index]) + ": cannot be used" : "";
+  /// Decodes the next image ahead of its time.
+  void prepare() {
+    if (is_over() || prepared_ == next_) return;
+    prepared_ = next_;
+    fault_.clear();
+    try {
+      stream_.read(next_ % stream_.entries().size(), image_);
+    } catch (const Error& error) {
+      fault_ = error.what();
     }
+  }
+
+  void take(CameraImage& image) {
+    image.stamp_s = due_s();
+    std::swap(pixels(image, Pixel{}), image_);
+    image.fault = fault_;
+    ++next_;
   }
 
  private:
-  std::string read(std::size_t index, Image<Pixel>& image) {
-    try {
-      stream_.read(index, image);
-      return {};
-    } catch (const Error& error) {
-      image.resize(0, 0);
-      return error.what();
-    }
-  }
-
   ImageStream<Pixel> stream_;
   Timeline timeline_;
   bool loop_;
   double period_s_ = 0;
   std::size_t next_ = 0;
-  std::vector<Image<Pixel>> kept_;
+  std::optional<std::size_t> prepared_;  ///< which image `image_` is
+  Image<Pixel> image_;
+  std::string fault_;
 };
 
 /// A recording's camera in real time, as if live.
@@ -128,8 +120,10 @@ class RecordingCamera : public CameraSource {
     const bool has_color = !color_->is_over();
     const bool has_depth = depth_ && !depth_->is_over();
     if (!has_color && !has_depth) return Status::end;
+    color_->prepare();
+    if (depth_) depth_->prepare();
     const bool is_depth = has_depth && (!has_color || depth_->due_s() < color_->due_s());
-    const double wait_s = (is_depth ? depth_->due_s() : color_->due_s()) - now_s;
+    const double wait_s = (is_depth ? depth_->due_s() : color_->due_s()) - monotonic_now_s();
     const double most_s = std::chrono::duration<double>(timeout).count();
     if (wait_s > 0)
       std::this_thread::sleep_for(std::chrono::duration<double>(std::min(wait_s, most_s)));

@@ -75,6 +75,16 @@ TEST_F(RecordingCamera, ALoopGoesOnWithoutAGapInTime) {
   }
 }
 
+TEST_F(RecordingCamera, ALoopReadsAnImageWhenItsTimeComes) {
+  const auto camera = open("color", "?loop&rate=2");
+  for (const int value : {100, 200}) {
+    recording_.write("color/2.png", cv::Mat(30, 40, CV_8UC3, cv::Scalar(value, 50, 200)));
+    const std::vector<CameraImage> lap = read_all(*camera, 3);
+    ASSERT_EQ(lap.size(), 3U);
+    EXPECT_EQ(lap[2].color(0, 0).b, value);
+  }
+}
+
 TEST_F(RecordingCamera, WhatIsLongOverdueIsLeftOutAndCounted) {
   const auto camera = open("color", "?loop&rate=100");
   std::this_thread::sleep_for(milliseconds(100));
