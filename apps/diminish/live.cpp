@@ -21,6 +21,7 @@ struct LiveCommand {
 void print_line(const LiveStatus& status) {
   fmt::print("{:>7} frames  {:>5.1f} frames/s  {:>6.1f} ms per frame  latency {:.0f} ms",
              status.frames, status.frames_per_second, status.frame_ms, status.latency_ms.p50);
+  if (status.quality_level > 0) fmt::print("  quality level {}", status.quality_level);
   for (const std::string& problem : status.problems) fmt::print("  [{}]", problem);
   fmt::print("\n");
   std::fflush(stdout);

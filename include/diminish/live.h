@@ -49,7 +49,8 @@ struct CameraStatus {
 
 /// A result of a live session, with its input.
 struct LiveFrame {
-  FrameSet input;
+  FrameSet input;                                   ///< views
+  std::vector<std::shared_ptr<const void>> pixels;  ///< keeps what `input` views
   DiminishedFrame result;  ///< without its reconstruction (Pipeline::want_reconstruction)
   std::size_t number = 0;  ///< counts from 1
   double latency_ms = 0;   ///< from the colour image's timestamp to here

@@ -31,7 +31,7 @@ constexpr Code outside = open | label_bits;
 class SurfaceInpainting : public Inpainter {
  public:
   Declaration declaration() const override {
-    return {.uses_surfaces = true, .rule = Declaration::Rule::by_surface, .simpler = "harmonic"};
+    return {.uses_surfaces = true, .rule = Declaration::Rule::by_surface};
   }
 
   bool inpaint(const Holes& holes, const Options&, Image<Bgr>& picture) override {

@@ -7,32 +7,35 @@
 #include <string>
 
 #include "diminish/camera_source.h"
+#include "live/pool.h"
 
 namespace diminish {
 
-/// The last few images of one sensor, in the order of their timestamps. Reuses memory: a new image
-/// is swapped with the one it replaces.
+/// The last few images of one sensor, in the order of their timestamps. Whoever finds one may keep
+/// it; when nobody does, its memory is used for a later image.
 template <class Pixel>
 class ImageHistory {
  public:
   static constexpr std::size_t capacity = 6;
 
   struct Entry {
-    Image<Pixel> image;
+    std::shared_ptr<Image<Pixel>> image;
     double stamp_s = 0;
     double arrival_s = 0;
   };
 
   std::size_t size() const { return size_; }
   /// 0: the newest.
-  Entry& newest(std::size_t age = 0) { return entries_[(end_ + capacity - 1 - age) % capacity]; }
   const Entry& newest(std::size_t age = 0) const {
     return entries_[(end_ + capacity - 1 - age) % capacity];
   }
 
+  /// Takes the pixels out of `image`, which gets an earlier image's memory.
   void push(Image<Pixel>& image, double stamp_s, double arrival_s) {
     Entry& entry = entries_[end_];
-    std::swap(entry.image, image);
+    entry.image.reset();
+    entry.image = pool_.take();
+    std::swap(*entry.image, image);
     entry.stamp_s = stamp_s;
     entry.arrival_s = arrival_s;
     end_ = (end_ + 1) % capacity;
@@ -54,6 +57,7 @@ class ImageHistory {
   }
 
  private:
+  Pool<Image<Pixel>> pool_;
   std::array<Entry, capacity> entries_;
   std::size_t end_ = 0;
   std::size_t size_ = 0;

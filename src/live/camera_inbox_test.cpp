@@ -31,7 +31,7 @@ class Inbox : public ::testing::Test {
   int nearest_color(double stamp_s, double tolerance_s) {
     return inbox_.with_images([&](const auto& color, const auto&) {
       const auto* entry = color.nearest(stamp_s, tolerance_s);
-      return entry ? static_cast<int>(entry->image(0, 0).b) : -1;
+      return entry ? static_cast<int>((*entry->image)(0, 0).b) : -1;
     });
   }
 

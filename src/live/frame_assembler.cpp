@@ -89,7 +89,7 @@ std::optional<double> FrameAssembler::next_deadline_s(const Settings& settings) 
 
 std::optional<std::size_t> FrameAssembler::assemble(
     const Settings& settings, double now_s, const std::function<bool(std::size_t)>& is_expected,
-    FrameSet& frame) {
+    FrameSet& frame, Pixels& pixels) {
   const double tolerance_s = sync_tolerance_s(settings);
   const double wait_s = sync_wait_s(settings);
   // After a reset of the camera's clock all images count as new.
@@ -102,16 +102,13 @@ std::optional<std::size_t> FrameAssembler::assemble(
   for (std::size_t i = 0; i < count; ++i) {
     const bool waited_long = now_s >= candidates[i].arrival_s + wait_s;
     if (!waited_long && !is_complete(candidates[i].stamp_s, tolerance_s, is_expected)) continue;
-    const bool taken = color_.with_images([&](auto& color, const auto&) {
-      for (std::size_t age = 0; age < color.size(); ++age) {
-        auto& entry = color.newest(age);
-        if (entry.stamp_s != candidates[i].stamp_s) continue;
-        std::swap(frame.color.own(), entry.image);
-        return true;
-      }
-      return false;
+    const auto image = color_.with_images([&](const auto& color, const auto&) {
+      const auto* entry = color.nearest(candidates[i].stamp_s, 0);
+      return entry ? entry->image : nullptr;
     });
-    if (!taken) return std::nullopt;
+    if (!image) return std::nullopt;
+    pixels.assign(1, image);
+    frame.color = ImageView<Bgr>(*image);
     last_stamp_s_ = candidates[i].stamp_s;
     frame.stamp_s = candidates[i].stamp_s;
     frame.index = next_index_++;
@@ -119,24 +116,26 @@ std::optional<std::size_t> FrameAssembler::assemble(
     frame.masks.clear();
     frame.faults.clear();
     frame.rgbd.resize(rgbd_.size());
-    for (std::size_t k = 0; k < rgbd_.size(); ++k) fill_rgbd(k, tolerance_s, frame);
+    for (std::size_t k = 0; k < rgbd_.size(); ++k) fill_rgbd(k, tolerance_s, frame, pixels);
     return count - 1 - i;
   }
   return std::nullopt;
 }
 
-void FrameAssembler::fill_rgbd(std::size_t camera, double tolerance_s, FrameSet& frame) {
+void FrameAssembler::fill_rgbd(std::size_t camera, double tolerance_s, FrameSet& frame,
+                               Pixels& pixels) {
   RgbdFrame& rgbd = frame.rgbd[camera];
   rgbd_[camera]->with_images([&](const auto& color, const auto& depth) {
-    const auto copy = [&](const auto& history, auto& image, double& stamp_s) {
+    const auto view = [&](const auto& history, auto& image, double& stamp_s) {
       const auto* entry = history.nearest(frame.stamp_s, tolerance_s);
       if (!entry) return false;
-      if (stamp_s != entry->stamp_s || image.empty()) image.own() = entry->image;
+      pixels.push_back(entry->image);
+      image = ImageView(*entry->image);
       stamp_s = entry->stamp_s;
       return true;
     };
-    const bool has_color = copy(color, rgbd.color, rgbd.color_stamp_s);
-    const bool has_depth = copy(depth, rgbd.depth, rgbd.depth_stamp_s);
+    const bool has_color = view(color, rgbd.color, rgbd.color_stamp_s);
+    const bool has_depth = view(depth, rgbd.depth, rgbd.depth_stamp_s);
     rgbd.missing.clear();
     if (has_color && has_depth) return;
     rgbd.missing = fmt::format("{}: no {} image within {:.2g} s", rgbd_[camera]->name(),

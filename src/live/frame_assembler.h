@@ -26,13 +26,16 @@ class FrameAssembler {
   /// this.
   FrameAssembler(CameraInbox& color, std::vector<CameraInbox*> rgbd);
 
-  /// Fills `frame` with the next frame, if there is one at this time. Swaps its colour image and
-  /// copies the others. Returns the number of colour images that were skipped for it; nothing if
-  /// there is no new frame yet.
+  /// The images that a frame views.
+  using Pixels = std::vector<std::shared_ptr<const void>>;
+
+  /// Fills `frame` with the next frame, if there is one at this time. Its images are views, of
+  /// memory that `pixels` keeps. Returns the number of colour images that were skipped for it;
+  /// nothing if there is no new frame yet.
   /// is_expected: whether an RGB-D camera's images are worth waiting for.
   std::optional<std::size_t> assemble(const Settings& settings, double now_s,
                                       const std::function<bool(std::size_t)>& is_expected,
-                                      FrameSet& frame);
+                                      FrameSet& frame, Pixels& pixels);
 
   /// When a waiting colour image will have waited long enough; nothing if none waits.
   std::optional<double> next_deadline_s(const Settings& settings);
@@ -50,7 +53,7 @@ class FrameAssembler {
   std::size_t find_arrivals(double after_s, Arrivals& arrivals);
   bool is_complete(double stamp_s, double tolerance_s,
                    const std::function<bool(std::size_t)>& is_expected);
-  void fill_rgbd(std::size_t camera, double tolerance_s, FrameSet& frame);
+  void fill_rgbd(std::size_t camera, double tolerance_s, FrameSet& frame, Pixels& pixels);
 
   CameraInbox& color_;
   std::vector<CameraInbox*> rgbd_;

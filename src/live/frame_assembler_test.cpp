@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <set>
+
 namespace diminish {
 namespace {
 
@@ -41,7 +43,7 @@ class Assembler : public ::testing::Test {
   }
   std::optional<std::size_t> assemble(double now_s) {
     return assembler_->assemble(
-        settings_, now_s, [this](std::size_t k) { return expected_[k]; }, frame_);
+        settings_, now_s, [this](std::size_t k) { return expected_[k]; }, frame_, pixels_);
   }
 
   Intrinsics sensor_{.width = 4, .height = 3};
@@ -51,6 +53,7 @@ class Assembler : public ::testing::Test {
   FrameAssembler::Settings settings_{.sync_tolerance_s = 0, .sync_wait_s = 0.06};
   std::array<bool, 2> expected_{true, true};
   FrameSet frame_;
+  FrameAssembler::Pixels pixels_;
 };
 
 TEST_F(Assembler, WaitsForTheImagesOfAllCameras) {
@@ -140,6 +143,40 @@ TEST_F(Assembler, TwoFramesMayShareASlowCamerasImage) {
     EXPECT_EQ(frame_.color(0, 0).b, i);
     EXPECT_EQ(frame_.rgbd[0].depth(0, 0), 2);
   }
+}
+
+TEST_F(Assembler, HandsImagesOverWithoutACopy) {
+  CameraImage image;
+  image.stamp_s = period_s;
+  image.color.resize(4, 3, Bgr{7, 0, 0});
+  const Bgr* const delivered = image.color.data();
+  std::string problem;
+  color_.put(image, period_s, problem);
+  put_rgbd(0, 1);
+  put_rgbd(1, 1);
+  ASSERT_TRUE(assemble(2 * period_s));
+  EXPECT_EQ(frame_.color.view().data(), delivered);
+
+  // They stay as they are for as long as the frame is kept, whatever else comes in.
+  const FrameSet copy = frame_;
+  for (int i = 2; i < 20; ++i) {
+    put_color(i);
+    put_rgbd(0, i);
+    put_rgbd(1, i);
+  }
+  EXPECT_EQ(frame_.color(3, 2).b, 7);
+  EXPECT_EQ(frame_.rgbd[1].depth(3, 2), 1);
+  EXPECT_EQ(copy.color(3, 2).b, 7);
+
+  // Nobody keeps these, so that later ones use their memory.
+  std::set<const Bgr*> memory;
+  for (int i = 20; i < 100; ++i) {
+    image.stamp_s = i * period_s;
+    image.color.resize(4, 3, Bgr{8, 0, 0});
+    memory.insert(image.color.data());
+    color_.put(image, i * period_s, problem);
+  }
+  EXPECT_LE(memory.size(), ImageHistory<Bgr>::capacity + 3);
 }
 
 TEST_F(Assembler, FollowsACameraWhoseClockIsReset) {

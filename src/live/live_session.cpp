@@ -12,7 +12,7 @@
 #include "diminish/pipeline.h"
 #include "live/camera_feed.h"
 #include "live/frame_assembler.h"
-#include "live/frame_pool.h"
+#include "live/pool.h"
 #include "live/quality_ladder.h"
 #include "sink/distribution.h"
 #include "source/find_camera.h"
@@ -134,7 +134,8 @@ struct LiveSession::Implementation {
       const auto last_s = inboxes[k + 1]->last_arrival_s();
       return last_s && now_s - *last_s < no_picture_after_s;
     };
-    const auto passed_over = assembler.assemble(sync_settings(), now_s, is_expected, frame.input);
+    const auto passed_over =
+        assembler.assemble(sync_settings(), now_s, is_expected, frame.input, frame.pixels);
     if (!passed_over) return false;
     const std::lock_guard lock(mutex);
     skipped += *passed_over;
@@ -166,7 +167,9 @@ struct LiveSession::Implementation {
       publish_times_s.add(frame->published_s);
       const int level = ladder.level();
       const double frame_ms = frame->result.report.frame_ms;
-      if (ladder.next_level(frame_ms, live_options.budget_ms) != level) options_changed = true;
+      if (ladder.next_level(frame_ms, live_options.budget_ms, options) != level) {
+        options_changed = true;
+      }
       failure.clear();
     }
     const std::lock_guard lock(listeners_mutex);
@@ -203,7 +206,7 @@ struct LiveSession::Implementation {
   bool options_changed = true;
 
   Pipeline pipeline;
-  FramePool pool;
+  Pool<LiveFrame> pool;
   std::vector<std::unique_ptr<CameraInbox>> inboxes;  ///< "color" and each RGB-D camera's
   FrameAssembler assembler;
   ArrivalSignal arrived, published;
@@ -244,7 +247,7 @@ LiveStatus LiveSession::Implementation::status() const {
   status.latency_ms = {latency.p50, latency.p95, latency.p99};
   status.budget_ms = live_options.budget_ms;
   status.quality_level = ladder.level();
-  status.quality = QualityLadder::description(ladder.level());
+  status.quality = QualityLadder::description(options, ladder.level());
   if (!settings_problem.empty()) status.problems.push_back(settings_problem);
   if (!failure.empty()) status.problems.push_back("the last frame failed: " + failure);
   if (!latest) return status;

@@ -55,6 +55,7 @@ TEST_F(Live, ShowsWhatThePipelineMakesOfTheRecordingsFrames) {
   const auto source = open_recording(recording_, options_);
   for (FrameSet frame; source->next(frame);) recorded.push_back(frame);
 
+  options_.sync_tolerance_s = 0.01;  // also when the machine is so slow that images are left out
   const auto session = start(cameras());
   Pipeline pipeline(recording_.rig, recording_.scene, options_);
   DiminishedFrame expected;
@@ -177,7 +178,7 @@ TEST_F(Live, ListenersGetEachFrameInOrderUntilTheyLeave) {
 TEST_F(Live, ABudgetThatCannotBeKeptStepsQualityDown) {
   const auto session = start(cameras(), {.budget_ms = 0.01});
   EXPECT_TRUE(eventually([&] { return session->status().quality_level > 2; }));
-  EXPECT_THAT(session->status().quality, HasSubstr("shadows not lifted"));
+  EXPECT_THAT(session->status().quality, HasSubstr("simpler colours"));
   session->set_budget_ms(0);
   EXPECT_TRUE(eventually([&] { return session->status().quality_level == 0; }));
 }
