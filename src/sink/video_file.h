@@ -19,7 +19,11 @@ class VideoFile {
   std::string finish();
 
  private:
-  struct Writer;
+  class Writer;
+  /// Any problem ends the video.
+  template <class Action>
+  void attempt(const Action& action);
+
   std::filesystem::path file_;
   double frames_per_second_;
   std::unique_ptr<Writer> writer_;
