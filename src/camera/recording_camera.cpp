@@ -13,6 +13,9 @@
 namespace diminish {
 namespace {
 
+/// A looped sensor's images are kept after the first lap if they are not more than this.
+constexpr double max_kept_bytes = 3e8;
+
 /// When a recording's images are due.
 struct Timeline {
   double epoch_s = 0;  ///< of the recording's first colour image, on the monotonic clock
@@ -39,7 +42,11 @@ class Replay {
   Replay(const std::filesystem::path& list, const Intrinsics& sensor, const Timeline& timeline,
          bool loop, EmptyList empty = EmptyList::is_error)
       : stream_(list, sensor, empty), timeline_(timeline), loop_(loop) {
+    const auto count = static_cast<double>(stream_.entries().size());
     period_s_ = median_period_s(stream_.entries()) / timeline.rate;
+    if (loop && count * sensor.width * sensor.height * sizeof(Pixel) <= max_kept_bytes) {
+      kept_.resize(stream_.entries().size());
+    }
   }
 
   bool is_over() const {
@@ -63,8 +70,15 @@ class Replay {
     if (is_over() || prepared_ == next_) return;
     prepared_ = next_;
     fault_.clear();
+    const std::size_t index = next_ % stream_.entries().size();
+    Image<Pixel>* const kept = kept_.empty() ? nullptr : &kept_[index];
+    if (kept && !kept->empty()) {
+      image_ = *kept;
+      return;
+    }
     try {
-      stream_.read(next_ % stream_.entries().size(), image_);
+      stream_.read(index, image_);
+      if (kept) *kept = image_;
     } catch (const Error& error) {
       fault_ = error.what();
     }
@@ -86,6 +100,7 @@ class Replay {
   std::optional<std::size_t> prepared_;  ///< which image `image_` is
   Image<Pixel> image_;
   std::string fault_;
+  std::vector<Image<Pixel>> kept_;
 };
 
 /// A recording's camera in real time, as if live.

@@ -75,14 +75,12 @@ TEST_F(RecordingCamera, ALoopGoesOnWithoutAGapInTime) {
   }
 }
 
-TEST_F(RecordingCamera, ALoopReadsAnImageWhenItsTimeComes) {
+TEST_F(RecordingCamera, ALoopReadsAnImageWhenItsTimeComesAndKeepsItIfItIsShort) {
   const auto camera = open("color", "?loop&rate=2");
-  for (const int value : {100, 200}) {
-    recording_.write("color/2.png", cv::Mat(30, 40, CV_8UC3, cv::Scalar(value, 50, 200)));
-    const std::vector<CameraImage> lap = read_all(*camera, 3);
-    ASSERT_EQ(lap.size(), 3U);
-    EXPECT_EQ(lap[2].color(0, 0).b, value);
-  }
+  recording_.write("color/2.png", cv::Mat(30, 40, CV_8UC3, cv::Scalar(100, 50, 200)));
+  EXPECT_EQ(read_all(*camera, 3).at(2).color(0, 0).b, 100);
+  std::filesystem::remove_all(recording_.path("color"));
+  EXPECT_EQ(read_all(*camera, 3).at(2).color(0, 0).b, 100);
 }
 
 TEST_F(RecordingCamera, WhatIsLongOverdueIsLeftOutAndCounted) {

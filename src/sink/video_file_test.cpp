@@ -52,9 +52,8 @@ TEST_F(Video, WithoutAnEndThereIsNone) {
 TEST_F(Video, SaysWhyThereIsNone) {
   VideoFile video(folder_.path() / "none" / "a.mp4", 30);
   for (int i = 0; i < 3; ++i) video.append(picture(i));
-  EXPECT_THAT(video.finish(),
-              AllOf(StartsWith((folder_.path() / "none" / "a.mp4").string()),
-                    HasSubstr("not written: the file cannot be written")));
+  EXPECT_THAT(video.finish(), AllOf(StartsWith((folder_.path() / "none" / "a.mp4").string()),
+                                    HasSubstr("not written: the file cannot be written")));
 }
 
 TEST_F(Video, WithoutPicturesThereIsNoneAndNoProblem) {
