@@ -17,8 +17,7 @@ struct MappedRow {
   const Bgra* colors;
   const std::uint8_t* sources;
   const std::uint8_t* occlusion;
-  const float* correction;  ///< three channels, `channel_step` apart
-  std::ptrdiff_t channel_step;
+  const SoftMembrane::Node* correction;
   const std::uint8_t* shares;  ///< the colour's share in the picture, in 1/255; null: all of it
   Bgr* picture;
   int x, y, count;
@@ -33,7 +32,8 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr int block = 16;
+/// Within a block the correction is linear.
+constexpr int block = SoftMembrane::cell;
 using Floats = hn::CappedTag<float, block>;
 using Ints = hn::RebindToSigned<Floats>;
 using Bytes = hn::Rebind<std::uint8_t, Floats>;
@@ -91,6 +91,8 @@ HWY_INLINE void MapPixels(const ColorMap& map, const MappedRow& row, int i,
   const float v = (static_cast<float>(row.y) - map.center.y()) * scale;
   const Vector constant = Set(1 + map.field[1] * v + map.field[4] * v * v);
   const Vector linear = Set(map.field[0] + map.field[3] * v);
+  const SoftMembrane::Node& left = row.correction[i / block];
+  const SoftMembrane::Node slope = (row.correction[i / block + 1] - left) / block;
   hn::Vec<Bytes> result[3][part_count];
   for (int part = 0; part < part_count; ++part) {
     const int at = part * lanes;
@@ -101,14 +103,15 @@ HWY_INLINE void MapPixels(const ColorMap& map, const MappedRow& row, int i,
     const Vector red = load(color[2]);
     const Vector first = Set((static_cast<float>(row.x + i + at) - map.center.x()) * scale);
     const Vector u = hn::MulAdd(hn::Iota(Floats(), 0), Set(scale), first);
+    const Vector place = hn::Iota(Floats(), static_cast<float>(i % block + at));
     Vector field = hn::MulAdd(hn::MulAdd(Set(map.field[2]), u, linear), u, constant);
     field = hn::Min(hn::Max(field, Set(ColorMap::least_field)), Set(ColorMap::greatest_field));
     for (int c = 0; c < 3; ++c) {
       Vector sum = hn::MulAdd(Set(map.matrix(c, 0)), blue, Set(map.offset[c]));
       sum = hn::MulAdd(Set(map.matrix(c, 1)), green, sum);
       sum = hn::MulAdd(Set(map.matrix(c, 2)), red, sum);
-      sum = hn::MulAdd(field, sum,
-                       hn::LoadU(Floats(), row.correction + c * row.channel_step + i + at));
+      const Vector correction = hn::Add(Set(left[c]), hn::Mul(place, Set(slope[c])));
+      sum = hn::MulAdd(field, sum, correction);
       auto level = hn::DemoteTo(bytes, hn::NearestInt(sum));
       if (row.shares) {
         const Vector share = hn::Mul(load(row.shares + i), Set(1 / 255.F));
@@ -124,7 +127,7 @@ HWY_INLINE void MapPixels(const ColorMap& map, const MappedRow& row, int i,
   hn::StoreInterleaved3(mapped[0], mapped[1], mapped[2], all, pixels);
 }
 
-/// `count` is a multiple of 16. maps: by source.
+/// `count` is a multiple of a block. maps: by source.
 void MapRow(const ColorMap* maps, const MappedRow& row) {
   const AllBytes bytes;
   const auto lanes = static_cast<int>(hn::Lanes(bytes));
@@ -155,7 +158,7 @@ HWY_EXPORT(MapRow);
 
 /// Allows any `row.count`.
 void map_row(ColorMapsBySource maps, MappedRow row) {
-  constexpr int block = 16;
+  constexpr int block = SoftMembrane::cell;
   const int rest = row.count % block;
   row.count -= rest;
   HWY_DYNAMIC_DISPATCH(MapRow)(maps.data(), row);
@@ -166,32 +169,27 @@ void map_row(ColorMapsBySource maps, MappedRow row) {
   std::uint8_t sources[block] = {};
   std::uint8_t mask[block] = {};
   std::uint8_t shares[block] = {};
-  float corrections[3 * block] = {};
   Bgr pixels[block] = {};
   std::copy_n(row.colors + whole, rest, colors);
   std::copy_n(row.sources + whole, rest, sources);
   std::copy_n(row.occlusion + whole, rest, mask);
   if (row.shares) std::copy_n(row.shares + whole, rest, shares);
-  for (int c = 0; c < 3; ++c) {
-    std::copy_n(row.correction + c * row.channel_step + whole, rest, corrections + c * block);
-  }
   std::copy_n(row.picture + whole, rest, pixels);
   HWY_DYNAMIC_DISPATCH(MapRow)
-  (maps.data(), {colors, sources, mask, corrections, block, row.shares ? shares : nullptr, pixels,
-                 row.x + whole, row.y, block});
+  (maps.data(), {colors, sources, mask, row.correction + whole / block,
+                 row.shares ? shares : nullptr, pixels, row.x + whole, row.y, block});
   std::copy_n(pixels, rest, row.picture + whole);
 }
 
 }  // namespace
 
 void map_colors(ColorMapsBySource maps, const Reconstruction& reconstruction, const Mask& occlusion,
-                int y, const float* correction, Image<Bgr>& picture) {
+                int y, const SoftMembrane::Node* correction, Image<Bgr>& picture) {
   const Rect& region = reconstruction.region;
   MappedRow row{reconstruction.color.row(y) + region.x,
                 reconstruction.source.row(y) + region.x,
                 occlusion.row(y) + region.x,
                 correction,
-                region.width,
                 nullptr,
                 picture.row(y) + region.x,
                 region.x,

@@ -5,6 +5,7 @@
 #include "composite/map_colors.h"
 #include "core/channels.h"
 #include "core/rows.h"
+#include "core/runs.h"
 #include "diminish/color_corrector.h"
 #include "membrane/soft_membrane.h"
 
@@ -33,12 +34,11 @@ class MappedCorrection : public ColorCorrector {
     membrane_.begin(region);
     if (method_.with_membrane) fit_membrane(inputs);
     for_rows(region.height, [&](Rows rows) {
-      std::vector<float>& corrections = corrections_[rows.band];
-      corrections.resize(3 * static_cast<std::size_t>(region.width));
+      std::vector<SoftMembrane::Node>& corrections = corrections_[rows.band];
       for (int y = region.y + rows.first; y < region.y + rows.last; ++y) {
-        const Rect wanted = bounding_box(inputs.occlusion, {region.x, y, region.width, 1});
-        if (wanted.empty()) continue;
-        membrane_.row(y, wanted.x - region.x, wanted.right() - region.x, corrections.data());
+        const std::uint8_t* const mask = inputs.occlusion.row(y);
+        if (find_other(mask, region.x, region.right(), 0) == region.right()) continue;
+        membrane_.row(y, corrections);
         map_colors(inputs.maps, inputs.reconstruction, inputs.occlusion, y, corrections.data(),
                    picture);
       }
@@ -74,7 +74,7 @@ class MappedCorrection : public ColorCorrector {
 
   Method method_;
   SoftMembrane membrane_;
-  std::vector<float> corrections_[most_bands];  ///< of a row of each band
+  std::vector<SoftMembrane::Node> corrections_[most_bands];  ///< of a row of each band
 };
 
 constexpr std::array<MappedCorrection::Method, 4> methods{{

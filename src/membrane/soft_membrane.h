@@ -29,15 +29,22 @@ class SoftMembrane {
   /// difference: in levels.
   void add(int x, int y, const Eigen::Array3f& difference);
   void solve();
-  /// The correction of a row of the region: three channels, each `region.width` long. Columns
-  /// before `first` and from `last` on, counted from the region's left, are not needed.
-  void row(int y, int first, int last, float* correction) const;
+  /// The channels, and 0.
+  using Node = Eigen::Array4f;
+  /// The corrections of a row of the region, one for every `cell`-th column from the region's left
+  /// on, up to one beyond its right; between them they are linear.
+  void row(int y, std::vector<Node>& nodes) const;
 
  private:
+  /// To be indexed by the column; from row -1 on.
+  Node* value_row(int row) { return values_.row(row + 1) + 1; }
+  const Node* value_row(int row) const { return values_.row(row + 1) + 1; }
+
   Rect region_;
   int columns_ = 0, rows_ = 0;
   std::vector<float> weights_;
-  std::vector<Eigen::Array3f> sums_, values_;
+  std::vector<Node> sums_;
+  Image<Node> values_;  ///< with a rim of zeros
 };
 
 }  // namespace diminish

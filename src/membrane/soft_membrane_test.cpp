@@ -11,8 +11,17 @@ namespace {
 const Rect region{40, 20, 400, 300};
 
 std::vector<float> row_of(const SoftMembrane& membrane, int y) {
-  std::vector<float> correction(3 * static_cast<std::size_t>(region.width));
-  membrane.row(y, 0, region.width, correction.data());
+  std::vector<SoftMembrane::Node> nodes;
+  membrane.row(y, nodes);
+  constexpr int cell = SoftMembrane::cell;
+  std::vector<float> correction;
+  for (int channel = 0; channel < 3; ++channel) {
+    for (int x = 0; x < region.width; ++x) {
+      const auto i = static_cast<std::size_t>(x / cell);
+      correction.push_back(
+          std::lerp(nodes[i][channel], nodes[i + 1][channel], static_cast<float>(x % cell) / cell));
+    }
+  }
   return correction;
 }
 

@@ -1,9 +1,12 @@
 #include "diminish/marker_detector.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "core/shrink.h"
+#include "core/tasks.h"
 #include "pose/aruco.h"
 #include "pose/corner_refinement.h"
 #include "pose/dark_regions.h"
@@ -39,9 +42,23 @@ struct MarkerDetector::Implementation {
   explicit Implementation(const std::string& dictionary) : code(find_dictionary(dictionary)) {}
 
   MarkerCode code;
+  std::optional<Marker> read(ImageView<Bgr> image, const Lens& lens, Quad quad) const {
+    const int modules = code.modules();
+    if (!refine_corners(image, lens, modules, coarse_pass, quad) ||
+        !refine_corners(image, lens, modules, middle_pass, quad)) {
+      return std::nullopt;
+    }
+    const auto reading = code.read(image, quad);
+    if (!reading) return std::nullopt;
+    refine_corners(image, lens, modules, fine_pass, quad);
+    std::rotate(quad.begin(), quad.begin() + reading->top_left, quad.end());
+    return Marker{reading->id, quad};
+  }
+
   Image<std::uint8_t> small;
   DarkRegions dark_regions;
   QuadCandidates candidates;
+  std::vector<std::optional<Marker>> found;  ///< by candidate
 };
 
 MarkerDetector::MarkerDetector(const std::string& dictionary)
@@ -54,19 +71,14 @@ void MarkerDetector::detect(ImageView<Bgr> image, const Lens& lens, std::vector<
   Implementation& self = *implementation_;
   markers.clear();
   shrink_green(image, self.small);
-  for (Quad quad : self.candidates.find(self.dark_regions.find(self.small))) {
-    const int modules = self.code.modules();
-    if (!refine_corners(image, lens, modules, coarse_pass, quad) ||
-        !refine_corners(image, lens, modules, middle_pass, quad)) {
-      continue;
-    }
-    const auto reading = self.code.read(image, quad);
-    if (!reading) continue;
-    refine_corners(image, lens, modules, fine_pass, quad);
-    std::rotate(quad.begin(), quad.begin() + reading->top_left, quad.end());
-    const auto by_id = [](int id, const Marker& marker) { return id < marker.id; };
-    markers.insert(std::upper_bound(markers.begin(), markers.end(), reading->id, by_id),
-                   {reading->id, quad});
+  const std::vector<Quad>& candidates = self.candidates.find(self.dark_regions.find(self.small));
+  self.found.resize(candidates.size());
+  for_tasks(candidates.size(),
+            [&](std::size_t i) { self.found[i] = self.read(image, lens, candidates[i]); });
+  for (const std::optional<Marker>& marker : self.found) {
+    if (!marker) continue;
+    const auto by_id = [](int id, const Marker& other) { return id < other.id; };
+    markers.insert(std::upper_bound(markers.begin(), markers.end(), marker->id, by_id), *marker);
   }
   remove_ambiguous(markers);
 }

@@ -159,7 +159,16 @@ class VectorizedReconstructor : public Reconstructor {
           region.height,
           [&](Rows rows) {
             for (const Drawn& drawn : drawn_) draw(drawn, rows);
-            color_rows(frame, rows, agreement_m, reconstruction);
+            // Once the surface is there, smaller bands do.
+            for_tasks(parts_of_band, [&](std::size_t i) {
+              const auto part = static_cast<int>(i);
+              const int height = rows.last - rows.first;
+              color_rows(frame,
+                         {rows.first + part * height / parts_of_band,
+                          rows.first + (part + 1) * height / parts_of_band,
+                          parts_of_band * rows.band + part},
+                         agreement_m, reconstruction);
+            });
           },
           CameraMesh::band_px);
       return;
@@ -187,9 +196,10 @@ class VectorizedReconstructor : public Reconstructor {
     int pixels;
   };
 
+  static constexpr int parts_of_band = 4;
+
   /// Memory for one row.
   struct Scratch {
-    std::vector<SurfaceRow> surfaces;
     std::vector<float> second_depth_m;
     CameraBlender::Scratch blending;
   };
@@ -251,7 +261,7 @@ class VectorizedReconstructor : public Reconstructor {
                   Reconstruction& reconstruction) {
     const int top = reconstruction.region.y;
     for (int y = top + rows.first; y < top + rows.last; ++y) {
-      color_row(frame, y, agreement_m, scratch_[rows.band].surfaces, reconstruction);
+      color_row(frame, y, agreement_m, surfaces_[rows.band], reconstruction);
     }
   }
 
@@ -278,7 +288,8 @@ class VectorizedReconstructor : public Reconstructor {
   std::vector<Drawn> drawn_;
   std::vector<CameraBlender::Surface> blended_;
   CameraBlender blender_;
-  Scratch scratch_[most_bands];  ///< of each band of the region
+  Scratch scratch_[most_bands];                                   ///< of each band of the region
+  std::vector<SurfaceRow> surfaces_[most_bands * parts_of_band];  ///< of a row of each part
 };
 
 std::unique_ptr<Reconstructor> make(const Rig& rig) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 
 #include "composite/map_colors.h"
@@ -131,8 +132,12 @@ void expect_mapped(const Picture& p) {
   std::vector<ColorMap> maps(256);
   maps[1] = some_map();
   maps[2].matrix *= 0.7F;
-  std::vector<float> correction(3 * static_cast<std::size_t>(region.width));
-  for (std::size_t i = 0; i < correction.size(); ++i) correction[i] = static_cast<float>(i % 9) - 4;
+  constexpr int cell = SoftMembrane::cell;
+  std::vector<SoftMembrane::Node> correction;
+  for (int i = 0; i < region.width / cell + 2; ++i) {
+    const auto level = static_cast<float>(3 * i % 9);
+    correction.emplace_back(level - 4, 5 - level, 2 * level - 8, 0.F);
+  }
   Image<Bgr> mapped = p.picture;
   for (int y = region.y; y < region.bottom(); ++y) {
     map_colors(maps, p.reconstruction, p.occlusion, y, correction.data(), mapped);
@@ -156,7 +161,9 @@ void expect_mapped(const Picture& p) {
       Eigen::Array3f other = expected;
       if (share > 0) other = map(second.source(x, y), second.color(x, y));
       for (int k = 0; k < 3; ++k) {
-        const float added = correction[static_cast<std::size_t>(k * region.width + x - region.x)];
+        const auto node = static_cast<std::size_t>((x - region.x) / cell);
+        const float added = std::lerp(correction[node][k], correction[node + 1][k],
+                                      static_cast<float>((x - region.x) % cell) / cell);
         expected[k] += added;
         other[k] += added;
       }
