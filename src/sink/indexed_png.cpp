@@ -5,7 +5,10 @@
 #include <array>
 #include <string>
 
+#include "core/mat.h"
 #include "diminish/error.h"
+#include "sink/partial_file.h"
+#include "sink/png_encoder.h"
 
 namespace diminish {
 namespace {
@@ -29,15 +32,8 @@ using Palette = std::array<Bgr, 256>;
 void write_indexed_png(const std::filesystem::path& file, const Image<std::uint8_t>& indices,
                        const std::vector<Bgr>& palette) {
   if (palette.empty() || palette.size() > 256) fail(file, "expected a palette of 1 to 256 colours");
-  PngImage png;
-  png.width = static_cast<png_uint_32>(indices.width());
-  png.height = static_cast<png_uint_32>(indices.height());
-  png.format = PNG_FORMAT_BGR | PNG_FORMAT_FLAG_COLORMAP;
-  png.flags = PNG_IMAGE_FLAG_FAST;
-  png.colormap_entries = static_cast<png_uint_32>(palette.size());
-  if (png_image_write_to_file(&png, file.c_str(), 0, indices.data(), 0, palette.data()) == 0) {
-    fail(file, std::string("cannot be written: ") + png.message);
-  }
+  const std::vector<std::uint8_t> bytes = encode_png(as_mat(indices), palette);
+  write_file(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 Image<std::uint8_t> read_indexed_png(const std::filesystem::path& file) {

@@ -8,8 +8,8 @@
 
 namespace diminish {
 
-/// Writes an indexed-colour PNG, a picture whose pixels are also numbers. `palette` must have a
-/// colour for every index (1 to 256). Throws Error that names the file.
+/// Writes an indexed-colour PNG, a picture whose pixels are also numbers, completely or not at all.
+/// `palette` must have a colour for every index (1 to 256). Throws Error that names the file.
 void write_indexed_png(const std::filesystem::path& file, const Image<std::uint8_t>& indices,
                        const std::vector<Bgr>& palette);
 

@@ -1,12 +1,12 @@
 #include "sink/partial_file.h"
 
 #include <fstream>
-#include <opencv2/imgcodecs.hpp>
 #include <system_error>
 #include <utility>
 #include <vector>
 
 #include "diminish/error.h"
+#include "sink/png_encoder.h"
 
 namespace diminish {
 
@@ -38,12 +38,7 @@ void write_file(const std::filesystem::path& target, std::string_view bytes) {
 }
 
 void write_png(const std::filesystem::path& target, const cv::Mat& picture) {
-  std::vector<std::uint8_t> bytes;
-  // Without a level, OpenCV takes the lowest and filters all rows alike. With one, it tries all
-  // filters on each row, which takes twice as long.
-  if (!cv::imencode(".png", picture, bytes)) {
-    throw Error(Error::io, target.string() + ": cannot be encoded");
-  }
+  const std::vector<std::uint8_t> bytes = encode_png(picture);
   write_file(target, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 

@@ -29,7 +29,7 @@ class PartialFile {
 /// Replaces `target` by these bytes, completely or not at all. Throws Error that names it.
 void write_file(const std::filesystem::path& target, std::string_view bytes);
 
-/// The same for an 8-bit picture as PNG, compressed for speed.
+/// The same for an 8-bit picture as PNG (encode_png).
 void write_png(const std::filesystem::path& target, const cv::Mat& picture);
 
 }  // namespace diminish

@@ -100,9 +100,7 @@ void ResultWriter::write_images(const FrameSet& frame, const DiminishedFrame& re
   write_png(self.folder / "result" / name, as_mat(result.picture));
   write_png(self.folder / "mask" / name, as_mat(result.mask));
   write_png(self.folder / "reconstruction" / name, as_mat(result.reconstruction.color));
-  PartialFile partial(self.folder / "provenance" / name);
-  write_indexed_png(partial.path(), result.provenance, provenance_palette());
-  partial.commit();
+  write_indexed_png(self.folder / "provenance" / name, result.provenance, provenance_palette());
 }
 
 void ResultWriter::append(const FrameSet&, const DiminishedFrame& result) {
