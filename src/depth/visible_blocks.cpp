@@ -96,7 +96,6 @@ VisibleBlocks::VisibleBlocks(const RgbdCamera& camera, const Intrinsics& color)
 void VisibleBlocks::find(ImageView<std::uint16_t> depth, const RigidTransform& color_from_depth,
                          const Rect& region) {
   color_from_depth_ = color_from_depth;
-  region_ = region;
   sides_ = {};
   for (const int axis : {0, 1}) add_sides(region, axis, sides_);
   const auto pitch = depth.stride() / std::ptrdiff_t{sizeof(std::uint16_t)};
@@ -132,27 +131,6 @@ void VisibleBlocks::find(ImageView<std::uint16_t> depth, const RigidTransform& c
 void VisibleBlocks::clear() {
   visible_.clear();
   find_part();
-}
-
-Rows VisibleBlocks::find_in_rows(int top, int bottom, BlockSet& visible) const {
-  Sides sides;
-  add_sides({region_.x, top, region_.width, bottom - top}, 1, sides);
-  visible.resize(visible_.columns(), visible_.rows());
-  Rows found{image_height_, 0};
-  for (int row = 0; row < visible_.rows(); ++row) {
-    bool any = false;
-    for (int column = 0; column < visible_.columns(); ++column) {
-      const auto block = visible_.index(column, row);
-      const bool is_there =
-          visible_(column, row) != 0 && is_inside(sides, rays_[block], depth_m_[block]);
-      visible(column, row) = is_there ? 1 : 0;
-      any |= is_there;
-    }
-    if (!any) continue;
-    found.first = std::min(found.first, row * height);
-    found.last = std::min((row + 1) * height, image_height_);
-  }
-  return found;
 }
 
 void VisibleBlocks::add_sides(const Rect& rectangle, int axis, Sides& sides) const {
@@ -207,8 +185,12 @@ void VisibleBlocks::find_part() {
     return columns;
   };
   part_.begin(height);
+  bounds_ = {};
   for (int row = 0; row < visible_.rows(); ++row) {
     DepthPart::Columns columns = columns_of(row);
+    if (columns.count() > 0) {
+      bounds_ = join(bounds_, {columns.first + 1, row, columns.count() - 2, 1});
+    }
     for (const int beside : {row - 1, row + 1}) {
       columns.first = std::min(columns.first, columns_of(beside).first);
       columns.last = std::max(columns.last, columns_of(beside).last);

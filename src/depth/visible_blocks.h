@@ -60,9 +60,8 @@ class VisibleBlocks {
   void clear();
 
   const BlockSet& blocks() const { return visible_; }
-  /// Those that may be visible in rows of the picture, [top, bottom). Returns the rows of the depth
-  /// image from the first to the last of them. Cost: 10 ns per visible block.
-  Rows find_in_rows(int top, int bottom, BlockSet& visible) const;
+  /// The box of these blocks, counted in blocks.
+  const Rect& bounds() const { return bounds_; }
   /// From the first to the last visible block of each row, plus one block on all sides.
   const DepthPart& part() const { return part_; }
 
@@ -98,11 +97,11 @@ class VisibleBlocks {
   int image_width_, image_height_;
   std::vector<Rays> rays_;  ///< by block
   RigidTransform color_from_depth_;
-  Rect region_;
   Sides sides_;
   Depths depths_[most_bands];
   std::vector<Range> depth_m_;  ///< by block
   BlockSet visible_;
+  Rect bounds_;
   DepthPart part_;
 };
 

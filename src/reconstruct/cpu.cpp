@@ -27,99 +27,97 @@ class CameraMesh {
   static constexpr int band_px = 128;
 
   CameraMesh(const RgbdCamera& camera, const Intrinsics& color)
-      : visible_(camera, color), rows_(camera, color) {
-    for (Band& band : bands_) {
-      for (VertexRow& row : band.vertices) row.resize(rows_.width());
-    }
-  }
-
-  /// Call before drawing the bands.
-  void begin(const Image<std::uint16_t>& depth, const RigidTransform& color_from_depth,
-             const Rect& region) {
-    visible_.find(depth, color_from_depth, region);
-    region_ = region;
-  }
+      : visible_(camera, color), rows_(camera, color) {}
 
   /// What is to be drawn.
   struct Input {
     const Image<std::uint16_t>& depth;
     const Mask& depth_mask;
     const Mask& color_mask;
-    FloatTransform to_color;
+    const RigidTransform& color_from_depth;
     const TiledRegion& region;
     sdct::Threshold threshold;
   };
 
-  /// rows: counted from the region's first one. Two rows of vertices at a time. Whole blocks of
-  /// cells that cannot touch the region are skipped.
+  /// Finds the vertices. Call before drawing the bands.
+  void begin(const Input& input) {
+    region_ = input.region;
+    visible_.find(input.depth, input.color_from_depth, region_);
+    const Rect blocks = visible_.bounds();
+    first_row_ = blocks.y * BlockSet::height;
+    row_count_ = std::min(blocks.bottom() * BlockSet::height, rows_.height()) - first_row_;
+    if (blocks.empty()) row_count_ = 0;
+    if (vertices_.size() < static_cast<std::size_t>(row_count_)) {
+      vertices_.resize(static_cast<std::size_t>(row_count_));
+      row_bounds_.resize(vertices_.size());
+    }
+    const VertexRows::Frame frame{input.depth,       input.depth_mask,
+                                  input.color_mask,  FloatTransform(input.color_from_depth),
+                                  visible_.blocks(), blocks.x,
+                                  blocks.width};
+    for_rows(row_count_, [&](Rows rows) {
+      for (int i = rows.first; i < rows.last; ++i) {
+        VertexRow& row = vertices_[static_cast<std::size_t>(i)];
+        row.resize(blocks.width * VertexRow::block);
+        rows_.project(frame, first_row_ + i, row);
+        Rect& all = row_bounds_[static_cast<std::size_t>(i)];
+        all = {};
+        for (const Rect& bounds : row.bounds) all = join(all, bounds);
+      }
+    });
+  }
+
+  /// rows: counted from the region's first one.
   void draw(const Input& input, Rows rows) {
-    Band& band = bands_[rows.band];
+    SurfaceBuffer& surface = surfaces_[rows.band];
     const Rect part{region_.x, region_.y + rows.first, region_.width, rows.last - rows.first};
-    band.surface.clear(part);
-    const Rows vertex_rows = visible_.find_in_rows(part.y, part.bottom(), band.visible);
-    const VertexRows::Frame frame{input.depth, input.depth_mask, input.color_mask, input.to_color,
-                                  part,        band.visible};
-    // A block's cells reach into the next row of blocks.
-    const int first = vertex_rows.first;
-    const int last = std::min(vertex_rows.last, rows_.height() - 1);
-    if (first < last) rows_.project(frame, first, band.vertices[first % 2]);
-    for (int y = first; y < last; ++y) {
-      VertexRow& lower = band.vertices[(y + 1) % 2];
-      rows_.project(frame, y + 1, lower);
-      draw_cells_below(frame, y, input, part, band);
+    surface.clear(part);
+    for (int i = 0; i + 1 < row_count_; ++i) {
+      const auto upper = static_cast<std::size_t>(i);
+      if (!intersect(join(row_bounds_[upper], row_bounds_[upper + 1]), part).empty()) {
+        draw_cells_between(vertices_[upper], vertices_[upper + 1], input, part, surface);
+      }
     }
     for (int y = part.y; y < part.bottom(); ++y) {
       input.region.for_each_gap(y, [&](int from, int to) {
-        float* row = band.surface.inverse_z.data() + band.surface.row(y) - part.x;
+        float* row = surface.inverse_z.data() + surface.row(y) - part.x;
         std::fill(row + from, row + to, 0.F);
       });
     }
   }
 
   /// That holds a row of the picture.
-  SurfaceBuffer& surface(int y) { return bands_[band_of(y)].surface; }
-  const SurfaceBuffer& surface(int y) const { return bands_[band_of(y)].surface; }
+  SurfaceBuffer& surface(int y) { return surfaces_[band_of(y)]; }
+  const SurfaceBuffer& surface(int y) const { return surfaces_[band_of(y)]; }
 
  private:
-  struct Band {
-    BlockSet visible;
-    VertexRow vertices[2];
-    SurfaceBuffer surface;
-  };
-
   std::size_t band_of(int y) const {
     return static_cast<std::size_t>((y - region_.y) / band_height(region_.height, band_px));
   }
 
-  void draw_cells_below(const VertexRows::Frame& frame, int y, const Input& input, const Rect& part,
-                        Band& band) const {
-    VertexRow& upper = band.vertices[y % 2];
-    VertexRow& lower = band.vertices[(y + 1) % 2];
-    const int blocks = static_cast<int>(upper.beyond.size()) - 1;
+  /// Whole blocks of cells that cannot touch the region are skipped.
+  static void draw_cells_between(const VertexRow& upper, const VertexRow& lower, const Input& input,
+                                 const Rect& part, SurfaceBuffer& surface) {
+    const auto blocks = static_cast<int>(upper.bounds.size()) - 1;
+    // A block's cells reach into the next block.
+    Rect next = join(upper.bounds[0], lower.bounds[0]);
     for (int block = 0; block < blocks; ++block) {
-      const auto b = static_cast<std::size_t>(block);
-      if ((upper.beyond[b] & upper.beyond[b + 1] & lower.beyond[b] & lower.beyond[b + 1]) != 0) {
-        continue;
-      }
-      if (!input.region.is_whole() &&
-          !input.region.touches(intersect(join(join(upper.bounds[b], upper.bounds[b + 1]),
-                                               join(lower.bounds[b], lower.bounds[b + 1])),
-                                          part))) {
-        continue;
-      }
-      for (int k = block; k < std::min(block + 2, blocks); ++k) {
-        const auto i = static_cast<std::size_t>(k);
-        if (!upper.has_colors[i]) rows_.find_colors(frame, y, k, upper);
-        if (!lower.has_colors[i]) rows_.find_colors(frame, y + 1, k, lower);
-      }
-      draw_cells(upper, lower, block, input.threshold, band.surface);
+      const Rect own = next;
+      const auto beside = static_cast<std::size_t>(block + 1);
+      next = join(upper.bounds[beside], lower.bounds[beside]);
+      const Rect touched = intersect(join(own, next), part);
+      if (touched.empty() || !input.region.touches(touched)) continue;
+      draw_cells(upper, lower, block, input.threshold, surface);
     }
   }
 
   VisibleBlocks visible_;
   VertexRows rows_;
   Rect region_;
-  Band bands_[most_bands];
+  int first_row_ = 0, row_count_ = 0;  ///< of the depth image: those that may be visible
+  std::vector<VertexRow> vertices_;    ///< of these rows
+  std::vector<Rect> row_bounds_;       ///< likewise: where in the picture they lie
+  SurfaceBuffer surfaces_[most_bands];
 };
 
 /// The default: the same rules as ReferenceReconstructor, on vector instructions.
@@ -142,15 +140,20 @@ class VectorizedReconstructor : public Reconstructor {
     for (std::size_t k = 0; k < meshes_.size(); ++k) {
       if (!frame.rgbd[k].available() || !poses.color_from_depth[k]) continue;
       drawn_.push_back({k, 0});
-      meshes_[k].begin(depths[k], *poses.color_from_depth[k], region);
     }
-    const auto draw = [&, threshold = sdct::Threshold(options.discontinuity_threshold_m,
-                                                      options.discontinuity_reach_m)](
-                          const Drawn& drawn, Rows rows) {
-      const std::size_t k = drawn.camera;
-      meshes_[k].draw({depths[k], masks.rgbd_depth[k], masks.rgbd_color[k],
-                       FloatTransform(*poses.color_from_depth[k]), region, threshold},
-                      rows);
+    const auto input_of = [&, threshold =
+                                  sdct::Threshold(options.discontinuity_threshold_m,
+                                                  options.discontinuity_reach_m)](std::size_t k) {
+      return CameraMesh::Input{
+          depths[k], masks.rgbd_depth[k], masks.rgbd_color[k], *poses.color_from_depth[k], region,
+          threshold};
+    };
+    for_tasks(drawn_.size(), [&](std::size_t i) {
+      const std::size_t k = drawn_[i].camera;
+      meshes_[k].begin(input_of(k));
+    });
+    const auto draw = [&](const Drawn& drawn, Rows rows) {
+      meshes_[drawn.camera].draw(input_of(drawn.camera), rows);
     };
     const auto agreement_m = static_cast<float>(options.depth_agreement_m);
     if (drawn_.size() < 2) {

@@ -49,7 +49,7 @@ HWY_INLINE LaneMask Distort(const Projection& p, Vector x, Vector y, Vector& u, 
 /// One row; the arrays are padded to whole blocks.
 template <LensModel model>
 void ProjectRowBy(const VertexRows::Constants& constants, const FloatTransform& to_color,
-                  const Rect& region, const std::uint8_t* visible, const std::uint16_t* depth,
+                  const std::uint8_t* visible, int count, const std::uint16_t* depth,
                   const std::uint8_t* mask, const float* ray_x, const float* ray_y,
                   VertexRow& row) {
   const Floats d;
@@ -57,38 +57,28 @@ void ProjectRowBy(const VertexRows::Constants& constants, const FloatTransform& 
   const hn::Rebind<std::uint16_t, Floats> d16;
   const hn::Rebind<std::uint8_t, Floats> d8;
   const auto lanes = static_cast<int>(hn::Lanes(d));
-  // One pixel more than the region, because vertices are rounded to 1/256.
-  const Vector left = Set(static_cast<float>(region.x - 1));
-  const Vector right = Set(static_cast<float>(region.right() + 1));
-  const Vector top = Set(static_cast<float>(region.y - 1));
-  const Vector bottom = Set(static_cast<float>(region.bottom() + 1));
-  for (int start = 0; start < constants.width; start += VertexRow::block) {
+  for (int start = 0; start < count; start += VertexRow::block) {
     const auto index = static_cast<std::size_t>(start / VertexRow::block);
-    row.has_colors[index] = 0;
     if (visible[index] == 0) {
       std::fill_n(row.inverse_z.data() + start, VertexRow::block, 0.F);
-      row.beyond[index] = 15;
       row.bounds[index] = {};
       continue;
     }
-    LaneMask not_left = hn::Lt(hn::Zero(d), hn::Zero(d));
-    LaneMask not_right = not_left;
-    LaneMask not_above = not_left;
-    LaneMask not_below = not_left;
+    LaneMask any = hn::Lt(hn::Zero(d), hn::Zero(d));
     Vector least_x = Set(sdct::max_coordinate_px), greatest_x = Set(-sdct::max_coordinate_px);
     Vector least_y = least_x, greatest_y = greatest_x;
     for (int i = start; i < start + VertexRow::block; i += lanes) {
       hn::Vec<decltype(d16)> values;
       hn::Vec<decltype(d8)> masked;
-      if (i + lanes <= constants.width) {
+      if (i + lanes <= count) {
         values = hn::LoadU(d16, depth + i);
         masked = hn::LoadU(d8, mask + i);
       } else {
         HWY_ALIGN std::uint16_t last_values[VertexRow::block] = {};
         HWY_ALIGN std::uint8_t last_masked[VertexRow::block] = {};
-        const int count = std::max(0, constants.width - i);
-        std::copy_n(depth + i, count, last_values);
-        std::copy_n(mask + i, count, last_masked);
+        const int rest = std::max(0, count - i);
+        std::copy_n(depth + i, rest, last_values);
+        std::copy_n(mask + i, rest, last_masked);
         values = hn::LoadU(d16, last_values);
         masked = hn::LoadU(d8, last_masked);
       }
@@ -119,19 +109,16 @@ void ProjectRowBy(const VertexRows::Constants& constants, const FloatTransform& 
       hn::StoreU(z, d, row.depth_m.data() + i);
       hn::StoreU(hn::IfThenElseZero(valid, hn::Div(Set(1.F), color_z)), d,
                  row.inverse_z.data() + i);
-      not_left = hn::Or(not_left, hn::And(valid, hn::Ge(px, left)));
-      not_right = hn::Or(not_right, hn::And(valid, hn::Lt(px, right)));
-      not_above = hn::Or(not_above, hn::And(valid, hn::Ge(py, top)));
-      not_below = hn::Or(not_below, hn::And(valid, hn::Lt(py, bottom)));
+      any = hn::Or(any, valid);
       least_x = hn::IfThenElse(valid, hn::Min(least_x, px), least_x);
       greatest_x = hn::IfThenElse(valid, hn::Max(greatest_x, px), greatest_x);
       least_y = hn::IfThenElse(valid, hn::Min(least_y, py), least_y);
       greatest_y = hn::IfThenElse(valid, hn::Max(greatest_y, py), greatest_y);
     }
-    const auto bit = [&](LaneMask mask_, int value)
-                         HWY_ATTR { return hn::AllFalse(d, mask_) ? value : 0; };
-    row.beyond[index] = static_cast<std::uint8_t>(bit(not_left, 1) | bit(not_right, 2) |
-                                                  bit(not_above, 4) | bit(not_below, 8));
+    if (hn::AllFalse(d, any)) {
+      row.bounds[index] = {};
+      continue;
+    }
     const auto least = [&](Vector values) HWY_ATTR {
       return static_cast<int>(hn::GetLane(hn::MinOfLanes(d, values))) - 1;
     };
@@ -145,10 +132,10 @@ void ProjectRowBy(const VertexRows::Constants& constants, const FloatTransform& 
 }
 
 void ProjectRow(const VertexRows::Constants& constants, const FloatTransform& to_color,
-                const Rect& region, const std::uint8_t* visible, const std::uint16_t* depth,
+                const std::uint8_t* visible, int count, const std::uint16_t* depth,
                 const std::uint8_t* mask, const float* ray_x, const float* ray_y, VertexRow& row) {
   const auto project = [&](auto model) {
-    ProjectRowBy<decltype(model)::value>(constants, to_color, region, visible, depth, mask, ray_x,
+    ProjectRowBy<decltype(model)::value>(constants, to_color, visible, count, depth, mask, ray_x,
                                          ray_y, row);
   };
   with_lens_model(constants.color.model, project);
@@ -221,11 +208,9 @@ void VertexRow::resize(int width) {
   inverse_z.resize(size);
   u_over_z.resize(size);
   v_over_z.resize(size);
-  beyond.resize(blocks);
   bounds.resize(blocks);
-  has_colors.resize(blocks);
   std::fill_n(inverse_z.end() - block, block, 0.F);
-  beyond.back() = 15;
+  bounds.back() = {};
 }
 
 VertexRows::VertexRows(const RgbdCamera& camera, const Intrinsics& color)
@@ -237,8 +222,7 @@ VertexRows::VertexRows(const RgbdCamera& camera, const Intrinsics& color)
                  FloatTransform(camera.color_from_depth),
                  static_cast<float>(camera.depth_unit_m),
                  static_cast<float>(camera.color.width - 1),
-                 static_cast<float>(camera.color.height - 1),
-                 width_} {
+                 static_cast<float>(camera.color.height - 1)} {
   const Image<Eigen::Vector2f> rays = Lens(camera.depth).rays();
   const std::size_t size =
       static_cast<std::size_t>(padded_width_) * static_cast<std::size_t>(height_);
@@ -254,18 +238,19 @@ VertexRows::VertexRows(const RgbdCamera& camera, const Intrinsics& color)
 }
 
 void VertexRows::project(const Frame& frame, int row, VertexRow& vertices) const {
-  const std::ptrdiff_t rays = static_cast<std::ptrdiff_t>(row) * padded_width_;
+  const int first = frame.first_block * VertexRow::block;
+  const std::ptrdiff_t rays = static_cast<std::ptrdiff_t>(row) * padded_width_ + first;
+  const float* const ray_x = ray_x_.data() + rays;
+  const float* const ray_y = ray_y_.data() + rays;
   HWY_DYNAMIC_DISPATCH(ProjectRow)
-  (constants_, frame.to_color, frame.region, frame.visible.row(row), frame.depth.row(row),
-   frame.depth_mask.row(row), ray_x_.data() + rays, ray_y_.data() + rays, vertices);
-}
-
-void VertexRows::find_colors(const Frame& frame, int row, int block, VertexRow& vertices) const {
-  const std::ptrdiff_t rays = static_cast<std::ptrdiff_t>(row) * padded_width_;
-  HWY_DYNAMIC_DISPATCH(FindColors)
-  (constants_, ray_x_.data() + rays, ray_y_.data() + rays, frame.color_mask,
-   block * VertexRow::block, vertices);
-  vertices.has_colors[static_cast<std::size_t>(block)] = 1;
+  (constants_, frame.to_color, frame.visible.row(row) + frame.first_block,
+   std::min(frame.blocks * VertexRow::block, width_ - first), frame.depth.row(row) + first,
+   frame.depth_mask.row(row) + first, ray_x, ray_y, vertices);
+  for (int block = 0; block < frame.blocks; ++block) {
+    if (vertices.bounds[static_cast<std::size_t>(block)].empty()) continue;
+    HWY_DYNAMIC_DISPATCH(FindColors)
+    (constants_, ray_x, ray_y, frame.color_mask, block * VertexRow::block, vertices);
+  }
 }
 
 }  // namespace diminish

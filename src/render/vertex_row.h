@@ -21,12 +21,7 @@ struct VertexRow {
   std::vector<float> depth_m;             ///< z in the depth sensor's frame
   std::vector<float> inverse_z;           ///< 1 / z in the colour camera's frame; 0: not a vertex
   std::vector<float> u_over_z, v_over_z;  ///< place in the RGB-D camera's colour image, over z
-  /// Where all valid vertices of a block lie: 1 left of the region to draw, 2 right of it, 4 above,
-  /// 8 below.
-  std::vector<std::uint8_t> beyond;
-  std::vector<Rect> bounds;  ///< of a block's valid vertices, in pixels
-  std::vector<std::uint8_t>
-      has_colors;  ///< by block: u and v are known, and vertices without a colour are removed
+  std::vector<Rect> bounds;  ///< of a block's valid vertices, in pixels; empty if there are none
 
   void resize(int width);
 };
@@ -42,13 +37,11 @@ class VertexRows {
     const Mask& depth_mask;
     const Mask& color_mask;
     FloatTransform to_color;
-    Rect region;
     const BlockSet& visible;  ///< other blocks are skipped
+    int first_block, blocks;  ///< of a row: those that are wanted; vertices are counted from there
   };
-  /// Computes everything except the places of the colours.
+  /// The vertices of one row. Those without a colour are none.
   void project(const Frame& frame, int row, VertexRow& vertices) const;
-  /// Computes the places of the colours of one block.
-  void find_colors(const Frame& frame, int row, int block, VertexRow& vertices) const;
 
   int width() const { return width_; }
   int height() const { return height_; }
@@ -58,7 +51,6 @@ class VertexRows {
     Projection color, rgbd_color;
     FloatTransform to_rgbd_color;
     float unit_m, last_column, last_row;
-    int width;
   };
 
  private:

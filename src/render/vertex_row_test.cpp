@@ -29,18 +29,19 @@ void expect_the_plain_versions_vertices() {
     VisibleBlocks visible(camera, scene.rig.color);
     visible.find(depth, *scene.poses.color_from_depth[0], region);
     const VertexRows rows(camera, scene.rig.color);
-    const VertexRows::Frame frame{depth,  masks.rgbd_depth[0], masks.rgbd_color[0], to_color,
-                                  region, visible.blocks()};
+    // All but the first block of a row.
+    const int first = VertexRow::block;
+    const VertexRows::Frame frame{
+        depth, masks.rgbd_depth[0],           masks.rgbd_color[0], to_color, visible.blocks(),
+        1,     visible.blocks().columns() - 1};
     VertexRow row;
-    row.resize(depth.width());
+    row.resize(depth.width() - first);
     int vertices = 0;
     for (int y = 0; y < depth.height(); ++y) {
       rows.project(frame, y, row);
-      for (int x = 0; x < depth.width(); ++x) {
-        const int block = x / VertexRow::block;
-        if (visible.blocks().row(y)[block] == 0) continue;
-        if (x % VertexRow::block == 0) rows.find_colors(frame, y, block, row);
-        const auto i = static_cast<std::size_t>(x);
+      for (int x = first; x < depth.width(); ++x) {
+        if (visible.blocks().row(y)[x / VertexRow::block] == 0) continue;
+        const auto i = static_cast<std::size_t>(x - first);
         const MeshVertex& vertex = expected(x, y);
         ASSERT_EQ(row.inverse_z[i], vertex.inverse_z) << x << ' ' << y;
         if (vertex.inverse_z == 0) continue;
