@@ -30,7 +30,7 @@ class LoopedRecording : public FrameSource {
     return true;
   }
 
-  /// All laps are alike, and a frame in progress outlives none of them.
+  /// Laps are alike, so the first can read what another began.
   void read_images(FrameSet& frame) override { laps_.front()->read_images(frame); }
 
  private:
