@@ -24,7 +24,7 @@ constexpr int min_texture_side = 8;
 class CameraMesh {
  public:
   /// The least height of a band: cells that reach into two bands are set up twice.
-  static constexpr int band_px = 128;
+  static constexpr int band_px = 64;
 
   CameraMesh(const RgbdCamera& camera, const Intrinsics& color)
       : visible_(camera, color), rows_(camera, color) {}
@@ -199,7 +199,7 @@ class VectorizedReconstructor : public Reconstructor {
     int pixels;
   };
 
-  static constexpr int parts_of_band = 4;
+  static constexpr int parts_of_band = 2;
 
   /// Memory for one row.
   struct Scratch {
