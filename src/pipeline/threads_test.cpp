@@ -24,7 +24,8 @@ int threads_started_in_arena_of(int size) {
       load_recording(std::filesystem::path(testing::recordings_dir()) / "workbench");
   const Options options;
   FrameSet frame;
-  open_recording(recording, options)->next(frame);
+  // Reading starts none either: images are decoded by the caller's arena, too.
+  oneapi::tbb::task_arena(1).execute([&] { open_recording(recording, options)->next(frame); });
   const int before = threads_of_this_process();
   oneapi::tbb::task_arena(size).execute([&] {
     Pipeline pipeline(recording.rig, recording.scene, options);
