@@ -53,5 +53,25 @@ BENCHMARK(scaling)
     ->MinTime(2)
     ->Unit(benchmark::kMillisecond);
 
+/// Whole frames of a bundled recording whose objects all stay in the picture (the argument: which
+/// one): what a frame costs in which there is nothing to remove.
+void without_objects(benchmark::State& state) {
+  constexpr const char* names[] = {"calendar", "ball", "workbench"};
+  const char* const name = names[state.range(0)];
+  const Recording recording =
+      load_recording(std::filesystem::path(testing::recordings_dir()) / name);
+  FrameSet frame;
+  open_recording(recording, {})->next(frame);
+  Options options;
+  for (const OccluderSpec& object : recording.scene.occluders) options.keep += object.name + ",";
+  Pipeline pipeline(recording.rig, recording.scene, options);
+  DiminishedFrame result;
+  for (auto _ : state) pipeline.process(frame, result);
+  state.SetLabel(name);
+  state.counters["poses_ms"] = result.report.milliseconds[static_cast<std::size_t>(Stage::poses)];
+  state.counters["mask_pixels"] = static_cast<double>(result.report.mask_pixels);
+}
+BENCHMARK(without_objects)->DenseRange(0, 2)->UseRealTime()->Unit(benchmark::kMillisecond);
+
 }  // namespace
 }  // namespace diminish

@@ -23,6 +23,7 @@
 #include "sink/distribution.h"
 #include "sink/partial_file.h"
 #include "sink/time_table.h"
+#include "start_up.h"
 
 namespace diminish {
 namespace {
@@ -36,6 +37,7 @@ double seconds_since(Clock::time_point start) {
 /// What was measured.
 struct Figures {
   std::size_t frames = 0, left_out = 0, measured = 0;
+  StartUp start_up{};
   std::array<Distribution, time_row_count> times_ms;  ///< by row of the table of times
   double throughput_fps = 0;
   double reading_fps = 0, run_fps = 0;  ///< from files: without the pipeline, and with it
@@ -265,6 +267,9 @@ void print(const Figures& figures, int threads) {
     gpu_ms += ms;
   }
   if (gpu_ms > 0) fmt::print("  GPU time, {:<10}{:>9.3f} ms\n", "total", gpu_ms);
+  fmt::print("Start-up: {:.0f} ms to the first frame; {:.0f} MB for each pipeline\n",
+             figures.start_up.first_frame_ms,
+             static_cast<double>(figures.start_up.pipeline_bytes) / 1e6);
   fmt::print("Peak memory: {:.0f} MB\n", static_cast<double>(figures.peak_memory_bytes) / 1e6);
   if (count_allocations) {
     fmt::print("Allocated per frame: {:.0f} bytes (at most {:.0f}) in {:.0f} allocations\n",
@@ -313,6 +318,8 @@ void write_json(const BenchCommand& command, const Figures& figures) {
                        {"cpu_frame_p50_ms", figures.cpu_frame_ms}};
     for (const auto& [name, ms] : figures.gpu_passes_ms) json["backend"]["gpu_ms"][name] = ms;
   }
+  json["first_frame_ms"] = figures.start_up.first_frame_ms;
+  json["pipeline_bytes"] = figures.start_up.pipeline_bytes;
   json["peak_memory_bytes"] = figures.peak_memory_bytes;
   if (count_allocations) {
     json["allocated_bytes_per_frame"] = figures.allocated_bytes.p50;
@@ -325,6 +332,7 @@ int BenchCommand::execute() const {
   const Recording input = load_recording(recording);
   Figures figures;
   std::vector<FrameSet> loaded = load(input, figures);
+  figures.start_up = measure_start_up(input, loaded, options);
   figures.cost = measure_work_and_span(input, loaded, options);
   const BusyThreads others(busy);
   measure_latency(input, loaded, figures);

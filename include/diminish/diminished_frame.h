@@ -26,7 +26,7 @@ inline constexpr std::uint8_t unknown = 255;  ///< part of the object, with noth
 /// A report about a frame.
 struct FrameReport {
   Markers markers;
-  Poses poses;
+  Poses poses;  ///< as refined, where something is drawn
   std::vector<OccluderReport> occluders;
   std::size_t mask_pixels = 0;     ///< to be replaced
   std::size_t valid_pixels = 0;    ///< of these, seen by an RGB-D camera
@@ -50,6 +50,9 @@ struct DiminishedFrame {
   Image<Bgr> picture;  ///< equals the input, bit for bit, where `mask` is 0
   Mask mask;
   Image<std::uint8_t> provenance;
+  /// The mask's bounding box: outside it mask and provenance are 0. The next frame in this memory
+  /// clears them only inside it.
+  Rect objects;
   Reconstruction reconstruction;
   Surfaces surfaces;
   FrameReport report;

@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
+#include <new>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "diminish/export.h"
@@ -62,7 +66,38 @@ inline void extend(Rect& rect, int x, int y) {
   rect = join(rect, {x, y, 1, 1});
 }
 
-/// A row-major image without padding. Pixel centres are at integer coordinates.
+namespace detail {
+/// For std::vector: memory of zeros, which is taken from the machine only where it is written.
+template <class Pixel>
+struct Zeros {
+  using value_type = Pixel;
+
+  Zeros() = default;
+  template <class Other>
+  Zeros(const Zeros<Other>&) {}
+
+  Pixel* allocate(std::size_t count) {
+    static_assert(alignof(Pixel) <= alignof(std::max_align_t));
+    static_assert(std::is_trivially_destructible_v<Pixel>);
+    void* const memory = std::calloc(count, sizeof(Pixel));
+    if (memory == nullptr) throw std::bad_alloc();
+    return static_cast<Pixel*>(memory);
+  }
+  void deallocate(Pixel* memory, std::size_t) noexcept { std::free(memory); }
+
+  /// It is zero already.
+  template <class Other>
+  void construct(Other*) noexcept {}
+  template <class Other, class... Arguments>
+  void construct(Other* at, Arguments&&... arguments) {
+    ::new (static_cast<void*>(at)) Other(std::forward<Arguments>(arguments)...);
+  }
+  friend bool operator==(const Zeros&, const Zeros&) { return true; }
+};
+}  // namespace detail
+
+/// A row-major image without padding. Pixel centres are at integer coordinates. The pixel's type
+/// has no destructor, and all bytes 0 are a value.
 /// `resize` keeps its memory, so that an image that is used again does not allocate.
 template <class Pixel>
 class Image {
@@ -70,13 +105,19 @@ class Image {
   using value_type = Pixel;
 
   Image() = default;
-  Image(int width, int height, Pixel value = {}) { resize(width, height, value); }
+  /// All bytes are 0. Cost: next to nothing. The machine gives the memory where it is written.
+  Image(int width, int height) : width_(width), height_(height), pixels_(count(width, height)) {}
+  Image(int width, int height, Pixel value) { resize(width, height, value); }
 
   /// Resizes the image. Its pixels are unspecified unless the size stays the same.
   void resize(int width, int height) {
-    width_ = width;
-    height_ = height;
-    pixels_.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    if (count(width, height) > pixels_.capacity()) {
+      *this = Image(width, height);
+    } else {
+      width_ = width;
+      height_ = height;
+      pixels_.resize(count(width, height));
+    }
   }
   void resize(int width, int height, Pixel value) {
     resize(width, height);
@@ -107,6 +148,9 @@ class Image {
   friend bool operator==(const Image&, const Image&) = default;
 
  private:
+  static std::size_t count(int width, int height) {
+    return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  }
   std::size_t index(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
            static_cast<std::size_t>(x);
@@ -114,7 +158,7 @@ class Image {
 
   int width_ = 0;
   int height_ = 0;
-  std::vector<Pixel> pixels_;
+  std::vector<Pixel, detail::Zeros<Pixel>> pixels_;
 };
 
 /// Pixels that belong to someone else, to read: rows from top to bottom, `stride` bytes apart. The

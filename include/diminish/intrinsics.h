@@ -40,6 +40,7 @@ struct Intrinsics {
   LensModel lens_model = LensModel::plumb_bob;
 
   Rect bounds() const { return {0, 0, width, height}; }
+  friend bool operator==(const Intrinsics&, const Intrinsics&) = default;
 };
 
 /// Projection with `Intrinsics`, with what can be computed once kept.
@@ -67,9 +68,6 @@ class DIMINISH_EXPORT Lens {
 
   /// Whether every pixel of the picture has a ray.
   bool covers_picture() const;
-
-  /// The ray of every pixel, row by row.
-  Image<Eigen::Vector2f> rays() const;
 
  private:
   Intrinsics intrinsics_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "composite/object_pixels.h"
 #include "core/rows.h"
 
 namespace diminish {
@@ -38,14 +39,11 @@ void Compositor::sort(const Inputs& inputs, DiminishedFrame& result) {
   const int width = camera.width();
   const int height = camera.height();
   result.picture.resize(width, height);
-  result.mask.resize(width, height);
-  result.provenance.resize(width, height);
+  set_objects(occlusion, objects, occlusion.bounds(), result);
   const Rect drawn = intersect(objects, result.reconstruction.region);
   const Counts counts = sum_over_rows(height, [&](Rows rows) {
     for (int y = rows.first; y < rows.last; ++y) {
       std::copy_n(camera.row(y), width, result.picture.row(y));
-      std::copy_n(occlusion.row(y), width, result.mask.row(y));
-      std::fill_n(result.provenance.row(y), width, provenance::camera);
       if (y < objects.y || y >= objects.bottom()) continue;
       const bool is_drawn = y >= drawn.y && y < drawn.bottom();
       sort_row(occlusion.row(y), is_drawn ? result.reconstruction.source.row(y) : nullptr,
@@ -78,7 +76,7 @@ void Compositor::inpaint(const Inputs& inputs, Inpainter& inpainter, DiminishedF
   if (missing_.width() == occlusion.width() && missing_.height() == occlusion.height()) {
     missing_.fill(missing_part_, 0);
   } else {
-    missing_.resize(occlusion.width(), occlusion.height(), 0);
+    missing_ = Mask(occlusion.width(), occlusion.height());
   }
   const Rect part = inputs.objects;
   missing_part_ = part;
@@ -90,8 +88,10 @@ void Compositor::inpaint(const Inputs& inputs, Inpainter& inpainter, DiminishedF
   if (inpainter.inpaint({missing_, occlusion, result.surfaces}, inputs.options, result.picture)) {
     return;
   }
-  std::replace(result.provenance.begin(), result.provenance.end(), provenance::inpainted,
-               provenance::unknown);
+  for (int y = part.y; y < part.bottom(); ++y) {
+    std::uint8_t* const origin = result.provenance.row(y) + part.x;
+    std::replace(origin, origin + part.width, provenance::inpainted, provenance::unknown);
+  }
 }
 
 void Compositor::finish(const Inputs& inputs, const ViewMode& mode, DiminishedFrame& result) {

@@ -4,7 +4,6 @@
 
 #include "core/rows.h"
 #include "depth/depth_rows.h"
-#include "geometry/projection.h"
 
 namespace diminish {
 namespace {
@@ -22,18 +21,8 @@ Rect inside(ImageView<std::uint16_t> depth) {
 
 }  // namespace
 
-DepthCleaner::DepthCleaner(const RgbdCamera& camera) : camera_(camera), edge_snapping_(camera) {
-  const Image<Eigen::Vector2f> rays = Lens(camera.depth).rays();
-  ray_side_.resize(rays.width(), rays.height());
-  ray_ahead_.resize(rays.width(), rays.height());
-  const FloatTransform to_color(camera.color_from_depth);
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    const float x = rays.data()[i].x();
-    const float y = rays.data()[i].y();
-    ray_side_.data()[i] = to_color.r[0][0] * x + to_color.r[0][1] * y + to_color.r[0][2];
-    ray_ahead_.data()[i] = to_color.r[2][0] * x + to_color.r[2][1] * y + to_color.r[2][2];
-  }
-}
+DepthCleaner::DepthCleaner(const RgbdCamera& camera)
+    : camera_(camera), rays_(RayTable::of(camera.depth)), edge_snapping_(camera) {}
 
 void DepthCleaner::clean(ImageView<std::uint16_t> depth, const EdgeSnapping::Images& images,
                          const DepthPart& part, const Options& options,
@@ -57,8 +46,7 @@ void DepthCleaner::remove_flying(ImageView<std::uint16_t> depth, const DepthPart
 
 void DepthCleaner::remove_hidden(const DepthPart& part, float threshold_m,
                                  Image<std::uint16_t>& cleaned) {
-  const auto side_m = static_cast<float>(camera_.color_from_depth.translation.x());
-  const auto ahead_m = static_cast<float>(camera_.color_from_depth.translation.z());
+  const FloatTransform to_color(camera_.color_from_depth);
   const auto unit_m = static_cast<float>(camera_.depth_unit_m);
   const auto margin = margin_px / static_cast<float>(camera_.depth.fx);
   const Rect& bounds = part.bounds();
@@ -69,8 +57,8 @@ void DepthCleaner::remove_hidden(const DepthPart& part, float threshold_m,
     scratch.place.resize(room);
     for (int y = bounds.y + rows.first; y < bounds.y + rows.last; ++y) {
       const DepthPart::Columns& columns = part.columns(y);
-      const depth_rows::Places places{ray_side_.row(y) + columns.first,
-                                      ray_ahead_.row(y) + columns.first, side_m, ahead_m};
+      const depth_rows::Places places{rays_->x(y) + columns.first, rays_->y(y) + columns.first,
+                                      to_color};
       depth_rows::remove_hidden(places, unit_m, margin, threshold_m, columns.count(),
                                 cleaned.row(y) + columns.first, scratch.depth_m.data(),
                                 scratch.place.data());
@@ -80,8 +68,15 @@ void DepthCleaner::remove_hidden(const DepthPart& part, float threshold_m,
 
 /// First along rows, then along columns.
 void DepthCleaner::smooth(const DepthPart& part, Image<std::uint16_t>& cleaned) {
-  half_smooth_ = cleaned;
+  half_smooth_.resize(cleaned.width(), cleaned.height());
   const Rect inner = inside(cleaned);
+  // Averages along columns reach above and below the part.
+  const Rect rows_needed = intersect(grow(part.bounds(), reach), cleaned.bounds());
+  for_rows(rows_needed.height, [&](Rows rows) {
+    for (int y = rows_needed.y + rows.first; y < rows_needed.y + rows.last; ++y) {
+      std::copy_n(cleaned.row(y), cleaned.width(), half_smooth_.row(y));
+    }
+  });
   for_each_row(part, {inner.x, 0, inner.width, cleaned.height()},
                [&](int y, const DepthPart::Columns& columns) {
                  depth_rows::smooth(row(cleaned, y, columns), 1,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "core/rows.h"
@@ -10,6 +11,7 @@
 #include "diminish/image.h"
 #include "diminish/options.h"
 #include "diminish/rig.h"
+#include "geometry/ray_table.h"
 
 namespace diminish {
 
@@ -41,8 +43,7 @@ class DepthCleaner {
                       const DepthPart::Columns& columns) const;
 
   RgbdCamera camera_;
-  /// A pixel's ray (x, y, 1), turned into the colour sensor's frame: its x and z.
-  Image<float> ray_side_, ray_ahead_;
+  std::shared_ptr<const RayTable> rays_;
   Scratch scratch_[most_bands];
   Image<std::uint16_t> half_smooth_;
   EdgeSnapping edge_snapping_;

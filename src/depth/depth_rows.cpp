@@ -107,9 +107,17 @@ void RemoveHidden(const Places& places, float unit_m, float margin, float thresh
                   std::uint16_t* depth, float* depth_m, float* place) {
   ForEachVector(count, [&](auto d, int x) HWY_ATTR {
     const auto z = hn::Mul(Load(d, depth + x), hn::Set(d, unit_m));
-    const auto side = hn::Add(hn::Mul(hn::LoadU(d, places.side + x), z), hn::Set(d, places.side_m));
-    const auto ahead =
-        hn::Add(hn::Mul(hn::LoadU(d, places.ahead + x), z), hn::Set(d, places.ahead_m));
+    const auto ray_x = hn::LoadU(d, places.ray_x + x);
+    const auto ray_y = hn::LoadU(d, places.ray_y + x);
+    const auto along = [&](int axis) HWY_ATTR {
+      const float* const r = places.to_color.r[axis];
+      const auto ray =
+          hn::Add(hn::Add(hn::Mul(hn::Set(d, r[0]), ray_x), hn::Mul(hn::Set(d, r[1]), ray_y)),
+                  hn::Set(d, r[2]));
+      return hn::Add(hn::Mul(ray, z), hn::Set(d, places.to_color.t[axis]));
+    };
+    const auto side = along(0);
+    const auto ahead = along(2);
     hn::StoreU(z, d, depth_m + x);
     hn::StoreU(hn::Div(side, hn::Max(ahead, hn::Set(d, 1e-3F))), d, place + x);
   });

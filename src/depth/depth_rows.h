@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "depth/depth_noise.h"
+#include "geometry/projection.h"
 
 // What DepthCleaner does to a row of a depth image, on vector instructions.
 namespace diminish::depth_rows {
@@ -31,12 +32,12 @@ void remove_flying(const Row& row, std::ptrdiff_t pitch, std::uint16_t* result);
 /// row.depth: `reach` more steps on both sides. result: another image.
 void smooth(const Row& row, std::ptrdiff_t step, std::uint16_t* result);
 
-/// Where a row of depth pixels lies in the colour sensor's image: a pixel with depth z is at (side
-/// z + side_m) / (ahead z + ahead_m).
+/// A row of depth pixels as the colour sensor sees it, to its side and ahead of it: a point is in
+/// its picture at x / z.
 struct Places {
-  const float* side;   ///< of each pixel's ray
-  const float* ahead;  ///< likewise
-  float side_m, ahead_m;
+  const float* ray_x;  ///< of each pixel
+  const float* ray_y;
+  FloatTransform to_color;
 };
 /// Places increase along a row, except where something near reaches over what is behind it. Sets
 /// pixels to 0 that are less than `margin` from something more than `threshold_m` nearer. depth_m,

@@ -128,14 +128,17 @@ TEST(DepthRows, AveragesAreThoseOfThePlainVersion) {
 
 TEST(DepthRows, HiddenPixelsAreThoseOfThePlainVersion) {
   const int width = 151;
-  std::vector<float> side(width), ahead(width, 1.F);
-  for (int x = 0; x < width; ++x) side[x] = (static_cast<float>(x) - 75) / 120;
+  std::vector<float> ray_x(width), ray_y(width, 0.1F);
+  for (int x = 0; x < width; ++x) ray_x[x] = (static_cast<float>(x) - 75) / 120;
   const float margin = 1 / 120.F;
   const Image<std::uint16_t> depth = room(width, 60);
   int hidden = 0;
   for (int y = 0; y < 60; ++y) {
     // The sensors are beside each other, on either side.
-    const depth_rows::Places places{side.data(), ahead.data(), y % 2 == 0 ? 0.05F : -0.05F, 0.002F};
+    RigidTransform to_color;
+    to_color.rotation = Eigen::AngleAxisd(0.05, Eigen::Vector3d(1, 2, 3).normalized()).matrix();
+    to_color.translation = {y % 2 == 0 ? 0.05 : -0.05, 0.01, 0.002};
+    const depth_rows::Places places{ray_x.data(), ray_y.data(), FloatTransform(to_color)};
     std::vector<std::uint16_t> result(depth.row(y), depth.row(y) + width);
     // Half of the rows have long surfaces without noise.
     for (int x = 0; y % 4 < 2 && x < width; ++x) {
@@ -145,8 +148,9 @@ TEST(DepthRows, HiddenPixelsAreThoseOfThePlainVersion) {
     std::vector<float> depth_m(width), place(width);
     for (int x = 0; x < width; ++x) {
       depth_m[x] = static_cast<float>(result[x]) * unit_m;
-      place[x] = (places.side[x] * depth_m[x] + places.side_m) /
-                 (places.ahead[x] * depth_m[x] + places.ahead_m);
+      const Eigen::Vector3d point_m =
+          to_color * Eigen::Vector3d(depth_m[x] * Eigen::Vector3d(ray_x[x], ray_y[x], 1));
+      place[x] = static_cast<float>(point_m.x() / point_m.z());
     }
     remove_hidden(place, depth_m, margin, 0.05F, expected);
     std::vector<float> scratch(width + 16), more_scratch(width + 16);

@@ -12,8 +12,9 @@ constexpr int refinement_margin_px = 24;
 
 DepthStage::DepthStage(const Rig& rig) : depths_(rig.rgbd.size()) {
   for (const RgbdCamera& camera : rig.rgbd) {
-    visible_.emplace_back(camera, rig.color);
+    // A cleaner keeps the camera's rays; then the blocks need not make them anew.
     cleaners_.emplace_back(camera);
+    visible_.emplace_back(camera, rig.color);
   }
 }
 

@@ -91,18 +91,17 @@ const std::array<EdgeSnapping::Offset, 13> EdgeSnapping::offsets = [] {
 }();
 
 EdgeSnapping::EdgeSnapping(const RgbdCamera& camera)
-    : rays_(Lens(camera.depth).rays()),
+    : rays_(RayTable::of(camera.depth)),
       to_color_(camera.color_from_depth),
       color_(Lens(camera.color)),
       unit_m_(static_cast<float>(camera.depth_unit_m)),
       gap_{least_gap_m / unit_m_, least_gap_noise * DepthNoise().constant_m / unit_m_,
            least_gap_noise * DepthNoise().by_square * unit_m_},
-      closer_than_gap_(static_cast<std::uint16_t>(std::min(gap_.least, 65535.F))) {
-  is_edge_.resize(camera.depth.width, camera.depth.height, 0);
-  beside_edge_.resize(camera.depth.width, camera.depth.height, 0);
-  is_read_.resize(camera.depth.width, camera.depth.height, 0);
-  colors_.resize(camera.depth.width, camera.depth.height);
-}
+      is_edge_(camera.depth.width, camera.depth.height),
+      beside_edge_(camera.depth.width, camera.depth.height),
+      is_read_(camera.depth.width, camera.depth.height),
+      colors_(camera.depth.width, camera.depth.height),
+      closer_than_gap_(static_cast<std::uint16_t>(std::min(gap_.least, 65535.F))) {}
 
 void EdgeSnapping::snap(const Images& images, const DepthPart& part, Image<std::uint16_t>& depth) {
   if (part.bounds().empty()) return;
@@ -229,8 +228,8 @@ void EdgeSnapping::read_colors(const Images& images, const Rect& part) {
 /// The mean of nine pixels where a depth pixel of this depth lies in the colour image.
 std::optional<Bgr3> EdgeSnapping::color_at(const Images& images, int x, int y,
                                            float depth_m) const {
-  const float side = rays_(x, y).x() * depth_m;
-  const float down = rays_(x, y).y() * depth_m;
+  const float side = rays_->x(y)[x] * depth_m;
+  const float down = rays_->y(y)[x] * depth_m;
   const float ahead = to_color_.apply(2, side, down, depth_m);
   float u = 0;
   float v = 0;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "diminish/image.h"
 #include "diminish/rig.h"
 #include "geometry/projection.h"
+#include "geometry/ray_table.h"
 
 namespace diminish {
 
@@ -66,7 +68,7 @@ class EdgeSnapping {
                               std::size_t count) const;
   std::optional<Bgr3> color_at(const Images& images, int x, int y, float depth_m) const;
 
-  Image<Eigen::Vector2f> rays_;
+  std::shared_ptr<const RayTable> rays_;
   FloatTransform to_color_;
   Projection color_;
   float unit_m_;

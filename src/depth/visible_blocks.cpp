@@ -5,6 +5,15 @@
 #include <limits>
 
 #include "core/rows.h"
+#include "geometry/ray_table.h"
+
+#ifndef DIMINISH_DEPTH_VISIBLE_BLOCKS_COLUMNS
+#define DIMINISH_DEPTH_VISIBLE_BLOCKS_COLUMNS
+namespace diminish {
+/// That FindDepths may read and write beyond a row's end.
+constexpr int columns_ahead = 32;
+}  // namespace diminish
+#endif
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "depth/visible_blocks.cpp"
@@ -17,7 +26,8 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// The nearest and the farthest depth of each column of some rows; 65535 and 0 where there is none.
+/// The nearest and the farthest depth of some rows, of each column and the next 15; 65535 and 0
+/// where there is none. nearest, farthest: `columns_ahead` longer than the rows.
 void FindDepths(const std::uint16_t* first, std::ptrdiff_t pitch, int rows, int columns,
                 std::uint16_t* nearest, std::uint16_t* farthest) {
   const auto find = [&](auto d, int x) HWY_ATTR {
@@ -33,11 +43,21 @@ void FindDepths(const std::uint16_t* first, std::ptrdiff_t pitch, int rows, int 
     hn::StoreU(hn::SaturatedAdd(least, one), d, nearest + x);
     hn::StoreU(greatest, d, farthest + x);
   };
-  const hn::ScalableTag<std::uint16_t> d;
+  const hn::CappedTag<std::uint16_t, columns_ahead / 2> d;
   const auto lanes = static_cast<int>(hn::Lanes(d));
   int x = 0;
   for (; x + lanes <= columns; x += lanes) find(d, x);
   for (; x < columns; ++x) find(hn::CappedTag<std::uint16_t, 1>(), x);
+  std::fill_n(nearest + columns, columns_ahead, std::uint16_t{65535});
+  std::fill_n(farthest + columns, columns_ahead, std::uint16_t{0});
+  for (const int ahead : {1, 2, 4, 8}) {
+    for (x = 0; x < columns; x += lanes) {
+      hn::StoreU(hn::Min(hn::LoadU(d, nearest + x), hn::LoadU(d, nearest + x + ahead)), d,
+                 nearest + x);
+      hn::StoreU(hn::Max(hn::LoadU(d, farthest + x), hn::LoadU(d, farthest + x + ahead)), d,
+                 farthest + x);
+    }
+  }
 }
 
 }  // namespace
@@ -70,24 +90,21 @@ VisibleBlocks::VisibleBlocks(const RgbdCamera& camera, const Intrinsics& color)
       image_width_(camera.depth.width),
       image_height_(camera.depth.height) {
   visible_.resize((image_width_ + width - 1) / width, (image_height_ + height - 1) / height);
-  const Lens lens(camera.depth);
+  const std::shared_ptr<const RayTable> rays = RayTable::of(camera.depth);
   for (int row = 0; row < visible_.rows(); ++row) {
     for (int column = 0; column < visible_.columns(); ++column) {
       // A block is small: its other rays lie beyond these by less than the margin.
       const Rect pixels = with_neighbours(column, row, camera.depth.bounds());
-      Eigen::Array2d least = lens.undistort({pixels.x, pixels.y});
-      Eigen::Array2d greatest = least;
+      Eigen::Array2f least = (*rays)(pixels.x, pixels.y);
+      Eigen::Array2f greatest = least;
       for (const int y : {pixels.y, pixels.y + pixels.height / 2, pixels.bottom() - 1}) {
         for (const int x : {pixels.x, pixels.x + pixels.width / 2, pixels.right() - 1}) {
-          const Eigen::Array2d ray = lens.undistort({x, y});
+          const Eigen::Array2f ray = (*rays)(x, y);
           least = least.min(ray);
           greatest = greatest.max(ray);
         }
       }
-      const auto range = [&](int axis) {
-        return Range{static_cast<float>(least[axis]), static_cast<float>(greatest[axis])};
-      };
-      rays_.push_back({range(0), range(1)});
+      rays_.push_back({{least.x(), greatest.x()}, {least.y(), greatest.y()}});
     }
   }
   depth_m_.resize(rays_.size());
@@ -101,7 +118,7 @@ void VisibleBlocks::find(ImageView<std::uint16_t> depth, const RigidTransform& c
   const auto pitch = depth.stride() / std::ptrdiff_t{sizeof(std::uint16_t)};
   for_rows(image_height_, [&](Rows rows) {
     Depths& depths = depths_[rows.band];
-    depths.nearest.resize(static_cast<std::size_t>(image_width_));
+    depths.nearest.resize(static_cast<std::size_t>(image_width_ + columns_ahead));
     depths.farthest.resize(depths.nearest.size());
     for (int row = rows.first / height; row * height < rows.last; ++row) {
       const Rect band = with_neighbours(0, row, depth.bounds());
@@ -110,14 +127,11 @@ void VisibleBlocks::find(ImageView<std::uint16_t> depth, const RigidTransform& c
        depths.farthest.data());
       for (int column = 0; column < visible_.columns(); ++column) {
         const Rect pixels = with_neighbours(column, row, depth.bounds());
+        // A block and its neighbours, of fewer than 32 columns.
         const auto first = static_cast<std::size_t>(pixels.x);
-        const auto last = static_cast<std::size_t>(pixels.right());
-        std::uint16_t nearest = 65535;
-        std::uint16_t farthest = 0;
-        for (std::size_t x = first; x < last; ++x) {
-          nearest = std::min(nearest, depths.nearest[x]);
-          farthest = std::max(farthest, depths.farthest[x]);
-        }
+        const auto second = static_cast<std::size_t>(std::max(pixels.x, pixels.right() - width));
+        const std::uint16_t nearest = std::min(depths.nearest[first], depths.nearest[second]);
+        const std::uint16_t farthest = std::max(depths.farthest[first], depths.farthest[second]);
         Range& depth_m = depth_m_[visible_.index(column, row)];
         depth_m = {static_cast<float>(nearest) * unit_m_, static_cast<float>(farthest) * unit_m_};
         visible_(column, row) =

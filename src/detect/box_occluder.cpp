@@ -6,6 +6,7 @@
 #include "detect/silhouette/silhouette.h"
 #include "diminish/occluder_detector.h"
 #include "diminish/occluder_settings.h"
+#include "geometry/ray_table.h"
 #include "geometry/triangle_mesh.h"
 #include "source/find_camera.h"
 
@@ -25,7 +26,7 @@ class BoxOccluder : public OccluderDetector {
     }
     for (const RgbdCamera& camera : rig.rgbd) {
       rgbd_drawers_.emplace_back(Lens(camera.color));
-      depth_rays_.push_back(Lens(camera.depth).rays());
+      depth_rays_.push_back(RayTable::of(camera.depth));
     }
     meshes_.resize(rig.rgbd.size());
     object_in_rgbd_.resize(rig.rgbd.size());
@@ -96,7 +97,7 @@ class BoxOccluder : public OccluderDetector {
       for (int x = 0; x < depth.width(); ++x) {
         if (depth(x, y) == 0) continue;
         const double z = depth(x, y) * rig_.rgbd[k].depth_unit_m;
-        const Eigen::Vector3d x_in_depth = z * depth_rays_[k](x, y).cast<double>().homogeneous();
+        const Eigen::Vector3d x_in_depth = z * (*depth_rays_[k])(x, y).cast<double>().homogeneous();
         const Eigen::Vector3d x_in_box = box_from_depth * x_in_depth;
         if ((x_in_box.array() < min_.array() || x_in_box.array() > max_.array()).any()) continue;
         vertex_(x, y) = static_cast<int>(mesh.vertices.size());
@@ -176,7 +177,7 @@ class BoxOccluder : public OccluderDetector {
   Eigen::Vector3d max_;
   SilhouetteDrawer color_drawer_;
   std::vector<SilhouetteDrawer> rgbd_drawers_;
-  std::vector<Image<Eigen::Vector2f>> depth_rays_;
+  std::vector<std::shared_ptr<const RayTable>> depth_rays_;
   std::vector<TriangleMesh>
       meshes_;         ///< what each RGB-D camera sees in the box, in its depth frame
   Image<int> vertex_;  ///< index of a depth pixel's vertex, or -1

@@ -27,20 +27,20 @@ class ColorBlobDetector : public OccluderDetector {
     const Options& options = observation.options;
     OccluderReport report;
     report.name = name_;
-    // One image a core. (Not std::vector<bool>: its elements share bytes.)
-    std::vector<char> found(rgbd_.size() + 1, 0);
-    for_tasks(found.size(), [&](std::size_t i) {
+    // One image a core.
+    found_.assign(rgbd_.size() + 1, 0);
+    for_tasks(found_.size(), [&](std::size_t i) {
       if (i == 0) {
-        found[i] =
+        found_[i] =
             !frame.color.empty() && color_->find(frame.color, options.blob_spread, masks.color);
       } else if (frame.rgbd[i - 1].available()) {
-        found[i] = rgbd_[i - 1].find(frame.rgbd[i - 1].color, options.blob_spread,
-                                     masks.rgbd_color[i - 1]);
+        found_[i] = rgbd_[i - 1].find(frame.rgbd[i - 1].color, options.blob_spread,
+                                      masks.rgbd_color[i - 1]);
       }
     });
-    report.in_color = found[0] != 0;
-    report.in_rgbd.assign(found.begin() + 1, found.end());
-    const bool in_any = std::find(found.begin(), found.end(), char{1}) != found.end();
+    report.in_color = found_[0] != 0;
+    report.in_rgbd.assign(found_.begin() + 1, found_.end());
+    const bool in_any = std::find(found_.begin(), found_.end(), char{1}) != found_.end();
     if (!in_any) report.message = name_ + ": no blob of its colour and shape in any camera";
     return report;
   }
@@ -49,6 +49,7 @@ class ColorBlobDetector : public OccluderDetector {
   std::string name_;
   std::optional<ColorBlobFinder> color_;
   std::vector<ColorBlobFinder> rgbd_;
+  std::vector<char> found_;  ///< by image; not std::vector<bool>, whose elements share bytes
 };
 
 std::shared_ptr<const OccluderSettings> read_settings(const Config& place) {

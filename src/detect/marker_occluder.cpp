@@ -38,8 +38,8 @@ class MarkerOccluder : public ShapeDetector {
 
   bool needs_markers() const override { return true; }
 
-  OccluderReport outline(const Observation& observation, std::uint32_t object,
-                         OcclusionOutlines& outlines) override {
+  void outline(const Observation& observation, std::uint32_t object, OcclusionOutlines& outlines,
+               OccluderReport& report) override {
     // The colour camera first, then the RGB-D cameras' colour sensors.
     views_.clear();
     views_.push_back({&color_lens_, corners_in(observation.markers.color), RigidTransform{}});
@@ -52,9 +52,6 @@ class MarkerOccluder : public ShapeDetector {
     }
     locate_marker(views_, marker_.size_m, camera_from_marker_);
 
-    OccluderReport report;
-    report.name = name_;
-    report.in_rgbd.assign(rig_.rgbd.size(), false);
     if (const auto& pose = camera_from_marker_[0]) {
       add_shape(*pose, in_color_, object, outlines.color);
     }
@@ -65,8 +62,8 @@ class MarkerOccluder : public ShapeDetector {
       add_shape(rig_.rgbd[k].color_from_depth.inverse() * *pose, in_rgbd_depth_[k], object,
                 outlines.rgbd_depth[k]);
     }
+    report.name = name_;
     report.message = message();
-    return report;
   }
 
  private:
@@ -91,9 +88,9 @@ class MarkerOccluder : public ShapeDetector {
 
   /// What is missing. An object that is out of a camera's sight is not: its place is known.
   std::string message() const {
-    const std::string marker = name_ + ": marker " + std::to_string(marker_.id);
+    const auto marker = [&] { return name_ + ": marker " + std::to_string(marker_.id); };
     if (std::none_of(views_.begin(), views_.end(), [](const auto& view) { return view.corners; })) {
-      return marker + " not visible in any camera";
+      return marker() + " not visible in any camera";
     }
     std::string cameras;
     for (std::size_t i = 0; i < camera_from_marker_.size(); ++i) {
@@ -102,7 +99,7 @@ class MarkerOccluder : public ShapeDetector {
                  (i == 0 ? std::string("color") : color_sensor_name(rig_.rgbd[i - 1]));
     }
     if (cameras.empty()) return "";
-    return marker + " not visible in " + cameras +
+    return marker() + " not visible in " + cameras +
            ", and the way there from a camera that sees it is not known";
   }
 

@@ -22,7 +22,7 @@ OccluderStage::OccluderStage(const Rig& rig, const Scene& scene) : rig_(rig) {
     names_.push_back(spec.name);
   }
   drawings_.resize(1 + 2 * rig.rgbd.size());
-  masks_.color.resize(rig.color.width, rig.color.height, 0);
+  masks_.color = Mask(rig.color.width, rig.color.height);
   for (const RgbdCamera& camera : rig.rgbd) {
     masks_.rgbd_color.emplace_back(camera.color.width, camera.color.height);
     masks_.rgbd_depth.emplace_back(camera.depth.width, camera.depth.height);
@@ -46,17 +46,24 @@ void OccluderStage::detect(const Observation& observation, std::vector<OccluderR
   clear();
   outlines_.clear(rig_.rgbd.size());
   is_blank_ = true;
-  reports.clear();
+  reports.resize(detectors_.size());
   const std::vector<std::string> kept = kept_objects(observation.options);
   for (std::size_t i = 0; i < detectors_.size(); ++i) {
-    if (std::find(kept.begin(), kept.end(), names_[i]) != kept.end()) {
-      reports.push_back(
-          {.name = names_[i], .in_rgbd = std::vector<bool>(rig_.rgbd.size(), false), .kept = true});
-    } else if (auto* const shape = dynamic_cast<ShapeDetector*>(detectors_[i].get())) {
-      reports.push_back(shape->outline(observation, static_cast<std::uint32_t>(i), outlines_));
-    } else {
-      reports.push_back(detectors_[i]->detect(observation, masks_));
+    OccluderReport& report = reports[i];
+    auto* const shape = dynamic_cast<ShapeDetector*>(detectors_[i].get());
+    const bool is_kept = std::find(kept.begin(), kept.end(), names_[i]) != kept.end();
+    if (!is_kept && !shape) {
+      report = detectors_[i]->detect(observation, masks_);
       is_blank_ = false;
+      continue;
+    }
+    report.name = names_[i];
+    report.in_color = false;
+    report.in_rgbd.assign(rig_.rgbd.size(), false);
+    report.kept = is_kept;
+    report.message.clear();
+    if (shape && !is_kept) {
+      shape->outline(observation, static_cast<std::uint32_t>(i), outlines_, report);
     }
   }
   draw(observation.options, reports);

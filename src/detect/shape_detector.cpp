@@ -12,7 +12,9 @@ void OcclusionOutlines::clear(std::size_t cameras) {
 
 OccluderReport ShapeDetector::detect(const Observation& observation, OcclusionMasks& masks) {
   outlines_.clear(masks.rgbd_color.size());
-  OccluderReport report = outline(observation, 0, outlines_);
+  OccluderReport report;
+  report.in_rgbd.assign(masks.rgbd_color.size(), false);
+  outline(observation, 0, outlines_, report);
   const auto fill = [&](const Polygons& polygons, Mask& mask) {
     std::uint8_t covers = 0;
     filler_.fill(polygons, mask, {&covers, 1});

@@ -23,9 +23,9 @@ struct OcclusionOutlines {
 class ShapeDetector : public OccluderDetector {
  public:
   /// Adds the object's outlines, labelled `object`, and leaves the others alone. What they cover is
-  /// known only after drawing, so the report's `in_color` and `in_rgbd` stay false.
-  virtual OccluderReport outline(const Observation& observation, std::uint32_t object,
-                                 OcclusionOutlines& outlines) = 0;
+  /// known only after drawing: of the report, fills the name and the message.
+  virtual void outline(const Observation& observation, std::uint32_t object,
+                       OcclusionOutlines& outlines, OccluderReport& report) = 0;
 
   /// Outlines, then draws.
   OccluderReport detect(const Observation& observation, OcclusionMasks& masks) override;

@@ -162,14 +162,6 @@ Eigen::Vector2d Lens::undistort(const Eigen::Vector2d& pixel) const {
   });
 }
 
-Image<Eigen::Vector2f> Lens::rays() const {
-  Image<Eigen::Vector2f> rays(intrinsics_.width, intrinsics_.height, Eigen::Vector2f::Zero());
-  for (int y = 0; y < rays.height(); ++y) {
-    for (int x = 0; x < rays.width(); ++x) rays(x, y) = undistort({x, y}).cast<float>();
-  }
-  return rays;
-}
-
 bool Lens::covers_picture() const {
   const double right = intrinsics_.width - 1;
   const double bottom = intrinsics_.height - 1;

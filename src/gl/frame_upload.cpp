@@ -6,7 +6,9 @@
 #include <cstring>
 
 #include "blend/layers.h"
+#include "core/rows.h"
 #include "diminish/error.h"
+#include "geometry/ray_table.h"
 #include "render/sdct.h"
 
 namespace diminish::gl {
@@ -74,8 +76,10 @@ void FrameUpload::upload_rays(const Rig& rig) {
   std::vector<Eigen::Vector2f> all;
   all.reserve(depth_pixels_);
   for (const RgbdCamera& camera : rig.rgbd) {
-    const Image<Eigen::Vector2f> rays = Lens(camera.depth).rays();
-    all.insert(all.end(), rays.begin(), rays.end());
+    const std::shared_ptr<const RayTable> rays = RayTable::of(camera.depth);
+    for (int y = 0; y < rays->height(); ++y) {
+      for (int x = 0; x < rays->width(); ++x) all.push_back((*rays)(x, y));
+    }
   }
   const std::size_t bytes = all.size() * sizeof(Eigen::Vector2f);
   rays_.reserve(std::max<std::size_t>(bytes, 4));
@@ -95,10 +99,13 @@ void FrameUpload::pack(const FrameSet& frame, const DepthImages& depths, const P
   const auto append = [&]<class Pixel>(const ImageView<Pixel>& image) {
     const std::size_t start = at;
     const std::size_t row_bytes = static_cast<std::size_t>(image.width()) * sizeof(Pixel);
-    for (int y = 0; y < image.height(); ++y, at += row_bytes) {
-      std::memcpy(mapped_.data() + at, image.row(y), row_bytes);
-    }
-    at = start + whole_words(at - start);
+    for_rows(image.height(), [&](Rows rows) {
+      for (int y = rows.first; y < rows.last; ++y) {
+        std::memcpy(mapped_.data() + start + static_cast<std::size_t>(y) * row_bytes, image.row(y),
+                    row_bytes);
+      }
+    });
+    at = start + whole_words(static_cast<std::size_t>(image.height()) * row_bytes);
     return static_cast<std::uint32_t>(start / 4);
   };
   for (std::size_t k = 0; k < of_rig_.size(); ++k) {

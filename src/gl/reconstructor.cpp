@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "composite/object_pixels.h"
 #include "core/rows.h"
 #include "gl/camera_blending.h"
 #include "gl/frame_compositor.h"
@@ -43,20 +44,15 @@ std::size_t end_of_first(const Rect& region) {
 /// around the region. textures: null where the picture goes to the result.
 void show_camera(const FrameInputs& inputs, PictureTextures* textures, DiminishedFrame& result) {
   const ImageView<Bgr> camera = inputs.frame.color;
-  const Mask& mask = inputs.masks.color;
   const Rect given = textures ? Rect{} : camera.bounds();
   result.picture.resize(given.width, given.height);
-  result.provenance.resize(given.width, given.height);
-  result.mask.resize(camera.width(), camera.height());
+  set_objects(inputs.masks.color, inputs.objects, given, result);
+  if (textures) return textures->pack(camera);
   for_rows(camera.height(), [&](Rows rows) {
     for (int y = rows.first; y < rows.last; ++y) {
-      std::copy_n(mask.row(y), camera.width(), result.mask.row(y));
-      if (textures) continue;
       std::copy_n(camera.row(y), camera.width(), result.picture.row(y));
-      std::fill_n(result.provenance.row(y), camera.width(), provenance::camera);
     }
   });
-  if (textures) textures->pack(camera);
 }
 
 }  // namespace

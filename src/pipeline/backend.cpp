@@ -4,6 +4,7 @@
 
 #include "diminish/error.h"
 #include "pipeline/stage_timer.h"
+#include "reconstruct/clear_outside.h"
 
 namespace diminish {
 namespace {
@@ -73,10 +74,16 @@ void Backend::draw_by_chosen(const FrameInputs& inputs, DiminishedFrame& result)
 }
 
 void Backend::reconstruct(Reconstructor& reconstructor, const FrameInputs& inputs,
-                          DiminishedFrame& result) {
+                          DiminishedFrame& result) const {
+  result.report.drawing.device = reconstructor.device();
+  if (inputs.region.empty()) {
+    // Then nothing was prepared that could be drawn.
+    clear_outside(rig_.color, inputs.region, result.reconstruction);
+    resize_second(false, rig_.color, result.reconstruction.second);
+    return;
+  }
   reconstructor.reconstruct(inputs.frame, inputs.depths, inputs.poses, inputs.masks, inputs.region,
                             inputs.options, result.reconstruction);
-  result.report.drawing.device = reconstructor.device();
   result.report.drawing.passes = reconstructor.gpu_passes();
 }
 

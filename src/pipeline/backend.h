@@ -35,8 +35,8 @@ class Backend {
  private:
   Reconstructor& chosen();
   void draw_by_chosen(const FrameInputs& inputs, DiminishedFrame& result);
-  static void reconstruct(Reconstructor& reconstructor, const FrameInputs& inputs,
-                          DiminishedFrame& result);
+  void reconstruct(Reconstructor& reconstructor, const FrameInputs& inputs,
+                   DiminishedFrame& result) const;
 
   Rig rig_;
   std::string name_;

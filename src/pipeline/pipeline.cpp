@@ -49,6 +49,7 @@ void begin(const FrameSet& frame, DiminishedFrame& result) {
   result.picture = {};
   result.mask = {};
   result.provenance = {};
+  result.objects = {};
   result.reconstruction = {};
   result.surfaces = {};
 }
@@ -87,6 +88,10 @@ struct Pipeline::Implementation {
     if (options.whole_view) return whole;
     return intersect(grow(occluders.objects(), options.surroundings_px), whole);
   }
+  /// Whether there is anything to draw. A shadow may be in view without its object.
+  bool draws() const {
+    return options.whole_view || options.remove_shadows || !occluders.objects().empty();
+  }
   Background::Wanted wanted_background() const {
     const bool shadows = options.lift_shadows || options.remove_shadows;
     return {shadows || methods.inpainting.uses_surfaces, shadows};
@@ -100,7 +105,6 @@ struct Pipeline::Implementation {
     }
   }
   void refine_poses(const FrameSet& frame, Poses& poses) {
-    poses = measured_poses;
     if (!options.refine_poses) return;
     const auto correction = refinement.refine(frame, occluders.masks().color, samples);
     if (correction) refinement.apply(*correction, poses, samples);
@@ -197,28 +201,32 @@ void Pipeline::Implementation::process(const FrameSet& frame, DiminishedFrame& r
     occluders.detect({frame, report.markers, measured_poses, options}, report.occluders);
   });
 
-  // 3.3 Reconstruction of what is behind them
-  do_both(
-      [&] {
-        stage(Stage::depth, [&] {
-          const Rect drawn = options.remove_shadows ? rig.color.bounds() : surroundings();
-          depth.clean(frame, measured_poses, masks, drawn, options);
-        });
-      },
-      [&] {
-        stage(Stage::samples, [&] { sampler.sample(frame, measured_poses, masks, samples); });
-        stage(Stage::refinement, [&] { refine_poses(frame, report.poses); });
-        do_both(
-            [&] {
-              stage(Stage::background,
-                    [&] { background.find(objects, samples, wanted_background()); });
-            },
-            [&] {
-              stage(Stage::color_maps, [&] {
-                color_maps.fit(frame.color, masks.color, samples.surfaces, methods.color.maps);
+  // 3.3 Reconstruction of what is behind them, for which the scene has to be known
+  report.poses = measured_poses;
+  background.clear();
+  if (draws()) {
+    do_both(
+        [&] {
+          stage(Stage::depth, [&] {
+            const Rect drawn = options.remove_shadows ? rig.color.bounds() : surroundings();
+            depth.clean(frame, measured_poses, masks, drawn, options);
+          });
+        },
+        [&] {
+          stage(Stage::samples, [&] { sampler.sample(frame, measured_poses, masks, samples); });
+          stage(Stage::refinement, [&] { refine_poses(frame, report.poses); });
+          do_both(
+              [&] {
+                stage(Stage::background,
+                      [&] { background.find(objects, samples, wanted_background()); });
+              },
+              [&] {
+                stage(Stage::color_maps, [&] {
+                  color_maps.fit(frame.color, masks.color, samples.surfaces, methods.color.maps);
+                });
               });
-            });
-      });
+        });
+  }
   stage(Stage::drawing, [&] {
     choose_region();
     backend.draw({frame, depth.depths(), report.poses, masks, objects, region, options, methods,

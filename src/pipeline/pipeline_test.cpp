@@ -228,6 +228,54 @@ TEST_F(PipelineOnAnalyticScene, NothingOfAFrameInfluencesTheNext) {
   EXPECT_EQ(result.report.messages, fresh.report.messages);
 }
 
+TEST_F(PipelineOnAnalyticScene, AFrameWithoutObjectsIsTheCamerasAndSkipsWhatNobodySees) {
+  FrameSet empty = frame;
+  empty.masks[0].color.fill(0);
+  for (const std::string& backend : Registry<Reconstructor>::names()) {
+    Options options;
+    options.backend = backend;
+    try {
+      Pipeline pipeline(rig, scene, options);
+      pipeline.process(frame, result);
+      ASSERT_GT(result.report.valid_pixels, 0U) << backend;
+      pipeline.process(empty, result);
+      EXPECT_EQ(result.report.mask_pixels, 0U) << backend;
+      for (int y = 0; y < result.picture.height(); ++y) {
+        for (int x = 0; x < result.picture.width(); ++x) {
+          ASSERT_EQ(result.picture(x, y), empty.color(x, y)) << backend << x << ' ' << y;
+          ASSERT_EQ(result.mask(x, y), 0) << backend << x << ' ' << y;
+          ASSERT_EQ(result.provenance(x, y), provenance::camera) << backend << x << ' ' << y;
+          if (result.reconstruction.color.empty()) continue;
+          ASSERT_EQ(result.reconstruction.color(x, y), Bgra{}) << backend << x << ' ' << y;
+        }
+      }
+      for (const Stage stage : {Stage::depth, Stage::samples, Stage::refinement, Stage::background,
+                                Stage::color_maps}) {
+        EXPECT_EQ(result.report.milliseconds[static_cast<std::size_t>(stage)], 0) << backend;
+      }
+      // Nothing is left over from either.
+      pipeline.process(frame, result);
+      DiminishedFrame fresh;
+      Pipeline(rig, scene, options).process(frame, fresh);
+      EXPECT_EQ(result.picture, fresh.picture) << backend;
+      EXPECT_EQ(result.mask, fresh.mask) << backend;
+      EXPECT_EQ(result.provenance, fresh.provenance) << backend;
+      EXPECT_EQ(result.objects, (bounding_box(fresh.mask))) << backend;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.category(), Error::device) << error.what();  // no such GPU here
+    }
+  }
+}
+
+TEST_F(PipelineOnAnalyticScene, TheWholeViewIsDrawnWithoutObjects) {
+  frame.masks[0].color.fill(0);
+  Options options;
+  options.whole_view = true;
+  Pipeline(rig, scene, options).process(frame, result);
+  const auto& source = result.reconstruction.source;
+  EXPECT_GT(count_nonzero(source, source.bounds()), source.size() / 2);
+}
+
 TEST_F(PipelineOnAnalyticScene, AFrameWithoutColorImageIsSkipped) {
   Pipeline pipeline(rig, scene, {});
   pipeline.process(frame, result);

@@ -28,9 +28,10 @@ inline void clear_outside(const Intrinsics& color, const TiledRegion& region,
     detail::clear_outside(region, reconstruction.region, reconstruction.depth_m);
     detail::clear_outside(region, reconstruction.region, reconstruction.source);
   } else {
-    reconstruction.color.resize(color.width, color.height, {});
-    reconstruction.depth_m.resize(color.width, color.height, 0.F);
-    reconstruction.source.resize(color.width, color.height, 0);
+    // Of zeros.
+    reconstruction.color = Image<Bgra>(color.width, color.height);
+    reconstruction.depth_m = Image<float>(color.width, color.height);
+    reconstruction.source = Image<std::uint8_t>(color.width, color.height);
   }
   reconstruction.region = region;
 }

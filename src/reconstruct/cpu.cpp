@@ -27,7 +27,7 @@ class CameraMesh {
   static constexpr int band_px = 64;
 
   CameraMesh(const RgbdCamera& camera, const Intrinsics& color)
-      : visible_(camera, color), rows_(camera, color) {}
+      : rows_(camera, color), visible_(camera, color) {}
 
   /// What is to be drawn.
   struct Input {
@@ -111,8 +111,8 @@ class CameraMesh {
     }
   }
 
-  VisibleBlocks visible_;
   VertexRows rows_;
+  VisibleBlocks visible_;
   Rect region_;
   int first_row_ = 0, row_count_ = 0;  ///< of the depth image: those that may be visible
   std::vector<VertexRow> vertices_;    ///< of these rows
@@ -219,8 +219,9 @@ class VectorizedReconstructor : public Reconstructor {
         return pixels;
       });
     }
-    std::stable_sort(drawn_.begin(), drawn_.end(),
-                     [](const Drawn& a, const Drawn& b) { return a.pixels > b.pixels; });
+    std::sort(drawn_.begin(), drawn_.end(), [](const Drawn& a, const Drawn& b) {
+      return a.pixels != b.pixels ? a.pixels > b.pixels : a.camera < b.camera;
+    });
     while (drawn_.size() > 1 && drawn_.back().pixels == 0) drawn_.pop_back();
   }
 

@@ -16,7 +16,7 @@ std::int32_t to_subpixels(float pixels) {
 
 DepthMesh::DepthMesh(const RgbdCamera& camera, const Intrinsics& color)
     : camera_(camera),
-      rays_(Lens(camera.depth).rays()),
+      rays_(RayTable::of(camera.depth)),
       to_rgbd_color_(camera.color_from_depth),
       color_(Lens(color)),
       rgbd_color_(Lens(camera.color)) {}
@@ -25,8 +25,8 @@ MeshVertex DepthMesh::vertex(const Frame& frame, int column, int row) const {
   const std::uint16_t value = frame.depth(column, row);
   if (value == 0 || frame.depth_mask(column, row) != 0) return {};
   const float z = static_cast<float>(value) * static_cast<float>(camera_.depth_unit_m);
-  const float x = rays_(column, row).x() * z;
-  const float y = rays_(column, row).y() * z;
+  const float x = rays_->x(row)[column] * z;
+  const float y = rays_->y(row)[column] * z;
 
   const float rgbd_z = to_rgbd_color_.apply(2, x, y, z);
   if (!(rgbd_z > sdct::near_plane_m)) return {};
@@ -56,8 +56,8 @@ MeshVertex DepthMesh::vertex(const Frame& frame, int column, int row) const {
 Eigen::Vector3f DepthMesh::point_m(const Frame& frame, int column, int row) const {
   const float z =
       static_cast<float>(frame.depth(column, row)) * static_cast<float>(camera_.depth_unit_m);
-  const float x = rays_(column, row).x() * z;
-  const float y = rays_(column, row).y() * z;
+  const float x = rays_->x(row)[column] * z;
+  const float y = rays_->y(row)[column] * z;
   return {frame.to_color.apply(0, x, y, z), frame.to_color.apply(1, x, y, z),
           frame.to_color.apply(2, x, y, z)};
 }

@@ -2,11 +2,13 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
 
 #include "diminish/frame_set.h"
 #include "diminish/image.h"
 #include "diminish/rig.h"
 #include "geometry/projection.h"
+#include "geometry/ray_table.h"
 
 namespace diminish {
 
@@ -45,7 +47,7 @@ class DepthMesh {
 
  private:
   RgbdCamera camera_;
-  Image<Eigen::Vector2f> rays_;
+  std::shared_ptr<const RayTable> rays_;
   FloatTransform to_rgbd_color_;
   Projection color_;
   Projection rgbd_color_;

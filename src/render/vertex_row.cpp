@@ -214,37 +214,23 @@ void VertexRow::resize(int width) {
 }
 
 VertexRows::VertexRows(const RgbdCamera& camera, const Intrinsics& color)
-    : width_(camera.depth.width),
-      height_(camera.depth.height),
-      padded_width_((width_ + VertexRow::block - 1) / VertexRow::block * VertexRow::block),
+    : rays_(RayTable::of(camera.depth)),
       constants_{Projection(Lens(color)),
                  Projection(Lens(camera.color)),
                  FloatTransform(camera.color_from_depth),
                  static_cast<float>(camera.depth_unit_m),
                  static_cast<float>(camera.color.width - 1),
                  static_cast<float>(camera.color.height - 1)} {
-  const Image<Eigen::Vector2f> rays = Lens(camera.depth).rays();
-  const std::size_t size =
-      static_cast<std::size_t>(padded_width_) * static_cast<std::size_t>(height_);
-  ray_x_.assign(size, 0.F);
-  ray_y_.assign(size, 0.F);
-  for (int row = 0; row < height_; ++row) {
-    for (int column = 0; column < width_; ++column) {
-      const auto at = static_cast<std::size_t>(row * padded_width_ + column);
-      ray_x_[at] = rays(column, row).x();
-      ray_y_[at] = rays(column, row).y();
-    }
-  }
+  static_assert(RayTable::block % VertexRow::block == 0);
 }
 
 void VertexRows::project(const Frame& frame, int row, VertexRow& vertices) const {
   const int first = frame.first_block * VertexRow::block;
-  const std::ptrdiff_t rays = static_cast<std::ptrdiff_t>(row) * padded_width_ + first;
-  const float* const ray_x = ray_x_.data() + rays;
-  const float* const ray_y = ray_y_.data() + rays;
+  const float* const ray_x = rays_->x(row) + first;
+  const float* const ray_y = rays_->y(row) + first;
   HWY_DYNAMIC_DISPATCH(ProjectRow)
   (constants_, frame.to_color, frame.visible.row(row) + frame.first_block,
-   std::min(frame.blocks * VertexRow::block, width_ - first), frame.depth.row(row) + first,
+   std::min(frame.blocks * VertexRow::block, width() - first), frame.depth.row(row) + first,
    frame.depth_mask.row(row) + first, ray_x, ray_y, vertices);
   for (int block = 0; block < frame.blocks; ++block) {
     if (vertices.bounds[static_cast<std::size_t>(block)].empty()) continue;

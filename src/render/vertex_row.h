@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "depth/visible_blocks.h"
@@ -8,6 +9,7 @@
 #include "diminish/image.h"
 #include "diminish/rig.h"
 #include "geometry/projection.h"
+#include "geometry/ray_table.h"
 
 namespace diminish {
 
@@ -43,8 +45,8 @@ class VertexRows {
   /// The vertices of one row. Those without a colour are none.
   void project(const Frame& frame, int row, VertexRow& vertices) const;
 
-  int width() const { return width_; }
-  int height() const { return height_; }
+  int width() const { return rays_->width(); }
+  int height() const { return rays_->height(); }
 
   /// Input of the kernels.
   struct Constants {
@@ -54,9 +56,8 @@ class VertexRows {
   };
 
  private:
-  int width_, height_, padded_width_;
+  std::shared_ptr<const RayTable> rays_;
   Constants constants_;
-  std::vector<float> ray_x_, ray_y_;
 };
 
 }  // namespace diminish

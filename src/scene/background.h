@@ -23,6 +23,11 @@ class Background {
   };
   /// Finds the planes and shadows. objects: their box in the colour camera's picture.
   void find(const Rect& objects, const SceneSamples& samples, const Wanted& wanted);
+  /// Nothing was looked for.
+  void clear() {
+    has_planes_ = false;
+    shadows_.clear();
+  }
   /// Null if they were not looked for.
   const std::vector<BackgroundPlane>* planes() const {
     return has_planes_ ? &planes_.planes() : nullptr;

@@ -72,7 +72,7 @@ std::optional<double> correlate(const cv::Mat& a, const cv::Mat& seen) {
 PhotometricAgreement::PhotometricAgreement(const Rig& rig)
     : rig_(rig), small_(shrunk(rig.color)), small_lens_(small_) {
   for (const RgbdCamera& camera : rig.rgbd) {
-    cameras_.push_back({Lens(camera.color), Lens(camera.depth).rays()});
+    cameras_.push_back({Lens(camera.color), RayTable::of(camera.depth)});
   }
 }
 
@@ -95,7 +95,7 @@ std::optional<double> PhotometricAgreement::of(const FrameSet& frame, const Pose
     for (int x = 0; x < rgbd.depth.width(); ++x) {
       if (rgbd.depth(x, y) == 0) continue;
       const double z = rgbd.depth(x, y) * parameters.depth_unit_m;
-      const Eigen::Vector3d p = z * camera.depth_rays(x, y).cast<double>().homogeneous();
+      const Eigen::Vector3d p = z * (*camera.depth_rays)(x, y).cast<double>().homogeneous();
       const Eigen::Vector3d in_user = user_from_depth * p;
       const auto to = small_lens_.project(in_user);
       if (!to) continue;

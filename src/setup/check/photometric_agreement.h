@@ -1,12 +1,13 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "diminish/frame_set.h"
 #include "diminish/poses.h"
 #include "diminish/rig.h"
+#include "geometry/ray_table.h"
 
 namespace diminish {
 
@@ -28,7 +29,7 @@ class PhotometricAgreement {
   Lens small_lens_;
   struct Camera {
     Lens color_lens;
-    Image<Eigen::Vector2f> depth_rays;
+    std::shared_ptr<const RayTable> depth_rays;
   };
   std::vector<Camera> cameras_;
 };
