@@ -15,10 +15,14 @@
 
 namespace diminish {
 
-/// Where a pixel of the picture comes from. Values 1 to 253: RGB-D camera `value - 1`.
+/// Where a pixel of the picture comes from. Values 1 to 199: RGB-D camera `value - 1`.
 namespace provenance {
 inline constexpr std::uint8_t camera = 0;
 inline constexpr std::uint8_t first_rgbd = 1;
+/// Seen by the colour camera earlier. An RGB-D camera sees now that it is still there.
+inline constexpr std::uint8_t witnessed = 200;
+/// Seen by the colour camera earlier. No camera looks there now.
+inline constexpr std::uint8_t remembered = 201;
 inline constexpr std::uint8_t inpainted = 254;
 inline constexpr std::uint8_t unknown = 255;  ///< part of the object, with nothing to show there
 }  // namespace provenance
@@ -28,9 +32,11 @@ struct FrameReport {
   Markers markers;
   Poses poses;  ///< as refined, where something is drawn
   std::vector<OccluderReport> occluders;
-  std::size_t mask_pixels = 0;     ///< to be replaced
-  std::size_t valid_pixels = 0;    ///< of these, seen by an RGB-D camera
-  std::size_t missing_pixels = 0;  ///< of these, not seen by any
+  std::size_t mask_pixels = 0;        ///< to be replaced
+  std::size_t valid_pixels = 0;       ///< of these, seen by an RGB-D camera now, or remembered
+  std::size_t witnessed_pixels = 0;   ///< of the valid ones (provenance::witnessed)
+  std::size_t remembered_pixels = 0;  ///< likewise (provenance::remembered)
+  std::size_t missing_pixels = 0;     ///< of these, neither
   StageTimes milliseconds{};
   double frame_ms = 0;  ///< of the whole frame
   DrawingReport drawing;

@@ -31,6 +31,8 @@ struct Options {
   int surroundings_px = 16;
   bool whole_view = false;
   std::string color_correct = "field_membrane";
+  std::string memory = "off";
+  double memory_max_age_s = 60;
   std::string inpaint = "surfaces";
   int inpaint_radius_px = 5;
   std::string mode = "remove";
@@ -128,6 +130,14 @@ void for_each_option(AnyOptions& options, Visit&& visit) {
                    .help = "How the RGB-D cameras' colours are matched to the colour camera's",
                    .kind = "colour correction"},
         options.color_correct);
+  visit(OptionInfo{.name = "memory",
+                   .unit = "method",
+                   .help = "What the colour camera saw earlier: not shown, only where an RGB-D "
+                           "camera sees that it is still there, or also where none looks now",
+                   .choices = {"off", "witnessed", "on"}},
+        options.memory);
+  visit(OptionInfo{"memory_max_age_s", "seconds", "What was seen longer ago is forgotten", 0, 1e6},
+        options.memory_max_age_s);
   visit(OptionInfo{.name = "inpaint",
                    .unit = "method",
                    .help = "How pixels that no RGB-D camera sees are filled",

@@ -13,9 +13,9 @@
 
 namespace diminish {
 
-/// The whole frame: a FrameSet in, a DiminishedFrame out. Nothing of a frame influences the next;
-/// what is kept between frames is memory and what follows from the configuration. One object may
-/// be used by one thread at a time.
+/// The whole frame: a FrameSet in, a DiminishedFrame out. With the option `memory`, what the colour
+/// camera has seen in earlier frames is used; else nothing of a frame influences the next. One
+/// object may be used by one thread at a time.
 ///
 /// Threads are the caller's: `process` shares its work among those of the oneTBB arena that it is
 /// called in (oneapi::tbb::task_arena), and starts none itself. Outside any arena that is one of
@@ -46,6 +46,16 @@ class DIMINISH_EXPORT Pipeline {
   /// The last frame's picture. It has no name if the frame was skipped, no texture is wanted, or
   /// the GPU failed; a message says so, and `result.picture` is filled.
   const GlTexture& texture() const;
+
+  /// Shares what `other` remembers: both work on frames of one sequence. Call it before the first
+  /// frame. Then, for each frame and in the frames' order, call `take_turn`, and after it, from any
+  /// thread, `process` or `pass_turn`: a frame waits for what the frames before it have learnt.
+  void share_memory(Pipeline& other);
+  void take_turn();
+  /// For a frame that will not be processed.
+  void pass_turn();
+  /// Forgets all that was seen before the next frame.
+  void forget();
 
   /// `result`'s memory is used again. Never throws for what a camera delivered: that is reported.
   void process(const FrameSet& frame, DiminishedFrame& result);

@@ -15,15 +15,16 @@ enum class Stage {
   background,   ///< planes, and the shadows that the objects cast on them
   color_maps,   ///< how the cameras' colours relate
   drawing,      ///< the scene from the colour camera's viewpoint
+  memory,       ///< what was seen earlier
   compositing,  ///< which pixels were seen, and the plane and light of each
   colors,       ///< seen pixels in the colour camera's colours, without shadows
   inpainting,   ///< pixels that were not seen
   finish        ///< noise, rims, view mode
 };
-inline constexpr std::size_t stage_count = 12;
+inline constexpr std::size_t stage_count = 13;
 inline constexpr std::array<const char*, stage_count> stage_names = {
-    "poses",      "objects", "depth",       "samples", "refinement", "background",
-    "color_maps", "drawing", "compositing", "colors",  "inpainting", "finish"};
+    "poses",   "objects", "depth",       "samples", "refinement", "background", "color_maps",
+    "drawing", "memory",  "compositing", "colors",  "inpainting", "finish"};
 
 /// Milliseconds by Stage. `depth` runs at the same time as the four stages after it, so the sum may
 /// exceed the frame's time.

@@ -63,7 +63,7 @@ class Plain {
 
   bool is_seen(int x, int y) const {
     return box_.contains(x, y) && origins_(x, y) >= provenance::first_rgbd &&
-           origins_(x, y) < provenance::inpainted;
+           origins_(x, y) < provenance::witnessed;
   }
   Bgr smooth(int x, int y) const {
     std::uint32_t sums[3] = {};

@@ -18,7 +18,8 @@ namespace diminish {
 struct FrameMethods {
   ColorCorrector::Declaration color;
   Inpainter::Declaration inpainting;
-  std::string mode;  ///< the view mode's name
+  std::string mode;        ///< the view mode's name
+  bool remembers = false;  ///< something is put between drawing and compositing
 };
 
 /// A frame when only its pixels are left to do: its images, and what follows from thin samples of

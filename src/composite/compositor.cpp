@@ -10,10 +10,11 @@ namespace {
 
 /// Pixels.
 struct Counts {
-  std::size_t mask = 0, missing = 0;
+  std::size_t mask = 0, missing = 0, witnessed = 0, remembered = 0;
 
   friend Counts operator+(const Counts& a, const Counts& b) {
-    return {a.mask + b.mask, a.missing + b.missing};
+    return {a.mask + b.mask, a.missing + b.missing, a.witnessed + b.witnessed,
+            a.remembered + b.remembered};
   }
 };
 
@@ -41,6 +42,7 @@ void Compositor::sort(const Inputs& inputs, DiminishedFrame& result) {
   result.picture.resize(width, height);
   set_objects(occlusion, objects, occlusion.bounds(), result);
   const Rect drawn = intersect(objects, result.reconstruction.region);
+  const bool remembers = inputs.options.memory != "off";
   const Counts counts = sum_over_rows(height, [&](Rows rows) {
     for (int y = rows.first; y < rows.last; ++y) {
       std::copy_n(camera.row(y), width, result.picture.row(y));
@@ -52,12 +54,18 @@ void Compositor::sort(const Inputs& inputs, DiminishedFrame& result) {
     }
     const Rect sorted =
         intersect({objects.x, rows.first, objects.width, rows.last - rows.first}, objects);
-    return Counts{count_nonzero(occlusion, sorted),
-                  count_equal(result.provenance, provenance::inpainted, sorted)};
+    const auto count = [&](std::uint8_t origin) {
+      return count_equal(result.provenance, origin, sorted);
+    };
+    return Counts{count_nonzero(occlusion, sorted), count(provenance::inpainted),
+                  remembers ? count(provenance::witnessed) : 0,
+                  remembers ? count(provenance::remembered) : 0};
   });
   FrameReport& report = result.report;
   report.mask_pixels = counts.mask;
   report.missing_pixels = counts.missing;
+  report.witnessed_pixels = counts.witnessed;
+  report.remembered_pixels = counts.remembered;
   report.valid_pixels = report.mask_pixels - report.missing_pixels;
 }
 
@@ -68,6 +76,23 @@ void Compositor::correct_colors(const Inputs& inputs, ColorMapsBySource maps,
                       result.picture);
   }
   if (!result.surfaces.light.empty()) shadow_lifting_.lift(result.surfaces, result.picture);
+  if (result.report.witnessed_pixels + result.report.remembered_pixels > 0) {
+    show_remembered(inputs.objects, result);
+  }
+}
+
+/// The colour camera's own colours, which were seen without the objects' shadows.
+void Compositor::show_remembered(const Rect& part, DiminishedFrame& result) {
+  for_rows(part.height, [&](Rows rows) {
+    for (int y = part.y + rows.first; y < part.y + rows.last; ++y) {
+      for (int x = part.x; x < part.right(); ++x) {
+        const std::uint8_t origin = result.provenance(x, y);
+        if (origin != provenance::witnessed && origin != provenance::remembered) continue;
+        const Bgra& color = result.reconstruction.color(x, y);
+        result.picture(x, y) = {color.b, color.g, color.r};
+      }
+    }
+  });
 }
 
 void Compositor::inpaint(const Inputs& inputs, Inpainter& inpainter, DiminishedFrame& result) {

@@ -40,6 +40,8 @@ class Compositor {
   void finish(const Inputs& inputs, const ViewMode& mode, DiminishedFrame& result);
 
  private:
+  static void show_remembered(const Rect& part, DiminishedFrame& result);
+
   ShadowLifting shadow_lifting_;
   ColorSmoothing color_smoothing_;
   SoftRim soft_rim_;

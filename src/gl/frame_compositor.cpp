@@ -51,6 +51,8 @@ bool FrameCompositor::takes_over(Stage stage, const FrameMethods& methods) {
   using ColorRule = ColorCorrector::Declaration::Rule;
   using FillingRule = Inpainter::Declaration::Rule;
   switch (stage) {
+    case Stage::memory:
+      return !methods.remembers;
     case Stage::compositing:
     case Stage::colors:
       return methods.color.rule != ColorRule::own;

@@ -9,6 +9,7 @@
 #include "depth/depth_stage.h"
 #include "detect/occlusion_masks.h"
 #include "diminish/validate.h"
+#include "memory/memory_stage.h"
 #include "pipeline/backend.h"
 #include "pipeline/frame_check.h"
 #include "pipeline/frame_texture.h"
@@ -31,6 +32,7 @@ void begin(const FrameSet& frame, DiminishedFrame& result) {
   result.stamp_s = frame.stamp_s;
   FrameReport& report = result.report;
   report.mask_pixels = report.valid_pixels = report.missing_pixels = 0;
+  report.witnessed_pixels = report.remembered_pixels = 0;
   report.milliseconds.fill(0);
   report.frame_ms = 0;
   report.drawing.milliseconds = 0;
@@ -69,7 +71,8 @@ struct Pipeline::Implementation {
         sampler(rig),
         refinement(rig.color),
         background(rig.color),
-        backend(rig) {}
+        backend(rig),
+        memory(rig) {}
 
   void set_options(const Options& wanted) {
     check(wanted, scene);
@@ -79,7 +82,8 @@ struct Pipeline::Implementation {
     corrector = &correctors.get(options.color_correct);
     inpainter = &inpainters.get(options.inpaint);
     mode = &modes.get(options.mode);
-    methods = {corrector->declaration(), inpainter->declaration(), options.mode};
+    methods = {corrector->declaration(), inpainter->declaration(), options.mode,
+               options.memory != "off"};
   }
 
   /// The part of the picture around the objects that is reconstructed.
@@ -88,9 +92,10 @@ struct Pipeline::Implementation {
     if (options.whole_view) return whole;
     return intersect(grow(occluders.objects(), options.surroundings_px), whole);
   }
-  /// Whether there is anything to draw. A shadow may be in view without its object.
-  bool draws() const {
-    return options.whole_view || options.remove_shadows || !occluders.objects().empty();
+  /// Whether anything is to be drawn, or learnt. A shadow may be in view without its object.
+  bool looks_at_scene() const {
+    return options.whole_view || options.remove_shadows || methods.remembers ||
+           !occluders.objects().empty();
   }
   Background::Wanted wanted_background() const {
     const bool shadows = options.lift_shadows || options.remove_shadows;
@@ -135,6 +140,7 @@ struct Pipeline::Implementation {
   ColorMaps color_maps;
   TiledRegion region;  ///< to be drawn
   Backend backend;
+  MemoryStage memory;
   Compositor compositor;
   bool wants_reconstruction = true;
   FrameTexture texture;
@@ -168,7 +174,21 @@ const Options& Pipeline::options() const {
   return implementation_->options;
 }
 
+void Pipeline::share_memory(Pipeline& other) {
+  implementation_->memory.share(other.implementation_->memory);
+}
+void Pipeline::take_turn() {
+  implementation_->memory.take_turn();
+}
+void Pipeline::pass_turn() {
+  implementation_->memory.end_turn();
+}
+void Pipeline::forget() {
+  implementation_->memory.forget();
+}
+
 void Pipeline::process(const FrameSet& frame, DiminishedFrame& result) {
+  const MemoryStage::Turn turn(implementation_->memory);
   // A thread that waits for another within this frame must not begin something else.
   oneapi::tbb::this_task_arena::isolate([&] { implementation_->process(frame, result); });
 }
@@ -204,7 +224,7 @@ void Pipeline::Implementation::process(const FrameSet& frame, DiminishedFrame& r
   // 3.3 Reconstruction of what is behind them, for which the scene has to be known
   report.poses = measured_poses;
   background.clear();
-  if (draws()) {
+  if (looks_at_scene()) {
     do_both(
         [&] {
           stage(Stage::depth, [&] {
@@ -233,6 +253,13 @@ void Pipeline::Implementation::process(const FrameSet& frame, DiminishedFrame& r
                   background.planes(), background.shadows(), color_maps.by_source(),
                   wants_reconstruction, texture.output()},
                  result);
+  });
+
+  // Not in the paper: what the colour camera saw earlier
+  stage(Stage::memory, [&] {
+    if (!methods.remembers) return;
+    memory.remember({frame, report.poses, masks, region, color_maps.by_source(), options}, samples,
+                    report.occluders, result.reconstruction);
   });
 
   // 3.4 Compositing, colour correction, inpainting; a backend may have done these

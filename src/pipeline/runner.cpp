@@ -35,6 +35,7 @@ std::size_t run(FrameSource& source, const Rig& rig, const Scene& scene, const O
   for (int i = 0; i < threads; ++i) {
     slots.push_back(std::make_unique<Slot>(Pipeline(rig, scene, options)));
     slots.back()->pipeline.want_reconstruction(runner_options.reconstructions);
+    if (i > 0) slots.back()->pipeline.share_memory(slots.front()->pipeline);
     free_slots.push(slots.back().get());
   }
 
@@ -62,6 +63,7 @@ std::size_t run(FrameSource& source, const Rig& rig, const Scene& scene, const O
     bool is_there = false;
     slot->error = nullptr;
     attempt(slot->error, [&] { is_there = source.begin(slot->frame); });
+    if (is_there) slot->pipeline.take_turn();
     if (is_there || slot->error) return slot;
     control.stop();
     return nullptr;
@@ -73,6 +75,7 @@ std::size_t run(FrameSource& source, const Rig& rig, const Scene& scene, const O
       slot->pipeline.process(slot->frame, slot->result);
       if (!slot->result.report.skipped) sink.write_images(slot->frame, slot->result);
     });
+    slot->pipeline.pass_turn();
     return slot;
   };
   const auto finish = [&](Slot* slot) {

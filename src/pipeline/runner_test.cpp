@@ -68,6 +68,30 @@ TEST_F(Runner, TheSameBytesWhateverTheNumberOfThreads) {
   }
 }
 
+// What a frame is reminded of, the frames before it have learnt, whichever pipeline they were in.
+TEST_F(Runner, RemembersTheSameWhateverTheNumberOfThreads) {
+  namespace tbb = oneapi::tbb;
+  const tbb::global_control enough(tbb::global_control::max_allowed_parallelism, 8);
+  const Recording ball = load_recording(recordings / "ball");
+  Options options;
+  options.memory = "on";
+  MemorySink expected;
+  for (const int threads : {1, 2, 3, 8}) {
+    MemorySink sink;
+    const auto source = open_recording(ball, options);
+    run(*source, ball.rig, ball.scene, options, sink, {.threads = threads});
+    if (threads == 1) {
+      expected.pictures = sink.pictures;
+      expected.provenances = sink.provenances;
+      ASSERT_GE(expected.pictures.size(), 3U);
+      const Image<std::uint8_t>& last = expected.provenances.back();
+      EXPECT_GT(count_equal(last, provenance::witnessed, last.bounds()), 1000U);
+    }
+    EXPECT_EQ(sink.pictures, expected.pictures) << threads;
+    EXPECT_EQ(sink.provenances, expected.provenances) << threads;
+  }
+}
+
 TEST_F(Runner, StopsAfterTheFramesInWorkAndReportsProgress) {
   std::atomic<bool> stop = false;
   MemorySink sink;

@@ -11,8 +11,6 @@
 namespace diminish {
 namespace {
 
-/// What a picture is shrunk to, to blur what is misplaced by a few pixels into one another.
-constexpr int small_width = 320;
 constexpr int most_iterations = 10;
 /// Metres and radians: smaller steps move no pixel by a tenth.
 constexpr float last_step = 1e-4F;
@@ -33,7 +31,7 @@ RigidTransform exponential(const Eigen::Matrix<double, 6, 1>& twist) {
 
 }  // namespace
 
-PoseRefinement::PoseRefinement(const Intrinsics& color)
+PoseRefinement::PoseRefinement(const Intrinsics& color, int small_width)
     : color_(color),
       projection_(Lens(color)),
       shrinkage_(std::max(1, (color.width + small_width / 2) / small_width)),

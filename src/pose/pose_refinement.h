@@ -22,11 +22,15 @@ namespace diminish {
 ///
 /// Direct alignment: brightness at the samples' projections must equal, but for gain and offset,
 /// what the RGB-D camera saw there (Gauss-Newton on 6 degrees of freedom with robust weights, as in
-/// Kerl, Sturm & Cremers 2013), in a picture shrunk to a width of about 320 pixels. The pose that
+/// Kerl, Sturm & Cremers 2013), in a shrunk picture. The pose that
 /// was measured is held to within its uncertainty.
 class PoseRefinement {
  public:
-  explicit PoseRefinement(const Intrinsics& color);
+  static constexpr int usual_width = 320;
+
+  /// small_width: about what the picture is shrunk to, to blur what is misplaced by a few pixels
+  /// into one another.
+  explicit PoseRefinement(const Intrinsics& color, int small_width = usual_width);
 
   /// Returns how the colour camera's frame moves: color_from_measured_color. Nothing where no
   /// correction is taken: it must explain the picture better, and be small. Cost: about 0.2 us a

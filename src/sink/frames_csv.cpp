@@ -75,7 +75,7 @@ FramesCsv::FramesCsv(const std::filesystem::path& file, const Rig& rig)
     header += pose_columns(camera.name + "_depth_from_world");
     header += pose_columns("color_from_" + camera.name + "_depth");
   }
-  header += ",occluders,mask_pixels,valid_pixels,missing_pixels";
+  header += ",occluders,mask_pixels,valid_pixels,missing_pixels,witnessed_pixels,remembered_pixels";
   for (const TimeRow& row : time_rows()) header += fmt::format(",{}_ms", row.key);
   header += ",messages,faults\n";
   stream_ << header << std::flush;
@@ -96,9 +96,10 @@ void FramesCsv::append(const DiminishedFrame& frame) {
     row += pose_values(known ? report.poses.depth_from_world[k] : std::nullopt);
     row += pose_values(known ? report.poses.color_from_depth[k] : std::nullopt);
   }
-  row += fmt::format(",{},{},{},{}",
+  row += fmt::format(",{},{},{},{},{},{}",
                      known ? found_occluders(report.occluders, cameras_) : in_quotes(""),
-                     report.mask_pixels, report.valid_pixels, report.missing_pixels);
+                     report.mask_pixels, report.valid_pixels, report.missing_pixels,
+                     report.witnessed_pixels, report.remembered_pixels);
   for (const double ms : times_of(report)) row += fmt::format(",{:.3f}", ms);
   row += fmt::format(",{},{}\n", joined(report.messages), joined(report.faults));
   // One write per row, so that an interrupted run leaves whole rows.

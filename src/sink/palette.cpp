@@ -13,6 +13,8 @@ const std::vector<Bgr>& provenance_palette() {
       colors[value] = cameras[(value - provenance::first_rgbd) % std::size(cameras)];
     }
     colors[provenance::camera] = {64, 64, 64};
+    colors[provenance::witnessed] = {190, 220, 120};
+    colors[provenance::remembered] = {60, 200, 250};
     colors[provenance::inpainted] = {230, 60, 230};
     colors[provenance::unknown] = {0, 0, 0};
     return colors;

@@ -135,7 +135,9 @@ void ResultWriter::Implementation::write_summary(bool interrupted,
   summary["faulty"] = statistics.faulty();
   summary["pixels"] = {{"mask", statistics.mask_pixels()},
                        {"valid", statistics.valid_pixels()},
-                       {"missing", statistics.missing_pixels()}};
+                       {"missing", statistics.missing_pixels()},
+                       {"witnessed", statistics.witnessed_pixels()},
+                       {"remembered", statistics.remembered_pixels()}};
   for (std::size_t row = 0; row < time_row_count; ++row) {
     const RunStatistics::Times& times = statistics.times()[row];
     summary["milliseconds"][time_rows()[row].key] = {

@@ -23,6 +23,8 @@ void RunStatistics::add(const FrameReport& report) {
   mask_pixels_ += report.mask_pixels;
   valid_pixels_ += report.valid_pixels;
   missing_pixels_ += report.missing_pixels;
+  witnessed_pixels_ += report.witnessed_pixels;
+  remembered_pixels_ += report.remembered_pixels;
   ++frames_;
 }
 
@@ -41,10 +43,18 @@ std::string RunStatistics::table() const {
                           times_[i].min_ms, times_[i].max_ms, row.paper_ms);
     }
   }
-  const double mask = static_cast<double>(std::max<std::size_t>(mask_pixels_, 1));
-  text += fmt::format("{} frames; of the objects' pixels {:.1f} % seen, {:.1f} % not\n", frames_,
-                      100 * static_cast<double>(valid_pixels_) / mask,
-                      100 * static_cast<double>(missing_pixels_) / mask);
+  const auto share = [&](std::size_t pixels) {
+    return 100 * static_cast<double>(pixels) /
+           static_cast<double>(std::max<std::size_t>(mask_pixels_, 1));
+  };
+  text += fmt::format("{} frames; of the objects' pixels {:.1f} % seen, {:.1f} % not", frames_,
+                      share(valid_pixels_ - remembered_pixels_),
+                      share(missing_pixels_ + remembered_pixels_));
+  if (witnessed_pixels_ + remembered_pixels_ > 0) {
+    text += fmt::format("; {:.1f} % remembered and still there, {:.1f} % only remembered",
+                        share(witnessed_pixels_), share(remembered_pixels_));
+  }
+  text += '\n';
   if (skipped_ > 0) text += fmt::format("{} frames skipped: no colour image\n", skipped_);
   for (const auto& [message, count] : messages_) {
     text += fmt::format("{} of {} frames: {}\n", count, frames_ + skipped_, message);

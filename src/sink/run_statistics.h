@@ -26,6 +26,8 @@ class RunStatistics {
   std::size_t mask_pixels() const { return mask_pixels_; }
   std::size_t valid_pixels() const { return valid_pixels_; }
   std::size_t missing_pixels() const { return missing_pixels_; }
+  std::size_t witnessed_pixels() const { return witnessed_pixels_; }
+  std::size_t remembered_pixels() const { return remembered_pixels_; }
   /// By row of the table of times.
   double average_ms(std::size_t row) const;
   const std::array<Times, time_row_count>& times() const { return times_; }
@@ -39,6 +41,7 @@ class RunStatistics {
  private:
   std::size_t frames_ = 0, skipped_ = 0, faulty_ = 0;
   std::size_t mask_pixels_ = 0, valid_pixels_ = 0, missing_pixels_ = 0;
+  std::size_t witnessed_pixels_ = 0, remembered_pixels_ = 0;
   std::array<Times, time_row_count> times_{};
   std::map<std::string, std::size_t> messages_;
 };

@@ -12,6 +12,7 @@ constexpr std::array<TimeRow, time_row_count> rows{{
     {"background", "Background", ""},
     {"color_maps", "Colour maps", ""},
     {"drawing", "Drawing", ""},
+    {"memory", "Memory", ""},
     {"compositing", "Compositing", ""},
     {"colors", "Colours", ""},
     {"inpainting", "Inpainting", ""},
@@ -36,6 +37,7 @@ constexpr std::size_t paper_row(Stage stage) {
     case Stage::background:
     case Stage::color_maps:
     case Stage::drawing:
+    case Stage::memory:
       return stage_count + 1;
     case Stage::compositing:
     case Stage::finish:

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "diminish/image.h"
+#include "diminish/intrinsics.h"
+#include "diminish/rig.h"
+#include "diminish/rigid_transform.h"
+#include "geometry/projection.h"
+#include "geometry/ray_table.h"
+#include "memory/testimony.h"
+
+namespace diminish {
+
+/// What the user's camera saw at one moment, apart from the objects to remove. It is drawn like an
+/// RGB-D camera's images; `depth` is in the camera's own view, on KeyframeGrid.
+struct Keyframe {
+  double stamp_s = 0;
+  RigidTransform color_from_world;
+  std::vector<std::optional<RigidTransform>> color_from_depth;  ///< of each RGB-D camera
+  Image<Bgr> picture;
+  /// KeyframeGrid::unit_m; 0 where nothing may be shown: objects to remove, what is gone.
+  Image<std::uint16_t> depth;
+  Mask guessed;  ///< by place, 1 where the depth was neither measured nor between measured ones
+  std::vector<Testimony> testimonies;  ///< of each RGB-D camera
+
+  std::size_t bytes() const;
+};
+
+/// The places of the picture for which a keyframe has depth: every `step`-th pixel, row by row.
+class KeyframeGrid {
+ public:
+  static constexpr double unit_m = 0.0005;
+
+  explicit KeyframeGrid(const Intrinsics& color);
+
+  int step() const { return step_; }
+  /// The grid as a camera's picture: its pixels are the grid's places.
+  const Intrinsics& intrinsics() const { return grid_; }
+  /// An RGB-D camera with the picture as its colours and the grid as its depth image.
+  RgbdCamera camera() const;
+
+  /// The point at a place, in the keyframe's frame. depth: not 0.
+  Eigen::Vector3f point_m(int x, int y, std::uint16_t depth) const {
+    const float z = static_cast<float>(depth) * static_cast<float>(unit_m);
+    return {ray(x, y).x() * z, ray(x, y).y() * z, z};
+  }
+  Eigen::Vector2f ray(int x, int y) const { return (*rays_)(x, y); }
+
+ private:
+  Intrinsics color_, grid_;
+  int step_;
+  std::shared_ptr<const RayTable> rays_;
+};
+
+/// The pixel nearest to the projection of a point; nothing behind the camera or outside the lens.
+/// scale: of the picture, to that of the image that is asked for.
+struct Pixel {
+  int x, y;
+};
+inline std::optional<Pixel> project(const Projection& lens, const Eigen::Vector3f& point_m,
+                                    float scale = 1) {
+  constexpr float nearest_m = 0.05F;
+  float u = 0;
+  float v = 0;
+  if (!(point_m.z() > nearest_m) ||
+      !lens.distort(point_m.x() / point_m.z(), point_m.y() / point_m.z(), u, v)) {
+    return std::nullopt;
+  }
+  constexpr float most = 1e6F;
+  if (!(std::abs(u) < most && std::abs(v) < most)) return std::nullopt;
+  return Pixel{static_cast<int>(std::lrint(u * scale)), static_cast<int>(std::lrint(v * scale))};
+}
+inline Eigen::Vector3f transform(const FloatTransform& a_from_b, const Eigen::Vector3f& point_m) {
+  const auto& [x, y, z] = std::array{point_m.x(), point_m.y(), point_m.z()};
+  return {a_from_b.apply(0, x, y, z), a_from_b.apply(1, x, y, z), a_from_b.apply(2, x, y, z)};
+}
+
+/// How far the depths of the same surface may be apart as two cameras see it.
+inline constexpr DepthNoise between_cameras{0.03F, 0.006F};
+
+}  // namespace diminish

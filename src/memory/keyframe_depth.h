@@ -1,0 +1,59 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "depth/depth_stage.h"
+#include "diminish/reconstructor.h"
+#include "diminish/scene_samples.h"
+#include "diminish/surfaces.h"
+#include "memory/color_edges.h"
+#include "memory/keyframe.h"
+#include "scene/background_planes.h"
+
+namespace diminish {
+
+/// Finds depth for the whole picture of the user's camera, by drawing what the RGB-D cameras see.
+/// What they do not see is completed from what is around it: the same surface goes on if it is seen
+/// on both sides; else the background's plane, or what is further away, goes on behind the nearer.
+class KeyframeDepth {
+ public:
+  KeyframeDepth(const Rig& rig, const KeyframeGrid& grid);
+
+  /// poses and samples: after refinement. Fills `depth` and `guessed`. Cost: that of cleaning the
+  /// depth images, and 10 ms.
+  void find(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks,
+            const SceneSamples& samples, const Options& options, Keyframe& keyframe);
+
+ private:
+  /// The nearest known places on both sides along a row or column: 1 / z, or 0 if there is none.
+  struct Ends {
+    float first = 0, last = 0;
+    int to_first = 0, to_last = 0;
+  };
+  struct Guess {
+    float inverse_z = 0;
+    int span = 0;          ///< how far apart what it is made of is
+    bool is_same = false;  ///< a single surface on both sides
+  };
+  static Guess between(const Ends& ends);
+
+  void label(const SceneSamples& samples);
+  void find_columns();
+  void complete();
+  Guess complete(int x, int y, const Ends& row) const;
+
+  KeyframeGrid grid_;
+  DepthStage depth_;
+  std::unique_ptr<Reconstructor> drawer_;
+  BackgroundPlanes planes_;
+  ColorEdges edges_;
+  std::vector<SceneSample> samples_;
+  Reconstruction drawn_;
+  Surfaces surfaces_;
+  Image<float> seen_, completed_;  ///< 1 / z; 0: unknown
+  Mask guessed_;
+  Image<Ends> columns_;
+};
+
+}  // namespace diminish

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "memory/recall_merge.h"
+#include "memory/scene_memory.h"
+#include "memory/turns.h"
+
+namespace diminish {
+
+/// Stage::memory: shows what was seen earlier where it is better than what is seen now. Several
+/// pipelines share one memory; each works on a frame of the same sequence.
+class MemoryStage {
+ public:
+  explicit MemoryStage(const Rig& rig)
+      : shared_(std::make_shared<Shared>(rig)), merge_(rig.color) {}
+
+  void share(MemoryStage& other) { shared_ = other.shared_; }
+  void take_turn() {
+    if (!turn_) turn_ = shared_->turns.take();
+  }
+  /// Does nothing if there is none.
+  void end_turn() {
+    if (turn_) shared_->turns.end(*turn_);
+    turn_.reset();
+  }
+  /// A frame's turn: taken, if it was not before, and ended.
+  class Turn {
+   public:
+    explicit Turn(MemoryStage& stage) : stage_(stage) { stage_.take_turn(); }
+    ~Turn() { stage_.end_turn(); }
+    Turn(const Turn&) = delete;
+    Turn& operator=(const Turn&) = delete;
+
+   private:
+    MemoryStage& stage_;
+  };
+
+  /// Recalls and learns when it is this frame's turn, and ends it. Then draws, at the same time as
+  /// other frames. samples, objects: of this frame, to learn from.
+  void remember(const RecallInputs& inputs, const SceneSamples& samples,
+                const std::vector<OccluderReport>& objects, Reconstruction& reconstruction);
+  void forget();
+
+ private:
+  struct Shared {
+    explicit Shared(const Rig& rig_) : rig(rig_) {}
+
+    Rig rig;
+    Turns turns;
+    std::optional<SceneMemory> memory;  ///< made when it is needed
+  };
+  std::shared_ptr<Shared> shared_;
+  std::optional<std::size_t> turn_;
+  std::vector<Recollection> recollections_;
+  RecallMerge merge_;
+};
+
+}  // namespace diminish

@@ -1,0 +1,152 @@
+#include "memory/recall_merge.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/channels.h"
+#include "core/rows.h"
+
+namespace diminish {
+namespace {
+
+Eigen::Array3f mapped(const ColorMap& map, const Bgra& color, int x, int y) {
+  return map(to_channels({color.b, color.g, color.r}), static_cast<float>(x),
+             static_cast<float>(y));
+}
+
+}  // namespace
+
+RecallMerge::RecallMerge(const Intrinsics& color) : color_(color) {}
+
+bool RecallMerge::explains_surroundings(const RecallInputs& inputs,
+                                        const Recollection& recollection,
+                                        const Reconstruction& live) const {
+  constexpr int stride = 3;
+  constexpr float darkest = 0.35F;
+  constexpr float most = 60;  // levels: more is no worse
+  constexpr int fewest = 50;
+  constexpr float slack = 4;    // levels
+  constexpr float enough = 12;  // levels, where the cameras see too little to compare with
+  float error = 0;
+  float shared_error = 0;
+  float live_error = 0;
+  int count = 0;
+  int shared = 0;
+  const Reconstruction& drawn = recollection.drawn();
+  for (int y = region_.y; y < region_.bottom(); y += stride) {
+    for (int x = region_.x; x < region_.right(); x += stride) {
+      if (inputs.masks.color(x, y) != 0 || !inputs.region.keeps(x, y)) continue;
+      if (drawn.source(x, y) == 0) continue;
+      const Eigen::Array3f seen = to_channels(inputs.frame.color(x, y));
+      // The objects' shadows are in one of the two only.
+      const auto difference = [&](const Eigen::Array3f& color) {
+        const float light =
+            std::clamp((color * seen).sum() / std::max(1.F, color.square().sum()), darkest, 1.F);
+        return std::min(most, (light * color - seen).abs().mean());
+      };
+      const float own = difference(mapped(recollection.color_map(), drawn.color(x, y), x, y));
+      error += own;
+      ++count;
+      const std::uint8_t source = live.source(x, y);
+      if (source == 0) continue;
+      live_error += difference(mapped(inputs.color_maps[source], live.color(x, y), x, y));
+      shared_error += own;
+      ++shared;
+    }
+  }
+  if (shared >= fewest) {
+    const auto n = static_cast<float>(shared);
+    return shared_error / n <= live_error / n + slack;
+  }
+  return count >= fewest && error / static_cast<float>(count) <= enough;
+}
+
+void RecallMerge::layer_rows(const RecallInputs& inputs,
+                             std::span<const Recollection> recollections, Rows rows) {
+  for (int y = rows.first; y < rows.last; ++y) {
+    for (int x = 0; x < region_.width; ++x) {
+      const int column = x + region_.x;
+      const int row = y + region_.y;
+      layer_(x, y) = 0;
+      depth_m_(x, y) = 0;
+      if (!inputs.region.keeps(column, row)) continue;
+      for (std::size_t i = 0; i < recollections.size(); ++i) {
+        const Reconstruction& drawn = recollections[i].drawn();
+        if (usable_[i] == 0 || drawn.source(column, row) == 0) continue;
+        layer_(x, y) = static_cast<std::uint8_t>(1 + i);
+        depth_m_(x, y) = drawn.depth_m(column, row);
+        break;
+      }
+    }
+  }
+}
+
+bool RecallMerge::is_nearer(float z_m, int x, int y, float tolerance_m) const {
+  constexpr int reach = 5;  // edges of the cameras' surfaces are off by some pixels
+  const Rect around = intersect(grow({x, y, 1, 1}, reach), layer_.bounds());
+  for (int row = around.y; row < around.bottom(); ++row) {
+    for (int column = around.x; column < around.right(); ++column) {
+      if (layer_(column, row) != 0 && !(z_m < depth_m_(column, row) - tolerance_m)) return false;
+    }
+  }
+  return true;
+}
+
+void RecallMerge::merge_row(const RecallInputs& inputs, std::span<const Recollection> recollections,
+                            bool witnessed_only, int y, Reconstruction& reconstruction) const {
+  const int row = y + region_.y;
+  for (int x = 0; x < region_.width; ++x) {
+    const int column = x + region_.x;
+    if (layer_(x, y) == 0 || inputs.masks.color(column, row) == 0) continue;
+    const Recollection& recollection = recollections[layer_(x, y) - 1U];
+    const float z_m = depth_m_(x, y);
+    const std::uint8_t source = reconstruction.source(column, row);
+    bool is_witnessed = false;
+    if (source != 0) {
+      const std::size_t k = source - 1U;
+      const float live_m = reconstruction.depth_m(column, row);
+      const Eigen::Vector2f ray = (*rays_)(column, row);
+      const Verdict verdict = recollection.witness().was_there(
+          k, transform(depth_from_color_[k], {ray.x() * live_m, ray.y() * live_m, live_m}));
+      const float tolerance_m = between_cameras.at(z_m);
+      if (is_changed(verdict)) continue;
+      if (verdict == Verdict::unknown && is_nearer(live_m, x, y, tolerance_m)) continue;
+      // Who looks from nearer by shows it better.
+      if (recollection.baseline_m() > depth_from_color_m_[k]) continue;
+      is_witnessed = std::abs(live_m - z_m) <= tolerance_m;
+    }
+    if (witnessed_only && !is_witnessed) continue;
+    const Bgr color = to_color(
+        mapped(recollection.color_map(), recollection.drawn().color(column, row), column, row));
+    reconstruction.color(column, row) = {color.b, color.g, color.r, 255};
+    reconstruction.depth_m(column, row) = z_m;
+    reconstruction.source(column, row) =
+        is_witnessed ? provenance::witnessed : provenance::remembered;
+  }
+}
+
+void RecallMerge::merge(const RecallInputs& inputs, std::span<const Recollection> recollections,
+                        bool witnessed_only, Reconstruction& reconstruction) {
+  region_ = inputs.region;
+  if (!rays_) rays_ = RayTable::of(color_);
+  layer_.resize(region_.width, region_.height);
+  depth_m_.resize(region_.width, region_.height);
+  depth_from_color_.clear();
+  depth_from_color_m_.clear();
+  for (const auto& pose : inputs.poses.color_from_depth) {
+    depth_from_color_.emplace_back(pose ? pose->inverse() : RigidTransform());
+    depth_from_color_m_.push_back(pose ? pose->translation.norm() : 0);
+  }
+  usable_.clear();
+  for (const Recollection& recollection : recollections) {
+    usable_.push_back(explains_surroundings(inputs, recollection, reconstruction) ? 1 : 0);
+  }
+  for_rows(region_.height, [&](Rows rows) { layer_rows(inputs, recollections, rows); });
+  for_rows(region_.height, [&](Rows rows) {
+    for (int y = rows.first; y < rows.last; ++y) {
+      merge_row(inputs, recollections, witnessed_only, y, reconstruction);
+    }
+  });
+}
+
+}  // namespace diminish

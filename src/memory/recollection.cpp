@@ -1,0 +1,68 @@
+#include "memory/recollection.h"
+
+#include <algorithm>
+
+namespace diminish {
+namespace {
+
+Rig memory_rig(const Rig& rig, const KeyframeGrid& grid) {
+  Rig memory;
+  memory.color = rig.color;
+  memory.rgbd.push_back(grid.camera());
+  return memory;
+}
+
+/// Joins neighbours in depth if the gap between them in the picture is narrow: a threshold that
+/// grows with the square of the depth.
+void join_narrow_gaps(double focal_px, double baseline_m, Options& options) {
+  constexpr double widest_px = 3;
+  constexpr double reach_m = 0.01;
+  constexpr double least_baseline_m = 1e-4;
+  options.discontinuity_reach_m = reach_m;
+  options.discontinuity_threshold_m =
+      widest_px * reach_m * reach_m / (focal_px * std::max(baseline_m, least_baseline_m));
+}
+
+}  // namespace
+
+Recollection::Recollection(const Rig& rig, const KeyframeGrid& grid)
+    : rig_(memory_rig(rig, grid)),
+      sampler_(rig_),
+      coarse_(rig.color),
+      fine_(rig.color, 2 * PoseRefinement::usual_width),
+      witness_(rig, grid),
+      drawer_(Registry<Reconstructor>::get("cpu")(rig_)),
+      depth_(1) {
+  const Intrinsics& small = grid.intrinsics();
+  frame_.rgbd.resize(1);
+  masks_.rgbd_color.emplace_back(rig.color.width, rig.color.height, std::uint8_t{0});
+  masks_.rgbd_depth.emplace_back(small.width, small.height, std::uint8_t{0});
+}
+
+void Recollection::prepare(std::shared_ptr<const Keyframe> kept, const RecallInputs& inputs,
+                           const std::vector<Testimony>& now) {
+  keyframe_ = std::move(kept);
+  const Keyframe& keyframe = *keyframe_;
+  frame_.color = inputs.frame.color.view();
+  frame_.rgbd[0].color = ImageView<Bgr>(keyframe.picture);
+  frame_.rgbd[0].depth = ImageView<std::uint16_t>(keyframe.depth);
+  poses_.color_from_depth.assign(
+      1, *inputs.poses.color_from_world * keyframe.color_from_world.inverse());
+  sampler_.sample(frame_, poses_, masks_, samples_);
+  for (PoseRefinement* refinement : {&coarse_, &fine_}) {
+    if (const auto correction = refinement->refine(frame_, inputs.masks.color, samples_)) {
+      refinement->apply(*correction, poses_, samples_);
+    }
+  }
+  color_maps_.fit(inputs.frame.color, inputs.masks.color, samples_.surfaces, ColorMapModel::affine);
+  witness_.judge({keyframe, *poses_.color_from_depth[0], now, inputs.poses, inputs.region},
+                 depth_[0], gone_);
+}
+
+void Recollection::draw(const RecallInputs& inputs) {
+  Options options = inputs.options;
+  join_narrow_gaps(rig_.color.fx, baseline_m(), options);
+  drawer_->reconstruct(frame_, depth_, poses_, masks_, inputs.region, options, drawn_);
+}
+
+}  // namespace diminish

@@ -1,0 +1,145 @@
+#include "memory/scene_memory.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/rows.h"
+#include "core/tasks.h"
+
+namespace diminish {
+
+SceneMemory::SceneMemory(const Rig& rig)
+    : rig_(rig),
+      grid_(rig.color),
+      depth_(rig, grid_),
+      novelty_(grid_),
+      store_(rig.color, grid_),
+      testimonies_(rig.rgbd.size()) {
+  for (const RgbdCamera& camera : rig.rgbd) takers_.emplace_back(camera);
+}
+
+void SceneMemory::forget() {
+  store_.clear();
+  novelty_.forget();
+}
+
+void SceneMemory::look(const RecallInputs& inputs) {
+  if (has_looked_) return;
+  has_looked_ = true;
+  for_tasks(takers_.size(), [&](std::size_t k) {
+    takers_[k].take(inputs.frame.rgbd[k], inputs.poses.depth_from_world[k],
+                    inputs.masks.rgbd_depth[k], inputs.masks.rgbd_color[k], testimonies_[k]);
+  });
+}
+
+std::size_t SceneMemory::recall(const RecallInputs& inputs,
+                                std::vector<Recollection>& recollections) {
+  has_looked_ = false;
+  const double now_s = inputs.frame.stamp_s;
+  // A recording that begins anew.
+  if (now_s < last_stamp_s_) forget();
+  last_stamp_s_ = now_s;
+  store_.drop_older_than(now_s - inputs.options.memory_max_age_s);
+  if (store_.empty() || inputs.region.empty()) return 0;
+  const RigidTransform& color_from_world = *inputs.poses.color_from_world;
+  chosen_ = store_.choose(most_recalled, inputs.masks.color, inputs.region, color_from_world);
+  if (chosen_.empty()) return 0;
+  look(inputs);
+  while (recollections.size() < chosen_.size()) recollections.emplace_back(rig_, grid_);
+  for_tasks(chosen_.size(),
+            [&](std::size_t i) { recollections[i].prepare(chosen_[i], inputs, testimonies_); });
+  for (std::size_t i = 0; i < chosen_.size(); ++i) {
+    store_.remove(recollections[i].gone(), chosen_[i]->color_from_world);
+  }
+  return chosen_.size();
+}
+
+bool SceneMemory::is_worth_a_keyframe(const RecallInputs& inputs, const Rect& objects) const {
+  if (store_.empty()) return true;
+  constexpr double shortest_s = 0.2;
+  constexpr double longest_s = 2;
+  constexpr int moved_px = 8;
+  constexpr double moved_m = 0.01;
+  constexpr double turned_deg = 0.5;
+  const double since_s = inputs.frame.stamp_s - last_keyframe_s_;
+  if (since_s < shortest_s) return false;
+  if (since_s >= longest_s) return true;
+  const RigidTransform motion =
+      *inputs.poses.color_from_world * store_.newest().color_from_world.inverse();
+  const int objects_moved =
+      std::max({std::abs(objects.x - last_objects_.x), std::abs(objects.y - last_objects_.y),
+                std::abs(objects.right() - last_objects_.right()),
+                std::abs(objects.bottom() - last_objects_.bottom())});
+  return objects_moved > moved_px || motion.translation.norm() > moved_m ||
+         rotation_difference_deg(motion.rotation, Eigen::Matrix3d::Identity()) > turned_deg;
+}
+
+bool SceneMemory::has_just_lost(const std::vector<OccluderReport>& objects, double stamp_s) {
+  constexpr double moment_s = 2;
+  found_s_.resize(objects.size(), -std::numeric_limits<double>::infinity());
+  bool lost = false;
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    if (objects[i].message.empty()) found_s_[i] = stamp_s;
+    lost = lost || (found_s_[i] < stamp_s && stamp_s - found_s_[i] < moment_s);
+  }
+  return lost;
+}
+
+void SceneMemory::leave_out_objects(const Mask& objects, Keyframe& keyframe) const {
+  // A cell of the grid, and what their edges shine onto.
+  const int margin = grid_.step() + 6;
+  const Rect part = grow(bounding_box(objects), margin);
+  for (int y = 0; y < keyframe.depth.height(); ++y) {
+    for (int x = 0; x < keyframe.depth.width(); ++x) {
+      const int column = x * grid_.step();
+      const int row = y * grid_.step();
+      if (!part.contains(column, row)) continue;
+      const Rect around = intersect(grow({column, row, 1, 1}, margin), objects.bounds());
+      if (count_nonzero(objects, around) > 0) keyframe.depth(x, y) = 0;
+    }
+  }
+}
+
+void SceneMemory::learn(const RecallInputs& inputs, const SceneSamples& samples,
+                        const std::vector<OccluderReport>& objects) {
+  const FrameSet& frame = inputs.frame;
+  const bool lost = has_just_lost(objects, frame.stamp_s);
+  const Rect box = bounding_box(inputs.masks.color);
+  if (lost || !is_worth_a_keyframe(inputs, box)) return;
+  look(inputs);
+  const bool sees = std::any_of(testimonies_.begin(), testimonies_.end(),
+                                [](const Testimony& testimony) { return testimony.is_given; });
+  if (!sees) return;
+  last_keyframe_s_ = frame.stamp_s;
+  last_objects_ = box;
+  Keyframe keyframe;
+  keyframe.stamp_s = frame.stamp_s;
+  keyframe.color_from_world = *inputs.poses.color_from_world;
+  keyframe.color_from_depth = inputs.poses.color_from_depth;
+  keyframe.testimonies = testimonies_;
+  copy(frame.color.view(), keyframe.picture);
+  depth_.find(frame, inputs.poses, inputs.masks, samples, inputs.options, keyframe);
+  leave_out_objects(inputs.masks.color, keyframe);
+  const bool is_uncertain = std::any_of(objects.begin(), objects.end(),
+                                        [](const auto& object) { return !object.message.empty(); });
+  novelty_.filter(is_uncertain, keyframe);
+  store_.add(std::move(keyframe));
+}
+
+Poses anchored(const Poses& poses) {
+  Poses result = poses;
+  result.messages.clear();
+  if (result.color_from_world || result.color_from_depth.empty()) return result;
+  const auto& first = result.color_from_depth.front();
+  if (!first) return result;
+  result.color_from_world = first;
+  for (std::size_t k = 0; k < result.color_from_depth.size(); ++k) {
+    const auto& color_from_depth = result.color_from_depth[k];
+    result.depth_from_world[k].reset();
+    if (color_from_depth) result.depth_from_world[k] = color_from_depth->inverse() * *first;
+  }
+  return result;
+}
+
+}  // namespace diminish

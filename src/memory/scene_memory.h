@@ -1,0 +1,58 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "diminish/diminished_frame.h"
+#include "memory/keyframe_depth.h"
+#include "memory/keyframe_store.h"
+#include "memory/novelty.h"
+#include "memory/recollection.h"
+
+namespace diminish {
+
+/// What the user's camera has seen so far. Frames must come in order.
+class SceneMemory {
+ public:
+  static constexpr std::size_t most_recalled = 3;
+
+  explicit SceneMemory(const Rig& rig);
+
+  /// Prepares what this frame is to be reminded of (at most `most_recalled`), and forgets what the
+  /// RGB-D cameras see to be gone. inputs.poses: anchored. recollections: as many as are used.
+  /// Returns their number.
+  std::size_t recall(const RecallInputs& inputs, std::vector<Recollection>& recollections);
+
+  /// Takes a keyframe if there is something new. objects: the reports about the objects to remove.
+  void learn(const RecallInputs& inputs, const SceneSamples& samples,
+             const std::vector<OccluderReport>& objects);
+
+  void forget();
+
+ private:
+  bool is_worth_a_keyframe(const RecallInputs& inputs, const Rect& objects) const;
+  /// Whether an object is lost that was there a moment ago: it may be anywhere.
+  bool has_just_lost(const std::vector<OccluderReport>& objects, double stamp_s);
+  void look(const RecallInputs& inputs);
+  void leave_out_objects(const Mask& objects, Keyframe& keyframe) const;
+
+  Rig rig_;
+  KeyframeGrid grid_;
+  KeyframeDepth depth_;
+  Novelty novelty_;
+  KeyframeStore store_;
+  std::vector<std::shared_ptr<const Keyframe>> chosen_;
+  std::vector<TestimonyTaker> takers_;
+  std::vector<Testimony> testimonies_;
+  bool has_looked_ = false;  ///< in this frame
+  double last_stamp_s_ = 0;  ///< of any frame
+  double last_keyframe_s_ = 0;
+  Rect last_objects_;            ///< in the last keyframe
+  std::vector<double> found_s_;  ///< when each object was last found
+};
+
+/// The poses with a world: if none is known, it is where the first RGB-D camera's depth sensor is,
+/// which then must stand still.
+Poses anchored(const Poses& poses);
+
+}  // namespace diminish

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <mutex>
+#include <set>
+
+namespace diminish {
+
+/// Lets several threads, each with a frame, do something one after the other, in the frames' order.
+class Turns {
+ public:
+  /// The next turn. Every turn that is taken must be ended.
+  std::size_t take() {
+    const std::lock_guard lock(mutex_);
+    return taken_++;
+  }
+  /// Waits until all turns before this one have ended.
+  void wait(std::size_t turn) {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return next_ == turn; });
+  }
+  void end(std::size_t turn) {
+    {
+      const std::lock_guard lock(mutex_);
+      ended_.insert(turn);
+      while (ended_.erase(next_) > 0) ++next_;
+    }
+    changed_.notify_all();
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::size_t taken_ = 0;
+  std::size_t next_ = 0;         ///< all before it have ended
+  std::set<std::size_t> ended_;  ///< later ones that have
+};
+
+}  // namespace diminish
