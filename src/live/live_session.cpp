@@ -262,8 +262,8 @@ LiveStatus LiveSession::Implementation::status() const {
   const double pixels = static_cast<double>(latest->result.mask.size());
   if (pixels > 0) status.mask_share = static_cast<double>(report.mask_pixels) / pixels;
   if (report.mask_pixels > 0) {
-    status.seen_share =
-        static_cast<double>(report.valid_pixels) / static_cast<double>(report.mask_pixels);
+    status.seen_share = static_cast<double>(report.valid_pixels - report.remembered_pixels) /
+                        static_cast<double>(report.mask_pixels);
   }
   for (const std::string& message : report.messages) {
     const bool is_said =

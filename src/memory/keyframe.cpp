@@ -31,11 +31,9 @@ std::size_t Keyframe::bytes() const {
 
 KeyframeGrid::KeyframeGrid(const Intrinsics& color)
     : color_(color),
-      grid_(color),
-      step_(std::max(1, (color.width + wanted_width / 2) / wanted_width)) {
-  grid_ = every(step_, color);
-  rays_ = RayTable::of(grid_);
-}
+      step_(std::max(1, (color.width + wanted_width / 2) / wanted_width)),
+      grid_(every(step_, color)),
+      rays_(RayTable::of(grid_)) {}
 
 RgbdCamera KeyframeGrid::camera() const {
   RgbdCamera camera;

@@ -46,16 +46,20 @@ class KeyframeGrid {
   /// An RGB-D camera with the picture as its colours and the grid as its depth image.
   RgbdCamera camera() const;
 
+  static float depth_m(std::uint16_t depth) {
+    return static_cast<float>(depth) * static_cast<float>(unit_m);
+  }
   /// The point at a place, in the keyframe's frame. depth: not 0.
   Eigen::Vector3f point_m(int x, int y, std::uint16_t depth) const {
-    const float z = static_cast<float>(depth) * static_cast<float>(unit_m);
+    const float z = depth_m(depth);
     return {ray(x, y).x() * z, ray(x, y).y() * z, z};
   }
   Eigen::Vector2f ray(int x, int y) const { return (*rays_)(x, y); }
 
  private:
-  Intrinsics color_, grid_;
+  Intrinsics color_;
   int step_;
+  Intrinsics grid_;
   std::shared_ptr<const RayTable> rays_;
 };
 

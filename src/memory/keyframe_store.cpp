@@ -6,14 +6,6 @@
 #include "core/tasks.h"
 
 namespace diminish {
-namespace {
-
-float depth_m(std::uint16_t depth) {
-  return static_cast<float>(depth * KeyframeGrid::unit_m);
-}
-
-}  // namespace
-
 KeyframeStore::KeyframeStore(const Intrinsics& color, const KeyframeGrid& grid)
     : grid_(grid), color_(Lens(color)), lens_(Lens(grid.intrinsics())) {}
 
@@ -36,7 +28,7 @@ std::size_t KeyframeStore::count_unique(std::size_t index) const {
         const auto pixel = project(lens_, there);
         const Image<std::uint16_t>& depth = keyframes_[i]->depth;
         is_elsewhere = pixel && depth.bounds().contains(pixel->x, pixel->y) &&
-                       std::abs(depth_m(depth(pixel->x, pixel->y)) - there.z()) <
+                       std::abs(KeyframeGrid::depth_m(depth(pixel->x, pixel->y)) - there.z()) <
                            between_cameras.at(there.z());
       }
       count += is_elsewhere ? 0 : 1;
@@ -131,7 +123,8 @@ void KeyframeStore::remove(const std::vector<Eigen::Vector3f>& points_m,
       for (int y = around.y; y < around.bottom(); ++y) {
         for (int x = around.x; x < around.right(); ++x) {
           std::uint16_t& depth = keyframe.depth(x, y);
-          if (std::abs(depth_m(depth) - point.z()) < between_cameras.at(point.z())) depth = 0;
+          if (std::abs(KeyframeGrid::depth_m(depth) - point.z()) < between_cameras.at(point.z()))
+            depth = 0;
         }
       }
     }

@@ -11,8 +11,9 @@ void MemoryStage::remember(const RecallInputs& inputs, const SceneSamples& sampl
                            Reconstruction& reconstruction) {
   const Poses poses = anchored(inputs.poses);
   if (!poses.color_from_world) return;
-  const RecallInputs anchored_inputs{inputs.frame,      poses,         inputs.masks, inputs.region,
-                                     inputs.color_maps, inputs.options};
+  const RecallInputs anchored_inputs{inputs.frame,   poses,         inputs.masks,
+                                     inputs.objects, inputs.region, inputs.color_maps,
+                                     inputs.options};
   shared_->turns.wait(*turn_);
   if (!shared_->memory) shared_->memory.emplace(shared_->rig);
   const std::size_t count = shared_->memory->recall(anchored_inputs, recollections_);

@@ -54,8 +54,8 @@ class Memory : public ::testing::Test {
     OccluderReport report;
     if (moment.is_lost) report.message = "board: not found";
     const MemoryStage::Turn turn(memory);
-    memory.remember({now.frame, now.poses, masks, region, maps, options}, samples, {report},
-                    result);
+    memory.remember({now.frame, now.poses, masks, moment.object, region, maps, options}, samples,
+                    {report}, result);
     return result;
   }
 

@@ -41,7 +41,7 @@ void Novelty::filter(bool is_uncertain, Keyframe& keyframe) {
     for (int row = pixel->y - reach; row <= pixel->y + reach; ++row) {
       for (int column = pixel->x - reach; column <= pixel->x + reach; ++column) {
         if (depth_(column, row) == 0) continue;
-        const float z = static_cast<float>(depth_(column, row) * KeyframeGrid::unit_m);
+        const float z = KeyframeGrid::depth_m(depth_(column, row));
         least_m = std::min(least_m, z);
         greatest_m = std::max(greatest_m, z);
         const Eigen::Array3f color = to_channels(color_(column, row));

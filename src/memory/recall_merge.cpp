@@ -5,6 +5,7 @@
 
 #include "core/channels.h"
 #include "core/rows.h"
+#include "memory/light.h"
 
 namespace diminish {
 namespace {
@@ -22,7 +23,6 @@ bool RecallMerge::explains_surroundings(const RecallInputs& inputs,
                                         const Recollection& recollection,
                                         const Reconstruction& live) const {
   constexpr int stride = 3;
-  constexpr float darkest = 0.35F;
   constexpr float most = 60;  // levels: more is no worse
   constexpr int fewest = 50;
   constexpr float slack = 4;    // levels
@@ -40,9 +40,7 @@ bool RecallMerge::explains_surroundings(const RecallInputs& inputs,
       const Eigen::Array3f seen = to_channels(inputs.frame.color(x, y));
       // The objects' shadows are in one of the two only.
       const auto difference = [&](const Eigen::Array3f& color) {
-        const float light =
-            std::clamp((color * seen).sum() / std::max(1.F, color.square().sum()), darkest, 1.F);
-        return std::min(most, (light * color - seen).abs().mean());
+        return std::min(most, (light_between(seen, color, 1) * color - seen).abs().mean());
       };
       const float own = difference(mapped(recollection.color_map(), drawn.color(x, y), x, y));
       error += own;

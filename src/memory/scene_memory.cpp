@@ -55,7 +55,7 @@ std::size_t SceneMemory::recall(const RecallInputs& inputs,
   return chosen_.size();
 }
 
-bool SceneMemory::is_worth_a_keyframe(const RecallInputs& inputs, const Rect& objects) const {
+bool SceneMemory::is_worth_a_keyframe(const RecallInputs& inputs) const {
   if (store_.empty()) return true;
   constexpr double shortest_s = 0.2;
   constexpr double longest_s = 2;
@@ -67,6 +67,7 @@ bool SceneMemory::is_worth_a_keyframe(const RecallInputs& inputs, const Rect& ob
   if (since_s >= longest_s) return true;
   const RigidTransform motion =
       *inputs.poses.color_from_world * store_.newest().color_from_world.inverse();
+  const Rect& objects = inputs.objects;
   const int objects_moved =
       std::max({std::abs(objects.x - last_objects_.x), std::abs(objects.y - last_objects_.y),
                 std::abs(objects.right() - last_objects_.right()),
@@ -86,10 +87,11 @@ bool SceneMemory::has_just_lost(const std::vector<OccluderReport>& objects, doub
   return lost;
 }
 
-void SceneMemory::leave_out_objects(const Mask& objects, Keyframe& keyframe) const {
+void SceneMemory::leave_out_objects(const RecallInputs& inputs, Keyframe& keyframe) const {
+  const Mask& objects = inputs.masks.color;
   // A cell of the grid, and what their edges shine onto.
   const int margin = grid_.step() + 6;
-  const Rect part = grow(bounding_box(objects), margin);
+  const Rect part = grow(inputs.objects, margin);
   for (int y = 0; y < keyframe.depth.height(); ++y) {
     for (int x = 0; x < keyframe.depth.width(); ++x) {
       const int column = x * grid_.step();
@@ -105,14 +107,13 @@ void SceneMemory::learn(const RecallInputs& inputs, const SceneSamples& samples,
                         const std::vector<OccluderReport>& objects) {
   const FrameSet& frame = inputs.frame;
   const bool lost = has_just_lost(objects, frame.stamp_s);
-  const Rect box = bounding_box(inputs.masks.color);
-  if (lost || !is_worth_a_keyframe(inputs, box)) return;
+  if (lost || !is_worth_a_keyframe(inputs)) return;
   look(inputs);
   const bool sees = std::any_of(testimonies_.begin(), testimonies_.end(),
                                 [](const Testimony& testimony) { return testimony.is_given; });
   if (!sees) return;
   last_keyframe_s_ = frame.stamp_s;
-  last_objects_ = box;
+  last_objects_ = inputs.objects;
   Keyframe keyframe;
   keyframe.stamp_s = frame.stamp_s;
   keyframe.color_from_world = *inputs.poses.color_from_world;
@@ -120,7 +121,7 @@ void SceneMemory::learn(const RecallInputs& inputs, const SceneSamples& samples,
   keyframe.testimonies = testimonies_;
   copy(frame.color.view(), keyframe.picture);
   depth_.find(frame, inputs.poses, inputs.masks, samples, inputs.options, keyframe);
-  leave_out_objects(inputs.masks.color, keyframe);
+  leave_out_objects(inputs, keyframe);
   const bool is_uncertain = std::any_of(objects.begin(), objects.end(),
                                         [](const auto& object) { return !object.message.empty(); });
   novelty_.filter(is_uncertain, keyframe);

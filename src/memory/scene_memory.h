@@ -30,11 +30,11 @@ class SceneMemory {
   void forget();
 
  private:
-  bool is_worth_a_keyframe(const RecallInputs& inputs, const Rect& objects) const;
+  bool is_worth_a_keyframe(const RecallInputs& inputs) const;
   /// Whether an object is lost that was there a moment ago: it may be anywhere.
   bool has_just_lost(const std::vector<OccluderReport>& objects, double stamp_s);
   void look(const RecallInputs& inputs);
-  void leave_out_objects(const Mask& objects, Keyframe& keyframe) const;
+  void leave_out_objects(const RecallInputs& inputs, Keyframe& keyframe) const;
 
   Rig rig_;
   KeyframeGrid grid_;

@@ -10,19 +10,6 @@
 namespace diminish {
 namespace {
 
-Image<Eigen::Vector2f> grid_rays(const Intrinsics& depth) {
-  constexpr int step = Testimony::step;
-  Image<Eigen::Vector2f> rays((depth.width - 1) / step + 1, (depth.height - 1) / step + 1,
-                              Eigen::Vector2f::Zero());
-  const Lens lens(depth);
-  for (int y = 0; y < rays.height(); ++y) {
-    for (int x = 0; x < rays.width(); ++x) {
-      rays(x, y) = lens.undistort({x * step, y * step}).cast<float>();
-    }
-  }
-  return rays;
-}
-
 /// Of 3x3 pixels.
 Bgr mean_color(ImageView<Bgr> image, const Pixel& pixel) {
   int sum[3] = {};
@@ -42,7 +29,7 @@ Bgr mean_color(ImageView<Bgr> image, const Pixel& pixel) {
 
 TestimonyTaker::TestimonyTaker(const RgbdCamera& camera)
     : camera_(camera),
-      rays_(grid_rays(camera.depth)),
+      rays_(RayTable::of(camera.depth)),
       depth_(Lens(camera.depth)),
       color_(Lens(camera.color)),
       color_from_depth_(camera.color_from_depth) {}
@@ -54,8 +41,8 @@ void TestimonyTaker::take(const RgbdFrame& images,
   testimony.is_given = images.available() && depth_from_world;
   if (!testimony.is_given) return;
   testimony.depth_from_world = *depth_from_world;
-  const int width = rays_.width();
-  const int height = rays_.height();
+  const int width = grid().width;
+  const int height = grid().height;
   testimony.depth_m.resize(width, height);
   testimony.color.resize(width, height);
   const auto unit_m = static_cast<float>(camera_.depth_unit_m);
@@ -71,7 +58,7 @@ void TestimonyTaker::take(const RgbdFrame& images,
         depth_m = 0;
         const float z = static_cast<float>(depth(column, row)) * unit_m;
         if (depth_mask(column, row) != 0 || !(z > 0)) continue;
-        const Eigen::Vector3f point(rays_(x, y).x() * z, rays_(x, y).y() * z, z);
+        const Eigen::Vector3f point = point_m(x, y, z);
         const auto pixel = project(color_, transform(color_from_depth_, point));
         if (!pixel || !inside.contains(pixel->x, pixel->y) || color_mask(pixel->x, pixel->y) != 0) {
           continue;

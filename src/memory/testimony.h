@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 
 #include "depth/depth_noise.h"
@@ -8,6 +9,7 @@
 #include "diminish/rig.h"
 #include "diminish/rigid_transform.h"
 #include "geometry/projection.h"
+#include "geometry/ray_table.h"
 
 namespace diminish {
 
@@ -54,11 +56,20 @@ class TestimonyTaker {
   };
   void compare(const Side& a, const Side& b) const;
 
-  Rect grid() const { return {0, 0, rays_.width(), rays_.height()}; }
+  /// Of testimonies.
+  Rect grid() const {
+    constexpr int step = Testimony::step;
+    return {0, 0, (camera_.depth.width - 1) / step + 1, (camera_.depth.height - 1) / step + 1};
+  }
 
   const Projection& depth_lens() const { return depth_; }
 
  private:
+  /// The point at depth `z` of a place of the grid, in the depth sensor's frame.
+  Eigen::Vector3f point_m(int x, int y, float z) const {
+    const Eigen::Vector2f ray = (*rays_)(x * Testimony::step, y * Testimony::step);
+    return {ray.x() * z, ray.y() * z, z};
+  }
   struct Tolerance {
     float depth = 2;   ///< times the sensor's usual noise
     float color = 20;  ///< levels
@@ -77,7 +88,7 @@ class TestimonyTaker {
              const Tolerance& tolerance) const;
 
   RgbdCamera camera_;
-  Image<Eigen::Vector2f> rays_;  ///< of the testimony's grid
+  std::shared_ptr<const RayTable> rays_;  ///< of the whole depth image
   Projection depth_, color_;
   FloatTransform color_from_depth_;
 };

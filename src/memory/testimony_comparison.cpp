@@ -6,6 +6,7 @@
 #include "core/robust.h"
 #include "core/rows.h"
 #include "memory/keyframe.h"
+#include "memory/light.h"
 #include "memory/testimony.h"
 
 namespace diminish {
@@ -13,8 +14,6 @@ namespace {
 
 /// Of one depth sensor, at two moments.
 constexpr DepthNoise usual_noise{0.012F, 0.006F};
-/// How much darker a shadow may make a surface.
-constexpr float darkest = 0.35F;
 
 /// Whether a surface ends near a pixel.
 bool is_edge(const Image<float>& depth_m, int x, int y) {
@@ -68,8 +67,7 @@ TestimonyTaker::Difference TestimonyTaker::compare(const Testimony& a, const Tes
                                                    const Tolerance& tolerance, int x, int y) const {
   const float z_in_a = a.depth_m(x, y);
   if (!(z_in_a > 0)) return {};
-  const Eigen::Vector3f point =
-      transform(b_from_a, {rays_(x, y).x() * z_in_a, rays_(x, y).y() * z_in_a, z_in_a});
+  const Eigen::Vector3f point = transform(b_from_a, point_m(x, y, z_in_a));
   const auto pixel = project(depth_, point, 1.F / Testimony::step);
   if (!pixel || !grow(b.depth_m.bounds(), -tolerance.reach).contains(pixel->x, pixel->y)) {
     return {};
@@ -90,8 +88,7 @@ TestimonyTaker::Difference TestimonyTaker::compare(const Testimony& a, const Tes
   }
   const Eigen::Array3f own = to_channels(a.color(x, y));
   const Eigen::Array3f mean = there.mean();
-  const float light =
-      std::clamp((own * mean).sum() / std::max(1.F, mean.square().sum()), darkest, 1 / darkest);
+  const float light = light_between(own, mean, 1 / deepest_shadow);
   const bool differs = (own < light * there.channels(there.low) - tolerance.color).any() ||
                        (own > light * there.channels(there.high) + tolerance.color).any();
   return {differs ? Verdict::recolored : Verdict::same, depth,
@@ -103,8 +100,8 @@ int TestimonyTaker::count_same(const Testimony& a, const Testimony& b,
   constexpr int stride = 5;
   std::vector<float> depths;
   std::vector<float> colors;
-  for (int y = stride; y < rays_.height(); y += stride) {
-    for (int x = stride; x < rays_.width(); x += stride) {
+  for (int y = stride; y < grid().height; y += stride) {
+    for (int x = stride; x < grid().width; x += stride) {
       const Difference difference = compare(a, b, b_from_a, tolerance, x, y);
       if (difference.verdict != Verdict::same) continue;
       depths.push_back(difference.depth);
@@ -121,7 +118,7 @@ int TestimonyTaker::count_same(const Testimony& a, const Testimony& b,
 
 void TestimonyTaker::compare(const Side& a, const Side& b) const {
   for (const Side* side : {&a, &b}) {
-    side->verdicts.resize(rays_.width(), rays_.height(), Verdict::unknown);
+    side->verdicts.resize(grid().width, grid().height, Verdict::unknown);
   }
   if (!a.testimony.is_given || !b.testimony.is_given) return;
   const RigidTransform b_from_a =
@@ -144,7 +141,7 @@ void TestimonyTaker::compare(const Side& a, const Side& b) const {
 void TestimonyTaker::judge(const Side& side, const Testimony& other,
                            const FloatTransform& other_from_side,
                            const Tolerance& tolerance) const {
-  const Rect part = intersect(side.part, rays_.bounds());
+  const Rect part = intersect(side.part, grid());
   const auto for_each = [&](const auto& visit) {
     for_rows(part.height, [&](Rows rows) {
       for (int y = part.y + rows.first; y < part.y + rows.last; ++y) {
@@ -152,7 +149,7 @@ void TestimonyTaker::judge(const Side& side, const Testimony& other,
       }
     });
   };
-  Verdicts raw(rays_.width(), rays_.height(), Verdict::unknown);
+  Verdicts raw(grid().width, grid().height, Verdict::unknown);
   for_each([&](int x, int y) {
     raw(x, y) = compare(side.testimony, other, other_from_side, tolerance, x, y).verdict;
   });
@@ -169,7 +166,7 @@ void TestimonyTaker::judge(const Side& side, const Testimony& other,
   // What changes is wider than the errors at the edges of things.
   const int reach = tolerance.reach;
   const int square = (2 * reach + 1) * (2 * reach + 1);
-  Mask core(rays_.width(), rays_.height(), std::uint8_t{0});
+  Mask core(grid().width, grid().height, std::uint8_t{0});
   for_each([&](int x, int y) {
     if (is_changed(raw(x, y)) && count_changed(x, y, reach) == square) core(x, y) = 1;
   });

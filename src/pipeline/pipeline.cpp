@@ -258,8 +258,8 @@ void Pipeline::Implementation::process(const FrameSet& frame, DiminishedFrame& r
   // Not in the paper: what the colour camera saw earlier
   stage(Stage::memory, [&] {
     if (!methods.remembers) return;
-    memory.remember({frame, report.poses, masks, region, color_maps.by_source(), options}, samples,
-                    report.occluders, result.reconstruction);
+    memory.remember({frame, report.poses, masks, objects, region, color_maps.by_source(), options},
+                    samples, report.occluders, result.reconstruction);
   });
 
   // 3.4 Compositing, colour correction, inpainting; a backend may have done these
