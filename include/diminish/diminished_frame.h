@@ -27,6 +27,15 @@ inline constexpr std::uint8_t inpainted = 254;
 inline constexpr std::uint8_t unknown = 255;  ///< part of the object, with nothing to show there
 }  // namespace provenance
 
+/// What the memory holds after a frame, and how old what it shows is.
+struct MemoryReport {
+  std::size_t keyframes = 0;  ///< pictures of the colour camera
+  std::size_t bytes = 0;
+  /// How long ago the remembered pixels (provenance::remembered) were seen: half of them at most
+  /// `median_age_s`. 0 if there are none.
+  double median_age_s = 0, oldest_age_s = 0;
+};
+
 /// A report about a frame.
 struct FrameReport {
   Markers markers;
@@ -37,6 +46,7 @@ struct FrameReport {
   std::size_t witnessed_pixels = 0;   ///< of the valid ones (provenance::witnessed)
   std::size_t remembered_pixels = 0;  ///< likewise (provenance::remembered)
   std::size_t missing_pixels = 0;     ///< of these, neither
+  MemoryReport memory;
   StageTimes milliseconds{};
   double frame_ms = 0;  ///< of the whole frame
   DrawingReport drawing;

@@ -80,8 +80,11 @@ struct LiveStatus {
   std::vector<bool> posed;  ///< of the last frame: whether each RGB-D camera's pose is known
   std::vector<std::size_t> markers;  ///< seen by the colour camera and each RGB-D camera
   std::vector<OccluderReport> occluders;
-  double mask_share = 0;              ///< of the picture
-  double seen_share = 0;              ///< of the mask
+  double mask_share = 0;  ///< of the picture
+  /// Of the mask: seen by an RGB-D camera now (the witnessed ones too), remembered, invented.
+  double seen_share = 0, witnessed_share = 0, remembered_share = 0, invented_share = 0;
+  std::string evidence;               ///< these in plain words
+  MemoryReport memory;                ///< of the last frame
   std::vector<std::string> problems;  ///< what is wrong now, in plain words
 };
 
@@ -119,6 +122,9 @@ class DIMINISH_EXPORT LiveSession {
   void set_options(const Options& options);
   LiveOptions live_options() const;
   void set_budget_ms(double budget_ms);
+
+  /// Forgets what was seen before the next frame (Pipeline::forget).
+  void forget();
 
   LiveStatus status() const;
 

@@ -15,6 +15,7 @@
 #include "live/pool.h"
 #include "live/quality_ladder.h"
 #include "sink/distribution.h"
+#include "sink/shares.h"
 #include "source/find_camera.h"
 
 namespace diminish {
@@ -105,6 +106,7 @@ struct LiveSession::Implementation {
           continue;
         }
         apply_options();
+        if (forget_wanted.exchange(false)) pipeline.forget();
         arena.execute([&] { pipeline.process(frame->input, frame->result); });
         publish(frame);
         frame = pool.take();
@@ -212,7 +214,7 @@ struct LiveSession::Implementation {
   ArrivalSignal arrived, published;
   std::mutex listeners_mutex;
   std::vector<std::weak_ptr<Listener>> listeners;
-  std::atomic<bool> stopped = false;
+  std::atomic<bool> stopped = false, forget_wanted = false;
   std::atomic<std::size_t> nothing_new_at =
       0;  ///< the count of `arrived` up to which everything is shown
   std::vector<std::unique_ptr<CameraFeed>> feeds;
@@ -261,10 +263,14 @@ LiveStatus LiveSession::Implementation::status() const {
   status.occluders = report.occluders;
   const double pixels = static_cast<double>(latest->result.mask.size());
   if (pixels > 0) status.mask_share = static_cast<double>(report.mask_pixels) / pixels;
-  if (report.mask_pixels > 0) {
-    status.seen_share = static_cast<double>(report.valid_pixels - report.remembered_pixels) /
-                        static_cast<double>(report.mask_pixels);
-  }
+  const Shares shares = shares_of(report.mask_pixels, report.valid_pixels, report.witnessed_pixels,
+                                  report.remembered_pixels);
+  status.seen_share = shares.seen;
+  status.witnessed_share = shares.witnessed;
+  status.remembered_share = shares.remembered;
+  status.invented_share = shares.invented;
+  status.evidence = to_text(shares);
+  status.memory = report.memory;
   for (const std::string& message : report.messages) {
     const bool is_said =
         std::any_of(status.cameras.begin(), status.cameras.end(), [&](const auto& c) {
@@ -305,6 +311,9 @@ LiveOptions LiveSession::live_options() const {
 void LiveSession::set_budget_ms(double budget_ms) {
   const std::lock_guard lock(implementation_->mutex);
   implementation_->live_options.budget_ms = budget_ms;
+}
+void LiveSession::forget() {
+  implementation_->forget_wanted = true;
 }
 LiveStatus LiveSession::status() const {
   return implementation_->status();

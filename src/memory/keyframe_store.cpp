@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/tasks.h"
 
@@ -45,6 +46,12 @@ void KeyframeStore::add(Keyframe keyframe) {
   for_tasks(size() - 1, [&](std::size_t i) { unique[i] = count_unique(i); });
   keyframes_.erase(keyframes_.begin() +
                    (std::min_element(unique.begin(), unique.end() - 1) - unique.begin()));
+}
+
+std::size_t KeyframeStore::bytes() const {
+  return std::accumulate(
+      keyframes_.begin(), keyframes_.end(), std::size_t{0},
+      [](std::size_t sum, const auto& keyframe) { return sum + keyframe->bytes(); });
 }
 
 void KeyframeStore::drop_older_than(double stamp_s) {

@@ -19,6 +19,7 @@ class KeyframeStore {
 
   bool empty() const { return keyframes_.empty(); }
   std::size_t size() const { return keyframes_.size(); }
+  std::size_t bytes() const;
   const Keyframe& newest() const { return *keyframes_.back(); }
 
   /// If there are too many, the one goes that shows least of what the others do not.

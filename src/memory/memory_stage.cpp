@@ -1,14 +1,39 @@
 #include "memory/memory_stage.h"
 
+#include <algorithm>
+#include <numeric>
 #include <span>
+#include <utility>
 
 #include "core/tasks.h"
 
 namespace diminish {
+namespace {
+
+/// pixels: how many each recollection shows as remembered.
+void report_ages(std::span<const Recollection> recollections, std::span<const std::size_t> pixels,
+                 double now_s, MemoryReport& report) {
+  std::vector<std::pair<double, std::size_t>> ages;
+  for (std::size_t i = 0; i < recollections.size(); ++i) {
+    if (pixels[i] > 0) ages.emplace_back(now_s - recollections[i].stamp_s(), pixels[i]);
+  }
+  if (ages.empty()) return;
+  std::sort(ages.begin(), ages.end());
+  report.oldest_age_s = ages.back().first;
+  const std::size_t all = std::accumulate(pixels.begin(), pixels.end(), std::size_t{0});
+  std::size_t younger = 0;
+  for (const auto& [age_s, count] : ages) {
+    report.median_age_s = age_s;
+    younger += count;
+    if (2 * younger >= all) break;
+  }
+}
+
+}  // namespace
 
 void MemoryStage::remember(const RecallInputs& inputs, const SceneSamples& samples,
                            const std::vector<OccluderReport>& objects,
-                           Reconstruction& reconstruction) {
+                           Reconstruction& reconstruction, MemoryReport& report) {
   const Poses poses = anchored(inputs.poses);
   if (!poses.color_from_world) return;
   const RecallInputs anchored_inputs{inputs.frame,   poses,         inputs.masks,
@@ -18,11 +43,15 @@ void MemoryStage::remember(const RecallInputs& inputs, const SceneSamples& sampl
   if (!shared_->memory) shared_->memory.emplace(shared_->rig);
   const std::size_t count = shared_->memory->recall(anchored_inputs, recollections_);
   shared_->memory->learn(anchored_inputs, samples, objects);
+  report.keyframes = shared_->memory->keyframes();
+  report.bytes = shared_->memory->bytes();
   end_turn();
   if (count == 0) return;
   for_tasks(count, [&](std::size_t i) { recollections_[i].draw(anchored_inputs); });
-  merge_.merge(anchored_inputs, std::span(recollections_).first(count),
-               inputs.options.memory == "witnessed", reconstruction);
+  const auto recalled = std::span(recollections_).first(count);
+  merge_.merge(anchored_inputs, recalled, inputs.options.memory == "witnessed", reconstruction);
+  report_ages(recalled, merge_.count_remembered(count, reconstruction), inputs.frame.stamp_s,
+              report);
 }
 
 void MemoryStage::forget() {

@@ -39,9 +39,10 @@ class MemoryStage {
   };
 
   /// Recalls and learns when it is this frame's turn, and ends it. Then draws, at the same time as
-  /// other frames. samples, objects: of this frame, to learn from.
+  /// other frames. samples, objects: of this frame, to learn from. report: comes empty.
   void remember(const RecallInputs& inputs, const SceneSamples& samples,
-                const std::vector<OccluderReport>& objects, Reconstruction& reconstruction);
+                const std::vector<OccluderReport>& objects, Reconstruction& reconstruction,
+                MemoryReport& report);
   void forget();
 
  private:

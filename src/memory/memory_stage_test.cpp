@@ -55,7 +55,7 @@ class Memory : public ::testing::Test {
     if (moment.is_lost) report.message = "board: not found";
     const MemoryStage::Turn turn(memory);
     memory.remember({now.frame, now.poses, masks, moment.object, region, maps, options}, samples,
-                    {report}, result);
+                    {report}, result, memory_report = {});
     return result;
   }
 
@@ -103,6 +103,7 @@ class Memory : public ::testing::Test {
   MemoryStage memory{rig};
   std::vector<ColorMap> maps = std::vector<ColorMap>(256);
   Reconstruction result;
+  MemoryReport memory_report;
   Image<Bgr> truth;
   static constexpr std::size_t pixels = hidden.width * hidden.height;
 };
@@ -184,6 +185,19 @@ TEST_F(Memory, ForgetsWithAge) {
   EXPECT_GT(count(result, provenance::remembered), 0U);
   show({.stamp_s = 6, .object = hidden, .is_witnessed = false});
   EXPECT_EQ(count(result, provenance::remembered), 0U);
+}
+
+TEST_F(Memory, SaysHowOldWhatIsRememberedIs) {
+  show({.stamp_s = 1});
+  EXPECT_EQ(memory_report.keyframes, 1U);
+  EXPECT_GT(memory_report.bytes, rig.color.width * rig.color.height * sizeof(Bgr));
+  EXPECT_EQ(memory_report.oldest_age_s, 0);
+  // What is under the object is not learnt again.
+  show({.stamp_s = 3.5, .object = hidden});
+  show({.stamp_s = 4, .object = hidden, .is_witnessed = false});
+  EXPECT_EQ(memory_report.keyframes, 2U);
+  EXPECT_DOUBLE_EQ(memory_report.median_age_s, 3);
+  EXPECT_DOUBLE_EQ(memory_report.oldest_age_s, 3);
 }
 
 TEST_F(Memory, ForgetsWhenToldAndWhenARecordingBeginsAnew) {

@@ -147,4 +147,17 @@ void RecallMerge::merge(const RecallInputs& inputs, std::span<const Recollection
   });
 }
 
+std::vector<std::size_t> RecallMerge::count_remembered(std::size_t recollections,
+                                                       const Reconstruction& reconstruction) const {
+  std::vector<std::size_t> counts(recollections);
+  for (int y = 0; y < region_.height; ++y) {
+    const std::uint8_t* const source = reconstruction.source.row(y + region_.y) + region_.x;
+    const std::uint8_t* const layer = layer_.row(y);
+    for (int x = 0; x < region_.width; ++x) {
+      if (source[x] == provenance::remembered) ++counts[layer[x] - 1U];
+    }
+  }
+  return counts;
+}
+
 }  // namespace diminish

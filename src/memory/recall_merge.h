@@ -27,6 +27,10 @@ class RecallMerge {
   void merge(const RecallInputs& inputs, std::span<const Recollection> recollections,
              bool witnessed_only, Reconstruction& reconstruction);
 
+  /// How many remembered pixels each recollection of the last `merge` shows.
+  std::vector<std::size_t> count_remembered(std::size_t recollections,
+                                            const Reconstruction& reconstruction) const;
+
  private:
   bool explains_surroundings(const RecallInputs& inputs, const Recollection& recollection,
                              const Reconstruction& live) const;

@@ -29,6 +29,9 @@ class SceneMemory {
 
   void forget();
 
+  std::size_t keyframes() const { return store_.size(); }
+  std::size_t bytes() const { return store_.bytes(); }
+
  private:
   bool is_worth_a_keyframe(const RecallInputs& inputs) const;
   /// Whether an object is lost that was there a moment ago: it may be anywhere.

@@ -33,6 +33,7 @@ void begin(const FrameSet& frame, DiminishedFrame& result) {
   FrameReport& report = result.report;
   report.mask_pixels = report.valid_pixels = report.missing_pixels = 0;
   report.witnessed_pixels = report.remembered_pixels = 0;
+  report.memory = {};
   report.milliseconds.fill(0);
   report.frame_ms = 0;
   report.drawing.milliseconds = 0;
@@ -259,7 +260,7 @@ void Pipeline::Implementation::process(const FrameSet& frame, DiminishedFrame& r
   stage(Stage::memory, [&] {
     if (!methods.remembers) return;
     memory.remember({frame, report.poses, masks, objects, region, color_maps.by_source(), options},
-                    samples, report.occluders, result.reconstruction);
+                    samples, report.occluders, result.reconstruction, report.memory);
   });
 
   // 3.4 Compositing, colour correction, inpainting; a backend may have done these

@@ -14,6 +14,7 @@
 #include "score/html.h"
 #include "score/run_folder.h"
 #include "sink/partial_file.h"
+#include "sink/shares.h"
 #include "sink/time_table.h"
 
 namespace diminish {
@@ -156,13 +157,29 @@ std::string sharpness_text(const ViewerFigures& viewer) {
 
 std::string provenance_bar(const nlohmann::json& summary) {
   const auto& pixels = summary.at("pixels");
-  const auto mask = pixels.at("mask").get<double>();
-  if (!(mask > 0)) return {};
-  const double seen = 100 * pixels.at("valid").get<double>() / mask;
-  return fmt::format(
-      "<div class=bar><div style='width:{0:.1f}%;background:#283'>seen {0:.1f} %</div>"
-      "<div style='width:{1:.1f}%;background:#a2a'>invented {1:.1f} %</div></div>\n",
-      seen, 100 - seen);
+  const auto count = [&](const char* name) { return pixels.at(name).get<std::size_t>(); };
+  if (count("mask") == 0) return {};
+  const Shares shares =
+      shares_of(count("mask"), count("valid"), count("witnessed"), count("remembered"));
+  std::string text = "<div class=bar>";
+  const auto part = [&](const char* name, const char* color, double share) {
+    if (share > 0) {
+      text += fmt::format("<div style='width:{:.1f}%;background:{}'>{}</div>", 100 * share, color,
+                          name);
+    }
+  };
+  part("seen", "#283", shares.seen - shares.witnessed);
+  part("witnessed", "#197", shares.witnessed);
+  part("remembered", "#b70", shares.remembered);
+  part("invented", "#a2a", shares.invented);
+  text += "</div>\n<p>Of the objects' pixels " + to_text(shares, 1);
+  if (summary.contains("remembered_age_s")) {
+    const auto& age_s = summary["remembered_age_s"];
+    text +=
+        fmt::format("; the remembered ones were seen {:.1f} s before (median), the oldest {:.1f} s",
+                    age_s.at("median").get<double>(), age_s.at("oldest").get<double>());
+  }
+  return text + ".</p>\n";
 }
 
 std::string comparison(const RunFolder& folder, const FrameScore& frame) {

@@ -49,6 +49,15 @@ Json to_json(const LiveStatus& status, const Options& options) {
                {"mode", options.mode},
                {"mask_share", rounded(status.mask_share)},
                {"seen_share", rounded(status.seen_share)},
+               {"witnessed_share", rounded(status.witnessed_share)},
+               {"remembered_share", rounded(status.remembered_share)},
+               {"invented_share", rounded(status.invented_share)},
+               {"evidence", status.evidence},
+               {"memory",
+                {{"keyframes", status.memory.keyframes},
+                 {"megabytes", rounded(static_cast<double>(status.memory.bytes) / 1e6)},
+                 {"median_age_s", rounded(status.memory.median_age_s)},
+                 {"oldest_age_s", rounded(status.memory.oldest_age_s)}}},
                {"problems", status.problems}};
   for (std::size_t i = 0; i < stage_count; ++i) {
     json["stage_ms"][stage_names[i]] = rounded(status.stage_ms[i]);

@@ -128,6 +128,7 @@ struct WebServer::Implementation {
   void events(httplib::Response& response);
   void change_settings(const httplib::Request& request, httplib::Response& response);
   void change_recording(const httplib::Request& request, httplib::Response& response);
+  void change_memory(const httplib::Request& request, httplib::Response& response);
   void start_recording();
   void stop_recording();
   Json status_json();
@@ -182,6 +183,8 @@ void WebServer::Implementation::add_routes() {
              [this](const auto&, auto& response) { answer(response, describe_settings(session)); });
   server.Post("/api/settings",
               [this](const auto& request, auto& response) { change_settings(request, response); });
+  server.Post("/api/memory",
+              [this](const auto& request, auto& response) { change_memory(request, response); });
   server.Post("/api/recording",
               [this](const auto& request, auto& response) { change_recording(request, response); });
 }
@@ -284,6 +287,14 @@ void WebServer::Implementation::change_settings(const httplib::Request& request,
   session.set_options(settings.options);
   session.set_budget_ms(settings.budget_ms);
   answer(response, describe_settings(session));
+}
+
+void WebServer::Implementation::change_memory(const httplib::Request& request,
+                                              httplib::Response& response) {
+  const Json json = Json::parse(request.body, nullptr, false);
+  if (json != Json::object({{"forget", true}})) throw Error("memory: expected {\"forget\": true}");
+  session.forget();
+  answer(response, status_json()["memory"]);
 }
 
 void WebServer::Implementation::change_recording(const httplib::Request& request,

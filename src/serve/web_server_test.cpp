@@ -249,6 +249,28 @@ TEST_F(Web, RecordsNothingUnlessAllowed) {
               HasSubstr("expected {\"active\": true}"));
 }
 
+TEST_F(Web, SaysWhatIsRememberedAndForgetsOnRequest) {
+  const WebServer server(session_, options());
+  post(server, "/api/settings", {{"memory", "on"}});
+  const auto wait_for_memory = [&](const auto& is_there) {
+    while (true) {
+      const json status = get(server, "/api/status");
+      if (is_there(status["memory"]["keyframes"].get<int>())) return status;
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+  };
+  const json status = wait_for_memory([](int keyframes) { return keyframes > 2; });
+  EXPECT_GT(status["memory"]["megabytes"], 3);
+  EXPECT_THAT(status["evidence"].get<std::string>(), HasSubstr("truly seen "));
+  EXPECT_NEAR(status["seen_share"].get<double>() + status["remembered_share"].get<double>() +
+                  status["invented_share"].get<double>(),
+              1, 0.02);
+  EXPECT_EQ(post(server, "/api/memory", {{"forget", true}}).count("keyframes"), 1U);
+  wait_for_memory([](int keyframes) { return keyframes <= 2; });
+  EXPECT_THAT(post(server, "/api/memory", {{"forget", "it"}}, 400)["error"].get<std::string>(),
+              HasSubstr("expected {\"forget\": true}"));
+}
+
 TEST_F(Web, RefusesOtherSites) {
   const WebServer server(session_, options());
   EXPECT_EQ(client(server).Get("/api/status", {{"Host", "evil.example"}})->status, 403);

@@ -48,6 +48,11 @@ std::string marker_ids(const std::vector<Marker>& markers) {
   return ids;
 }
 
+std::string ages(const FrameReport& report) {
+  if (report.remembered_pixels == 0) return ",,";
+  return fmt::format(",{:.3f},{:.3f}", report.memory.median_age_s, report.memory.oldest_age_s);
+}
+
 /// "calendar: color rgbd0" for each occluder, in quotes.
 std::string found_occluders(const std::vector<OccluderReport>& occluders,
                             const std::vector<std::string>& cameras) {
@@ -76,6 +81,7 @@ FramesCsv::FramesCsv(const std::filesystem::path& file, const Rig& rig)
     header += pose_columns("color_from_" + camera.name + "_depth");
   }
   header += ",occluders,mask_pixels,valid_pixels,missing_pixels,witnessed_pixels,remembered_pixels";
+  header += ",remembered_median_age_s,remembered_oldest_age_s,keyframes";
   for (const TimeRow& row : time_rows()) header += fmt::format(",{}_ms", row.key);
   header += ",messages,faults\n";
   stream_ << header << std::flush;
@@ -100,6 +106,7 @@ void FramesCsv::append(const DiminishedFrame& frame) {
                      known ? found_occluders(report.occluders, cameras_) : in_quotes(""),
                      report.mask_pixels, report.valid_pixels, report.missing_pixels,
                      report.witnessed_pixels, report.remembered_pixels);
+  row += ages(report) + fmt::format(",{}", report.memory.keyframes);
   for (const double ms : times_of(report)) row += fmt::format(",{:.3f}", ms);
   row += fmt::format(",{},{}\n", joined(report.messages), joined(report.faults));
   // One write per row, so that an interrupted run leaves whole rows.

@@ -138,6 +138,10 @@ void ResultWriter::Implementation::write_summary(bool interrupted,
                        {"missing", statistics.missing_pixels()},
                        {"witnessed", statistics.witnessed_pixels()},
                        {"remembered", statistics.remembered_pixels()}};
+  summary["evidence"] = to_text(statistics.shares(), 1);
+  if (const auto ages = statistics.remembered_ages()) {
+    summary["remembered_age_s"] = {{"median", ages->median_s}, {"oldest", ages->oldest_s}};
+  }
   for (std::size_t row = 0; row < time_row_count; ++row) {
     const RunStatistics::Times& times = statistics.times()[row];
     summary["milliseconds"][time_rows()[row].key] = {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "sink/distribution.h"
+
 namespace diminish {
 
 void RunStatistics::add(const FrameReport& report) {
@@ -25,11 +27,24 @@ void RunStatistics::add(const FrameReport& report) {
   missing_pixels_ += report.missing_pixels;
   witnessed_pixels_ += report.witnessed_pixels;
   remembered_pixels_ += report.remembered_pixels;
+  if (report.remembered_pixels > 0) {
+    median_ages_s_.push_back(report.memory.median_age_s);
+    oldest_age_s_ = std::max(oldest_age_s_, report.memory.oldest_age_s);
+  }
   ++frames_;
 }
 
 double RunStatistics::average_ms(std::size_t row) const {
   return frames_ > 0 ? times_[row].sum_ms / static_cast<double>(frames_) : 0;
+}
+
+Shares RunStatistics::shares() const {
+  return shares_of(mask_pixels_, valid_pixels_, witnessed_pixels_, remembered_pixels_);
+}
+
+std::optional<RunStatistics::Ages> RunStatistics::remembered_ages() const {
+  if (median_ages_s_.empty()) return std::nullopt;
+  return Ages{distribution_of(median_ages_s_).p50, oldest_age_s_};
 }
 
 std::string RunStatistics::table() const {
@@ -43,18 +58,12 @@ std::string RunStatistics::table() const {
                           times_[i].min_ms, times_[i].max_ms, row.paper_ms);
     }
   }
-  const auto share = [&](std::size_t pixels) {
-    return 100 * static_cast<double>(pixels) /
-           static_cast<double>(std::max<std::size_t>(mask_pixels_, 1));
-  };
-  text += fmt::format("{} frames; of the objects' pixels {:.1f} % seen, {:.1f} % not", frames_,
-                      share(valid_pixels_ - remembered_pixels_),
-                      share(missing_pixels_ + remembered_pixels_));
-  if (witnessed_pixels_ + remembered_pixels_ > 0) {
-    text += fmt::format("; {:.1f} % remembered and still there, {:.1f} % only remembered",
-                        share(witnessed_pixels_), share(remembered_pixels_));
+  text += fmt::format("{} frames; of the objects' pixels {}\n", frames_, to_text(shares(), 1));
+  if (const auto ages = remembered_ages()) {
+    text +=
+        fmt::format("Remembered pixels were seen {:.1f} s before (median), the oldest {:.1f} s\n",
+                    ages->median_s, ages->oldest_s);
   }
-  text += '\n';
   if (skipped_ > 0) text += fmt::format("{} frames skipped: no colour image\n", skipped_);
   for (const auto& [message, count] : messages_) {
     text += fmt::format("{} of {} frames: {}\n", count, frames_ + skipped_, message);

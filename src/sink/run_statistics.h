@@ -3,9 +3,12 @@
 #include <array>
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "diminish/diminished_frame.h"
+#include "sink/shares.h"
 #include "sink/time_table.h"
 
 namespace diminish {
@@ -28,6 +31,13 @@ class RunStatistics {
   std::size_t missing_pixels() const { return missing_pixels_; }
   std::size_t witnessed_pixels() const { return witnessed_pixels_; }
   std::size_t remembered_pixels() const { return remembered_pixels_; }
+  Shares shares() const;
+  /// How long ago the remembered pixels were seen; nothing if there were none.
+  struct Ages {
+    double median_s = 0;  ///< of the frames' medians
+    double oldest_s = 0;
+  };
+  std::optional<Ages> remembered_ages() const;
   /// By row of the table of times.
   double average_ms(std::size_t row) const;
   const std::array<Times, time_row_count>& times() const { return times_; }
@@ -42,6 +52,8 @@ class RunStatistics {
   std::size_t frames_ = 0, skipped_ = 0, faulty_ = 0;
   std::size_t mask_pixels_ = 0, valid_pixels_ = 0, missing_pixels_ = 0;
   std::size_t witnessed_pixels_ = 0, remembered_pixels_ = 0;
+  std::vector<double> median_ages_s_;  ///< of frames with something remembered
+  double oldest_age_s_ = 0;
   std::array<Times, time_row_count> times_{};
   std::map<std::string, std::size_t> messages_;
 };

@@ -38,9 +38,29 @@ TEST(RunStatistics, AddsUpFramesAndLeavesSkippedOnesOutOfTheTimes) {
   EXPECT_DOUBLE_EQ(statistics.average_ms(stage_count + 3), 11);
   EXPECT_DOUBLE_EQ(statistics.average_ms(stage_count + 4), 12);
   const std::string table = statistics.table();
-  EXPECT_THAT(table, HasSubstr("75.0 % seen, 25.0 % not"));
+  EXPECT_THAT(table, HasSubstr("truly seen 75.0 %, invented 25.0 %"));
+  EXPECT_FALSE(statistics.remembered_ages());
   EXPECT_THAT(table, HasSubstr("1 of 3 frames: ball: not found"));
   EXPECT_THAT(table, HasSubstr("1 frames skipped"));
+}
+
+TEST(RunStatistics, SaysHowOldWhatIsRememberedIs) {
+  RunStatistics statistics;
+  FrameReport report;
+  report.mask_pixels = 100;
+  statistics.add(report);
+  report.valid_pixels = 80;
+  report.remembered_pixels = 30;
+  for (const double age_s : {2., 7., 4.}) {
+    report.memory.median_age_s = age_s;
+    report.memory.oldest_age_s = 2 * age_s;
+    statistics.add(report);
+  }
+  EXPECT_DOUBLE_EQ(statistics.remembered_ages()->median_s, 4);
+  EXPECT_DOUBLE_EQ(statistics.remembered_ages()->oldest_s, 14);
+  EXPECT_THAT(statistics.table(),
+              HasSubstr("truly seen 37.5 %, remembered 22.5 %, invented 40.0 %\nRemembered pixels "
+                        "were seen 4.0 s before (median), the oldest 14.0 s"));
 }
 
 }  // namespace

@@ -2,8 +2,8 @@ import { addressWithToken, get, pictures, post } from "./stream.js";
 
 const element = (id) => document.getElementById(id);
 const stageColors = ["#4db6ac", "#81c784", "#90a4ae", "#b0bec5", "#9575cd", "#7986cb",
-  "#4dd0e1", "#64b5f6", "#dce775", "#ba68c8", "#ffb74d", "#e57373"];
-const mainSettings = ["discontinuity_threshold_m", "mask_margin_px", "color_correct", "inpaint", "transparency", "budget_ms"];
+  "#4dd0e1", "#64b5f6", "#f06292", "#dce775", "#ba68c8", "#ffb74d", "#e57373"];
+const mainSettings = ["discontinuity_threshold_m", "mask_margin_px", "color_correct", "inpaint", "memory", "transparency", "budget_ms"];
 // Sliders need an end where a setting has none that is useful.
 const usefulRange = {
   discontinuity_threshold_m: [0.01, 0.5, 0.01], mask_margin_px: [0, 40, 1],
@@ -204,6 +204,11 @@ function showStatus(status) {
   element("frame-ms").textContent = `${status.frame_ms.toFixed(1)} ms`;
   element("skipped").textContent = status.skipped;
   element("seen").textContent = `${(100 * status.seen_share).toFixed(0)} %`;
+  element("evidence").textContent = status.evidence;
+  const { memory } = status;
+  element("memory").textContent = memory.keyframes === 0 ? "Nothing is remembered"
+    : `${memory.keyframes} keyframes, ${memory.megabytes.toFixed(0)} MB` + (status.remembered_share > 0
+      ? `; remembered from ${memory.median_age_s.toFixed(1)} s ago (median), the oldest ${memory.oldest_age_s.toFixed(1)} s` : "");
   element("quality").hidden = status.quality_level === 0;
   element("quality").textContent = `To stay within ${status.budget_ms} ms: ${status.quality}`;
   plot(status.stage_ms);
@@ -222,14 +227,16 @@ function showStatus(status) {
     ? `${recording.folder}: ${recording.frames} frames${recording.dropped ? `, ${recording.dropped} dropped` : ""}` : "");
 }
 
-element("record").onclick = async ({ target }) => {
+async function command(path, body) {
   try {
-    await post("api/recording", { active: !target.classList.contains("recording") });
+    await post(path, body);
     complaint = "";
   } catch (error) {
     complaint = error.message;
   }
-};
+}
+element("record").onclick = ({ target }) => command("api/recording", { active: !target.classList.contains("recording") });
+element("forget").onclick = () => command("api/memory", { forget: true });
 element("still").href = addressWithToken("api/frame.png");
 
 const events = new EventSource(addressWithToken("api/events"));
