@@ -2,21 +2,13 @@
 
 #include <algorithm>
 
+#include "geometry/every.h"
+
 namespace diminish {
 namespace {
 
 /// Of the grid.
 constexpr int wanted_width = 320;
-
-Intrinsics every(int step, Intrinsics color) {
-  color.width = (color.width - 1) / step + 1;
-  color.height = (color.height - 1) / step + 1;
-  color.fx /= step;
-  color.fy /= step;
-  color.cx /= step;
-  color.cy /= step;
-  return color;
-}
 
 }  // namespace
 
@@ -26,6 +18,8 @@ std::size_t Keyframe::bytes() const {
   for (const Testimony& testimony : testimonies) {
     bytes += testimony.depth_m.size() * (sizeof(float) + sizeof(Bgr));
   }
+  for (const Image<Sight>& of_camera : sights) bytes += of_camera.size() * sizeof(Sight);
+  bytes += overview_m.size() * sizeof(float) + samples.size() * sizeof(SceneSample);
   return bytes;
 }
 
@@ -33,7 +27,9 @@ KeyframeGrid::KeyframeGrid(const Intrinsics& color)
     : color_(color),
       step_(std::max(1, (color.width + wanted_width / 2) / wanted_width)),
       grid_(every(step_, color)),
-      rays_(RayTable::of(grid_)) {}
+      lens_(Lens(grid_)),
+      rays_(RayTable::of(grid_)),
+      overview_rays_(RayTable::of(every(overview_step, grid_))) {}
 
 RgbdCamera KeyframeGrid::camera() const {
   RgbdCamera camera;

@@ -12,11 +12,32 @@
 #include "diminish/intrinsics.h"
 #include "diminish/rig.h"
 #include "diminish/rigid_transform.h"
+#include "diminish/scene_samples.h"
 #include "geometry/projection.h"
 #include "geometry/ray_table.h"
 #include "memory/testimony.h"
 
 namespace diminish {
+
+/// How an RGB-D camera saw one of a keyframe's places when the keyframe was taken.
+class Sight {
+ public:
+  enum Kind : std::uint32_t {
+    aside,    ///< out of its view
+    through,  ///< nothing was there, for this camera: an error of calibration
+    same,     ///< it saw the place
+    hidden,   ///< it saw something nearer, or nothing
+  };
+
+  Sight() = default;
+  /// place: of the camera's testimony, counted row by row.
+  Sight(Kind kind, std::int32_t place) : bits_(static_cast<std::uint32_t>(place) << 2 | kind) {}
+  Kind kind() const { return static_cast<Kind>(bits_ & 3); }
+  std::int32_t place() const { return static_cast<std::int32_t>(bits_ >> 2); }
+
+ private:
+  std::uint32_t bits_ = 0;
+};
 
 /// What the user's camera saw at one moment, apart from the objects to remove. It is drawn like an
 /// RGB-D camera's images; `depth` is in the camera's own view, on KeyframeGrid.
@@ -30,6 +51,11 @@ struct Keyframe {
   Mask guessed;  ///< by place, 1 where the depth was neither measured nor between measured ones
   std::vector<Testimony> testimonies;  ///< of each RGB-D camera
 
+  // What follows from that, for as long as it is kept: by KeyframePreparation.
+  std::vector<Image<Sight>> sights;  ///< of each RGB-D camera, by place; empty without a testimony
+  Image<float> overview_m;           ///< on KeyframeGrid's overview; 0: nothing may be shown
+  std::vector<SceneSample> samples;  ///< in the keyframe's frame
+
   std::size_t bytes() const;
 };
 
@@ -37,6 +63,8 @@ struct Keyframe {
 class KeyframeGrid {
  public:
   static constexpr double unit_m = 0.0005;
+  /// Places along a row are fewer.
+  static constexpr int most_columns = 512;
 
   explicit KeyframeGrid(const Intrinsics& color);
 
@@ -55,21 +83,26 @@ class KeyframeGrid {
     return {ray(x, y).x() * z, ray(x, y).y() * z, z};
   }
   Eigen::Vector2f ray(int x, int y) const { return (*rays_)(x, y); }
+  const RayTable& rays() const { return *rays_; }
+  const Projection& lens() const { return lens_; }
+
+  /// Every so many places: enough to tell what a keyframe shows.
+  static constexpr int overview_step = 4;
+  const RayTable& overview_rays() const { return *overview_rays_; }
 
  private:
   Intrinsics color_;
   int step_;
   Intrinsics grid_;
-  std::shared_ptr<const RayTable> rays_;
+  Projection lens_;  ///< of the grid
+  std::shared_ptr<const RayTable> rays_, overview_rays_;
 };
 
 /// The pixel nearest to the projection of a point; nothing behind the camera or outside the lens.
-/// scale: of the picture, to that of the image that is asked for.
 struct Pixel {
   int x, y;
 };
-inline std::optional<Pixel> project(const Projection& lens, const Eigen::Vector3f& point_m,
-                                    float scale = 1) {
+inline std::optional<Pixel> project(const Projection& lens, const Eigen::Vector3f& point_m) {
   constexpr float nearest_m = 0.05F;
   float u = 0;
   float v = 0;
@@ -79,7 +112,7 @@ inline std::optional<Pixel> project(const Projection& lens, const Eigen::Vector3
   }
   constexpr float most = 1e6F;
   if (!(std::abs(u) < most && std::abs(v) < most)) return std::nullopt;
-  return Pixel{static_cast<int>(std::lrint(u * scale)), static_cast<int>(std::lrint(v * scale))};
+  return Pixel{static_cast<int>(std::lrint(u)), static_cast<int>(std::lrint(v))};
 }
 inline Eigen::Vector3f transform(const FloatTransform& a_from_b, const Eigen::Vector3f& point_m) {
   const auto& [x, y, z] = std::array{point_m.x(), point_m.y(), point_m.z()};

@@ -5,10 +5,27 @@
 #include <numeric>
 
 #include "core/tasks.h"
+#include "memory/point_rows.h"
 
 namespace diminish {
-KeyframeStore::KeyframeStore(const Intrinsics& color, const KeyframeGrid& grid)
-    : grid_(grid), color_(Lens(color)), lens_(Lens(grid.intrinsics())) {}
+namespace {
+
+/// The side of a cell: the distance of the overview's points.
+int cell_px(const KeyframeGrid& grid) {
+  return KeyframeGrid::overview_step * grid.step();
+}
+/// How many there are in a region.
+Rect cells_of(const Rect& region, int cell) {
+  return {0, 0, (region.width - 1) / cell + 1, (region.height - 1) / cell + 1};
+}
+
+}  // namespace
+
+KeyframeStore::KeyframeStore(const Rig& rig, const KeyframeGrid& grid)
+    : grid_(grid),
+      preparation_(rig, grid),
+      color_(Lens(rig.color)),
+      picture_width_(rig.color.width) {}
 
 std::size_t KeyframeStore::count_unique(std::size_t index) const {
   constexpr int stride = 8;
@@ -26,7 +43,7 @@ std::size_t KeyframeStore::count_unique(std::size_t index) const {
       for (std::size_t i = 0; i < keyframes_.size() && !is_elsewhere; ++i) {
         if (i == index) continue;
         const Eigen::Vector3f there = transform(to_others[i], point);
-        const auto pixel = project(lens_, there);
+        const auto pixel = project(grid_.lens(), there);
         const Image<std::uint16_t>& depth = keyframes_[i]->depth;
         is_elsewhere = pixel && depth.bounds().contains(pixel->x, pixel->y) &&
                        std::abs(KeyframeGrid::depth_m(depth(pixel->x, pixel->y)) - there.z()) <
@@ -39,6 +56,7 @@ std::size_t KeyframeStore::count_unique(std::size_t index) const {
 }
 
 void KeyframeStore::add(Keyframe keyframe) {
+  preparation_.prepare(keyframe);
   keyframes_.push_back(std::make_shared<Keyframe>(std::move(keyframe)));
   const std::size_t affordable = most_bytes / std::max<std::size_t>(1, newest().bytes());
   if (size() <= std::clamp<std::size_t>(affordable, 2, most_keyframes)) return;
@@ -58,62 +76,69 @@ void KeyframeStore::drop_older_than(double stamp_s) {
   std::erase_if(keyframes_, [&](const auto& keyframe) { return keyframe->stamp_s < stamp_s; });
 }
 
-std::vector<std::shared_ptr<const Keyframe>> KeyframeStore::choose(
-    std::size_t most, const Mask& objects, const TiledRegion& region,
-    const RigidTransform& color_from_world) const {
-  constexpr int cell = 8;    // pixels
-  constexpr int stride = 4;  // places of the grid
-  constexpr int fewest = 4;  // cells
-  constexpr double near_m = 0.05;
-  const int columns = region.width / cell + 1;
-  const int rows = region.height / cell + 1;
-  using Cells = std::vector<std::uint8_t>;
-  const auto index = [&](int x, int y) {
-    return static_cast<std::size_t>((y - region.y) / cell) * static_cast<std::size_t>(columns) +
-           static_cast<std::size_t>((x - region.x) / cell);
-  };
-  Cells wanted(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
-  for (int y = region.y; y < region.bottom(); ++y) {
-    for (int x = region.x; x < region.right(); ++x) {
-      if (objects(x, y) != 0) wanted[index(x, y)] = 1;
+void KeyframeStore::find_shown(const Keyframe& keyframe, const RigidTransform& color_from_keyframe,
+                               const Rect& region, std::vector<std::uint8_t>& shown) const {
+  const int cell = cell_px(grid_);
+  const Rect cells = cells_of(region, cell);
+  const RayTable& rays = grid_.overview_rays();
+  const PointView view{FloatTransform(color_from_keyframe), color_, region, picture_width_};
+  std::int32_t pixels[KeyframeGrid::most_columns];
+  float unused[KeyframeGrid::most_columns];
+  shown.assign(static_cast<std::size_t>(cells.width) * static_cast<std::size_t>(cells.height), 0);
+  for (int y = 0; y < rays.height(); ++y) {
+    find_pixels({rays.x(y), rays.y(y), keyframe.overview_m.row(y), rays.width()}, view, pixels,
+                unused);
+    for (int x = 0; x < rays.width(); ++x) {
+      if (pixels[x] < 0) continue;
+      const int row = pixels[x] / picture_width_;
+      const int column = pixels[x] - row * picture_width_;
+      shown[static_cast<std::size_t>((row - region.y) / cell * cells.width +
+                                     (column - region.x) / cell)] = 1;
     }
   }
-  std::vector<Cells> covered(size());
-  std::vector<double> weights(size());
-  for_tasks(size(), [&](std::size_t k) {
-    const Keyframe& keyframe = *keyframes_[k];
-    const RigidTransform motion = color_from_world * keyframe.color_from_world.inverse();
-    const FloatTransform to_color(motion);
-    weights[k] = 1 / (1 + motion.translation.norm() / near_m);
-    covered[k].assign(wanted.size(), 0);
-    for (int y = 0; y < keyframe.depth.height(); y += stride) {
-      for (int x = 0; x < keyframe.depth.width(); x += stride) {
-        if (keyframe.depth(x, y) == 0) continue;
-        const auto pixel =
-            project(color_, transform(to_color, grid_.point_m(x, y, keyframe.depth(x, y))));
-        if (pixel && region.contains(pixel->x, pixel->y)) covered[k][index(pixel->x, pixel->y)] = 1;
-      }
+}
+
+void KeyframeStore::choose(std::size_t most, const Mask& objects, const TiledRegion& region,
+                           const RigidTransform& color_from_world,
+                           std::vector<std::shared_ptr<const Keyframe>>& chosen) {
+  constexpr int fewest = 256;  // pixels
+  constexpr double near_m = 0.05;
+  const int cell = cell_px(grid_);
+  const Rect cells = cells_of(region, cell);
+  wanted_.assign(static_cast<std::size_t>(cells.width) * static_cast<std::size_t>(cells.height), 0);
+  for (int y = region.y; y < region.bottom(); ++y) {
+    int* const wanted = wanted_.data() + (y - region.y) / cell * cells.width;
+    const std::uint8_t* const masked = objects.row(y) + region.x;
+    for (int i = 0; i < cells.width; ++i) {
+      const int last = std::min(region.width, (i + 1) * cell);
+      for (int x = i * cell; x < last; ++x) wanted[i] += masked[x] != 0 ? 1 : 0;
     }
+  }
+  shown_.resize(size());
+  weights_.resize(size());
+  for_tasks(size(), [&](std::size_t k) {
+    const RigidTransform motion = color_from_world * keyframes_[k]->color_from_world.inverse();
+    weights_[k] = 1 / (1 + motion.translation.norm() / near_m);
+    find_shown(*keyframes_[k], motion, region, shown_[k]);
   });
-  std::vector<std::shared_ptr<const Keyframe>> chosen;
+  chosen.clear();
   while (chosen.size() < most) {
     std::size_t best = size();
     double best_value = 0;
     for (std::size_t k = size(); k-- > 0;) {
       int count = 0;
-      for (std::size_t i = 0; i < wanted.size(); ++i) count += wanted[i] & covered[k][i];
-      const double value = count < fewest ? 0 : weights[k] * count;
+      for (std::size_t i = 0; i < wanted_.size(); ++i) count += shown_[k][i] * wanted_[i];
+      const double value = count < fewest ? 0 : weights_[k] * count;
       if (!(value > best_value)) continue;
       best_value = value;
       best = k;
     }
     if (best == size()) break;
     chosen.push_back(keyframes_[best]);
-    for (std::size_t i = 0; i < wanted.size(); ++i) {
-      if (covered[best][i] != 0) wanted[i] = 0;
+    for (std::size_t i = 0; i < wanted_.size(); ++i) {
+      if (shown_[best][i] != 0) wanted_[i] = 0;
     }
   }
-  return chosen;
 }
 
 void KeyframeStore::remove(const std::vector<Eigen::Vector3f>& points_m,
@@ -124,14 +149,18 @@ void KeyframeStore::remove(const std::vector<Eigen::Vector3f>& points_m,
     const FloatTransform to_keyframe(keyframe.color_from_world * color_from_world.inverse());
     for (const Eigen::Vector3f& x_in_other : points_m) {
       const Eigen::Vector3f point = transform(to_keyframe, x_in_other);
-      const auto pixel = project(lens_, point);
+      const auto pixel = project(grid_.lens(), point);
       if (!pixel) continue;
       const Rect around = intersect(grow({pixel->x, pixel->y, 1, 1}, 1), keyframe.depth.bounds());
       for (int y = around.y; y < around.bottom(); ++y) {
         for (int x = around.x; x < around.right(); ++x) {
           std::uint16_t& depth = keyframe.depth(x, y);
-          if (std::abs(KeyframeGrid::depth_m(depth) - point.z()) < between_cameras.at(point.z()))
-            depth = 0;
+          if (std::abs(KeyframeGrid::depth_m(depth) - point.z()) >= between_cameras.at(point.z())) {
+            continue;
+          }
+          depth = 0;
+          constexpr int step = KeyframeGrid::overview_step;
+          if (x % step == 0 && y % step == 0) keyframe.overview_m(x / step, y / step) = 0;
         }
       }
     }

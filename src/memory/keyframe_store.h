@@ -6,6 +6,7 @@
 #include "diminish/occlusion_masks.h"
 #include "diminish/tiled_region.h"
 #include "memory/keyframe.h"
+#include "memory/keyframe_preparation.h"
 
 namespace diminish {
 
@@ -15,7 +16,7 @@ class KeyframeStore {
   static constexpr std::size_t most_keyframes = 16;
   static constexpr std::size_t most_bytes = std::size_t{256} << 20;
 
-  KeyframeStore(const Intrinsics& color, const KeyframeGrid& grid);
+  KeyframeStore(const Rig& rig, const KeyframeGrid& grid);
 
   bool empty() const { return keyframes_.empty(); }
   std::size_t size() const { return keyframes_.size(); }
@@ -28,20 +29,29 @@ class KeyframeStore {
   void clear() { keyframes_.clear(); }
 
   /// Those that together show most of the objects' mask, the best first. Nearer ones are better:
-  /// errors in depth show less.
-  std::vector<std::shared_ptr<const Keyframe>> choose(std::size_t most, const Mask& objects,
-                                                      const TiledRegion& region,
-                                                      const RigidTransform& color_from_world) const;
+  /// errors in depth show less. Cost: 10 us a keyframe, and reading the mask.
+  void choose(std::size_t most, const Mask& objects, const TiledRegion& region,
+              const RigidTransform& color_from_world,
+              std::vector<std::shared_ptr<const Keyframe>>& chosen);
 
   /// Removes points from all keyframes. points_m: in the frame of one of them, whose pose is given.
   void remove(const std::vector<Eigen::Vector3f>& points_m, const RigidTransform& color_from_world);
 
  private:
   std::size_t count_unique(std::size_t index) const;
+  /// Which cells of the region a keyframe shows.
+  void find_shown(const Keyframe& keyframe, const RigidTransform& color_from_keyframe,
+                  const Rect& region, std::vector<std::uint8_t>& shown) const;
 
   KeyframeGrid grid_;
-  Projection color_, lens_;  ///< of the picture, of the grid
+  KeyframePreparation preparation_;
+  Projection color_;  ///< of the picture
+  int picture_width_;
   std::vector<std::shared_ptr<Keyframe>> keyframes_;
+  // By cell of the region: pixels of the objects that no chosen keyframe shows; what each shows.
+  std::vector<int> wanted_;
+  std::vector<std::vector<std::uint8_t>> shown_;
+  std::vector<double> weights_;
 };
 
 }  // namespace diminish

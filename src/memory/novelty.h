@@ -1,6 +1,7 @@
 #pragma once
 
 #include "memory/keyframe.h"
+#include "memory/surroundings.h"
 
 namespace diminish {
 
@@ -10,7 +11,7 @@ class Novelty {
  public:
   static constexpr double stay_s = 2;
 
-  explicit Novelty(const KeyframeGrid& grid);
+  explicit Novelty(const KeyframeGrid& grid) : grid_(grid) {}
 
   /// Compares with the frame of the last call. Clears the keyframe's depth where something is
   /// nearer or looks different than before and has not stayed yet. What was behind something
@@ -18,18 +19,18 @@ class Novelty {
   /// object to remove may be anywhere.
   void filter(bool is_uncertain, Keyframe& keyframe);
 
-  void forget() { depth_.resize(0, 0); }
+  void forget() { depth_m_.resize(0, 0); }
 
  private:
   KeyframeGrid grid_;
-  Projection lens_;
   // Of the last keyframe, with what was cleared.
   RigidTransform color_from_world_;
-  Image<std::uint16_t> depth_;
+  Image<float> depth_m_;
   Image<Bgr> color_;
   Image<double> since_s_;  ///< the time from which on each place has looked like that
+  Surroundings around_;
   Image<double> now_since_s_;
-  Image<std::uint16_t> now_depth_;
+  Image<float> now_depth_m_;
   Image<Bgr> now_color_;
 };
 

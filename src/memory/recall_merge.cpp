@@ -59,21 +59,21 @@ bool RecallMerge::explains_surroundings(const RecallInputs& inputs,
   return count >= fewest && error / static_cast<float>(count) <= enough;
 }
 
-void RecallMerge::layer_rows(const RecallInputs& inputs,
-                             std::span<const Recollection> recollections, Rows rows) {
+void RecallMerge::layer_rows(std::span<const Recollection> recollections, Rows rows) {
   for (int y = rows.first; y < rows.last; ++y) {
-    for (int x = 0; x < region_.width; ++x) {
-      const int column = x + region_.x;
-      const int row = y + region_.y;
-      layer_(x, y) = 0;
-      depth_m_(x, y) = 0;
-      if (!inputs.region.keeps(column, row)) continue;
-      for (std::size_t i = 0; i < recollections.size(); ++i) {
-        const Reconstruction& drawn = recollections[i].drawn();
-        if (usable_[i] == 0 || drawn.source(column, row) == 0) continue;
-        layer_(x, y) = static_cast<std::uint8_t>(1 + i);
-        depth_m_(x, y) = drawn.depth_m(column, row);
-        break;
+    std::uint8_t* const layer = layer_.row(y);
+    float* const depth_m = depth_m_.row(y);
+    std::fill_n(layer, region_.width, std::uint8_t{0});
+    std::fill_n(depth_m, region_.width, 0.F);
+    for (std::size_t i = 0; i < recollections.size(); ++i) {
+      if (usable_[i] == 0) continue;
+      const Reconstruction& drawn = recollections[i].drawn();
+      const std::uint8_t* const source = drawn.source.row(y + region_.y) + region_.x;
+      const float* const drawn_m = drawn.depth_m.row(y + region_.y) + region_.x;
+      for (int x = 0; x < region_.width; ++x) {
+        const bool is_next = layer[x] == 0 && source[x] != 0;
+        layer[x] = is_next ? static_cast<std::uint8_t>(1 + i) : layer[x];
+        depth_m[x] = is_next ? drawn_m[x] : depth_m[x];
       }
     }
   }
@@ -139,7 +139,7 @@ void RecallMerge::merge(const RecallInputs& inputs, std::span<const Recollection
   for (const Recollection& recollection : recollections) {
     usable_.push_back(explains_surroundings(inputs, recollection, reconstruction) ? 1 : 0);
   }
-  for_rows(region_.height, [&](Rows rows) { layer_rows(inputs, recollections, rows); });
+  for_rows(region_.height, [&](Rows rows) { layer_rows(recollections, rows); });
   for_rows(region_.height, [&](Rows rows) {
     for (int y = rows.first; y < rows.last; ++y) {
       merge_row(inputs, recollections, witnessed_only, y, reconstruction);

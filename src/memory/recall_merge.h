@@ -34,8 +34,7 @@ class RecallMerge {
  private:
   bool explains_surroundings(const RecallInputs& inputs, const Recollection& recollection,
                              const Reconstruction& live) const;
-  void layer_rows(const RecallInputs& inputs, std::span<const Recollection> recollections,
-                  Rows rows);
+  void layer_rows(std::span<const Recollection> recollections, Rows rows);
   void merge_row(const RecallInputs& inputs, std::span<const Recollection> recollections,
                  bool witnessed_only, int y, Reconstruction& reconstruction) const;
   bool is_nearer(float z_m, int x, int y, float tolerance_m) const;

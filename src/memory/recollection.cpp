@@ -2,15 +2,10 @@
 
 #include <algorithm>
 
+#include "memory/keyframe_preparation.h"
+
 namespace diminish {
 namespace {
-
-Rig memory_rig(const Rig& rig, const KeyframeGrid& grid) {
-  Rig memory;
-  memory.color = rig.color;
-  memory.rgbd.push_back(grid.camera());
-  return memory;
-}
 
 /// Joins neighbours in depth if the gap between them in the picture is narrow: a threshold that
 /// grows with the square of the depth.
@@ -26,8 +21,8 @@ void join_narrow_gaps(double focal_px, double baseline_m, Options& options) {
 }  // namespace
 
 Recollection::Recollection(const Rig& rig, const KeyframeGrid& grid)
-    : rig_(memory_rig(rig, grid)),
-      sampler_(rig_),
+    : rig_(keyframe_rig(rig, grid)),
+      grid_step_(grid.step()),
       coarse_(rig.color),
       fine_(rig.color, 2 * PoseRefinement::usual_width),
       witness_(rig, grid),
@@ -46,9 +41,16 @@ void Recollection::prepare(std::shared_ptr<const Keyframe> kept, const RecallInp
   frame_.color = inputs.frame.color.view();
   frame_.rgbd[0].color = ImageView<Bgr>(keyframe.picture);
   frame_.rgbd[0].depth = ImageView<std::uint16_t>(keyframe.depth);
-  poses_.color_from_depth.assign(
-      1, *inputs.poses.color_from_world * keyframe.color_from_world.inverse());
-  sampler_.sample(frame_, poses_, masks_, samples_);
+  poses_.color_from_depth.assign(1, RigidTransform());
+  samples_.surfaces.clear();
+  for (const SceneSample& sample : keyframe.samples) {
+    // It may have been removed since.
+    const int x = static_cast<int>(sample.texture.x()) / grid_step_;
+    const int y = static_cast<int>(sample.texture.y()) / grid_step_;
+    if (keyframe.depth(x, y) != 0) samples_.surfaces.push_back(sample);
+  }
+  coarse_.apply(*inputs.poses.color_from_world * keyframe.color_from_world.inverse(), poses_,
+                samples_);
   for (PoseRefinement* refinement : {&coarse_, &fine_}) {
     if (const auto correction = refinement->refine(frame_, inputs.masks.color, samples_)) {
       refinement->apply(*correction, poses_, samples_);

@@ -8,7 +8,6 @@
 #include "memory/witness.h"
 #include "pose/pose_refinement.h"
 #include "scene/color_maps.h"
-#include "scene/scene_sampler.h"
 
 namespace diminish {
 
@@ -48,7 +47,7 @@ class Recollection {
 
  private:
   Rig rig_;  ///< the user's camera, and the keyframe
-  SceneSampler sampler_;
+  int grid_step_;
   PoseRefinement coarse_, fine_;
   ColorMaps color_maps_;
   Witness witness_;

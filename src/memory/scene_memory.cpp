@@ -14,7 +14,7 @@ SceneMemory::SceneMemory(const Rig& rig)
       grid_(rig.color),
       depth_(rig, grid_),
       novelty_(grid_),
-      store_(rig.color, grid_),
+      store_(rig, grid_),
       testimonies_(rig.rgbd.size()) {
   for (const RgbdCamera& camera : rig.rgbd) takers_.emplace_back(camera);
 }
@@ -43,7 +43,7 @@ std::size_t SceneMemory::recall(const RecallInputs& inputs,
   store_.drop_older_than(now_s - inputs.options.memory_max_age_s);
   if (store_.empty() || inputs.region.empty()) return 0;
   const RigidTransform& color_from_world = *inputs.poses.color_from_world;
-  chosen_ = store_.choose(most_recalled, inputs.masks.color, inputs.region, color_from_world);
+  store_.choose(most_recalled, inputs.masks.color, inputs.region, color_from_world, chosen_);
   if (chosen_.empty()) return 0;
   look(inputs);
   while (recollections.size() < chosen_.size()) recollections.emplace_back(rig_, grid_);
@@ -87,18 +87,30 @@ bool SceneMemory::has_just_lost(const std::vector<OccluderReport>& objects, doub
   return lost;
 }
 
-void SceneMemory::leave_out_objects(const RecallInputs& inputs, Keyframe& keyframe) const {
+void SceneMemory::leave_out_objects(const RecallInputs& inputs, Keyframe& keyframe) {
   const Mask& objects = inputs.masks.color;
+  const int step = grid_.step();
   // A cell of the grid, and what their edges shine onto.
-  const int margin = grid_.step() + 6;
+  const int margin = step + 6;
   const Rect part = grow(inputs.objects, margin);
+  object_columns_.resize(static_cast<std::size_t>(objects.width()));
   for (int y = 0; y < keyframe.depth.height(); ++y) {
+    const Rect band = intersect({0, y * step - margin, objects.width(), 2 * margin + 1},
+                                intersect(part, objects.bounds()));
+    if (band.empty()) continue;
+    std::uint8_t* const columns = object_columns_.data();
+    std::fill_n(columns + band.x, band.width, std::uint8_t{0});
+    for (int row = band.y; row < band.bottom(); ++row) {
+      const std::uint8_t* const masked = objects.row(row);
+      for (int x = band.x; x < band.right(); ++x) columns[x] |= masked[x];
+    }
     for (int x = 0; x < keyframe.depth.width(); ++x) {
-      const int column = x * grid_.step();
-      const int row = y * grid_.step();
-      if (!part.contains(column, row)) continue;
-      const Rect around = intersect(grow({column, row, 1, 1}, margin), objects.bounds());
-      if (count_nonzero(objects, around) > 0) keyframe.depth(x, y) = 0;
+      const int first = std::max(band.x, x * step - margin);
+      const int last = std::min(band.right(), x * step + margin + 1);
+      if (std::any_of(columns + first, columns + std::max(first, last),
+                      [](std::uint8_t any) { return any != 0; })) {
+        keyframe.depth(x, y) = 0;
+      }
     }
   }
 }

@@ -37,7 +37,7 @@ class SceneMemory {
   /// Whether an object is lost that was there a moment ago: it may be anywhere.
   bool has_just_lost(const std::vector<OccluderReport>& objects, double stamp_s);
   void look(const RecallInputs& inputs);
-  void leave_out_objects(const RecallInputs& inputs, Keyframe& keyframe) const;
+  void leave_out_objects(const RecallInputs& inputs, Keyframe& keyframe);
 
   Rig rig_;
   KeyframeGrid grid_;
@@ -47,6 +47,7 @@ class SceneMemory {
   std::vector<std::shared_ptr<const Keyframe>> chosen_;
   std::vector<TestimonyTaker> takers_;
   std::vector<Testimony> testimonies_;
+  std::vector<std::uint8_t> object_columns_;
   bool has_looked_ = false;  ///< in this frame
   double last_stamp_s_ = 0;  ///< of any frame
   double last_keyframe_s_ = 0;

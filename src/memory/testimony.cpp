@@ -1,24 +1,24 @@
 #include "memory/testimony.h"
 
-#include <algorithm>
-#include <cmath>
-
-#include "core/channels.h"
 #include "core/rows.h"
-#include "memory/keyframe.h"
+#include "geometry/every.h"
+#include "memory/point_rows.h"
 
 namespace diminish {
 namespace {
 
+/// Of a testimony: coarse, so that it costs little. Fine things are seen by their colours.
+constexpr int wanted_columns = 160;
+
 /// Of 3x3 pixels.
-Bgr mean_color(ImageView<Bgr> image, const Pixel& pixel) {
+Bgr mean_color(ImageView<Bgr> image, int x, int y) {
   int sum[3] = {};
-  for (int row = pixel.y - 1; row <= pixel.y + 1; ++row) {
-    for (int column = pixel.x - 1; column <= pixel.x + 1; ++column) {
-      const Bgr& color = image(column, row);
-      sum[0] += color.b;
-      sum[1] += color.g;
-      sum[2] += color.r;
+  for (int row = y - 1; row <= y + 1; ++row) {
+    const Bgr* const pixels = image.row(row) + x - 1;
+    for (int i = 0; i < 3; ++i) {
+      sum[0] += pixels[i].b;
+      sum[1] += pixels[i].g;
+      sum[2] += pixels[i].r;
     }
   }
   const auto mean = [&](int c) { return static_cast<std::uint8_t>(sum[c] / 9); };
@@ -27,10 +27,15 @@ Bgr mean_color(ImageView<Bgr> image, const Pixel& pixel) {
 
 }  // namespace
 
+TestimonyGrid::TestimonyGrid(const Intrinsics& depth)
+    : step_(std::max(1, (depth.width + wanted_columns / 2) / wanted_columns)),
+      bounds_(every(step_, depth).bounds()),
+      lens_(Lens(every(step_, depth))),
+      rays_(RayTable::of(every(step_, depth))) {}
+
 TestimonyTaker::TestimonyTaker(const RgbdCamera& camera)
-    : camera_(camera),
-      rays_(RayTable::of(camera.depth)),
-      depth_(Lens(camera.depth)),
+    : grid_(camera.depth),
+      unit_m_(static_cast<float>(camera.depth_unit_m)),
       color_(Lens(camera.color)),
       color_from_depth_(camera.color_from_depth) {}
 
@@ -41,30 +46,32 @@ void TestimonyTaker::take(const RgbdFrame& images,
   testimony.is_given = images.available() && depth_from_world;
   if (!testimony.is_given) return;
   testimony.depth_from_world = *depth_from_world;
-  const int width = grid().width;
-  const int height = grid().height;
+  const int width = grid_.bounds().width;
+  const int height = grid_.bounds().height;
   testimony.depth_m.resize(width, height);
   testimony.color.resize(width, height);
-  const auto unit_m = static_cast<float>(camera_.depth_unit_m);
   const ImageView<std::uint16_t> depth = images.depth;
   const ImageView<Bgr> color = images.color;
-  const Rect inside = grow(color.bounds(), -1);
+  const PointView view{color_from_depth_, color_, grow(color.bounds(), -1), color.width()};
   for_rows(height, [&](Rows rows) {
+    std::int32_t pixels[TestimonyGrid::most_columns];
+    float unused[TestimonyGrid::most_columns];
     for (int y = rows.first; y < rows.last; ++y) {
+      const std::uint16_t* const measured = depth.row(y * grid_.step());
+      const std::uint8_t* const masked = depth_mask.row(y * grid_.step());
+      float* const depth_m = testimony.depth_m.row(y);
       for (int x = 0; x < width; ++x) {
-        const int column = x * Testimony::step;
-        const int row = y * Testimony::step;
-        float& depth_m = testimony.depth_m(x, y);
-        depth_m = 0;
-        const float z = static_cast<float>(depth(column, row)) * unit_m;
-        if (depth_mask(column, row) != 0 || !(z > 0)) continue;
-        const Eigen::Vector3f point = point_m(x, y, z);
-        const auto pixel = project(color_, transform(color_from_depth_, point));
-        if (!pixel || !inside.contains(pixel->x, pixel->y) || color_mask(pixel->x, pixel->y) != 0) {
+        const int column = x * grid_.step();
+        depth_m[x] = masked[column] == 0 ? static_cast<float>(measured[column]) * unit_m_ : 0;
+      }
+      find_pixels({grid_.rays().x(y), grid_.rays().y(y), depth_m, width}, view, pixels, unused);
+      for (int x = 0; x < width; ++x) {
+        if (pixels[x] < 0 || color_mask.data()[pixels[x]] != 0) {
+          depth_m[x] = 0;
           continue;
         }
-        depth_m = z;
-        testimony.color(x, y) = mean_color(color, *pixel);
+        const int row = pixels[x] / color.width();
+        testimony.color(x, y) = mean_color(color, pixels[x] - row * color.width(), row);
       }
     }
   });

@@ -1,124 +1,92 @@
+#include "memory/testimony_comparison.h"
+
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <vector>
 
 #include "core/channels.h"
 #include "core/robust.h"
-#include "core/rows.h"
-#include "memory/keyframe.h"
 #include "memory/light.h"
-#include "memory/testimony.h"
+#include "memory/point_rows.h"
 
 namespace diminish {
 namespace {
 
 /// Of one depth sensor, at two moments.
 constexpr DepthNoise usual_noise{0.012F, 0.006F};
+/// Where depths differ by more, relative to themselves, a surface ends.
+constexpr float edge = 0.04F;
 
 /// Whether a surface ends near a pixel.
 bool is_edge(const Image<float>& depth_m, int x, int y) {
   constexpr int reach = 2;
-  constexpr float step = 0.04F;  // relative to the depth
   const float z = depth_m(x, y);
   if (!grow(depth_m.bounds(), -reach).contains(x, y)) return true;
   for (const auto& [dx, dy] : {std::pair{-reach, 0}, {reach, 0}, {0, -reach}, {0, reach}}) {
-    if (!(std::abs(depth_m(x + dx, y + dy) - z) < step * z)) return true;
+    if (!(std::abs(depth_m(x + dx, y + dy) - z) < edge * z)) return true;
   }
   return false;
 }
 
-/// The depths around a pixel, and the colours of those that are near `z_m`.
-struct Neighbourhood {
-  float least_m = 1e9F, greatest_m = 0;
-  int low[3] = {255, 255, 255}, high[3] = {}, sum[3] = {};
-  int count = 0;  ///< of colours
-
-  bool is_empty() const { return greatest_m == 0; }
-  Neighbourhood(const Testimony& testimony, int x, int y, int reach, float z_m, float tolerance_m) {
-    for (int row = y - reach; row <= y + reach; ++row) {
-      const float* const depth_m = testimony.depth_m.row(row);
-      const Bgr* const colors = testimony.color.row(row);
-      for (int column = x - reach; column <= x + reach; ++column) {
-        if (!(depth_m[column] > 0)) continue;
-        least_m = std::min(least_m, depth_m[column]);
-        greatest_m = std::max(greatest_m, depth_m[column]);
-        if (std::abs(depth_m[column] - z_m) > tolerance_m) continue;
-        const int levels[3] = {colors[column].b, colors[column].g, colors[column].r};
-        for (int c = 0; c < 3; ++c) {
-          low[c] = std::min(low[c], levels[c]);
-          high[c] = std::max(high[c], levels[c]);
-          sum[c] += levels[c];
-        }
-        ++count;
-      }
+/// Whether a colour lies between two others, in any light.
+bool is_between(const Bgr& color, const std::uint8_t* low, const std::uint8_t* high,
+                float tolerance) {
+  const float own[3] = {static_cast<float>(color.b), static_cast<float>(color.g),
+                        static_cast<float>(color.r)};
+  const auto is_within = [&](float light) {
+    bool within = true;
+    for (int c = 0; c < 3; ++c) {
+      within = within && own[c] >= light * static_cast<float>(low[c]) - tolerance &&
+               own[c] <= light * static_cast<float>(high[c]) + tolerance;
     }
-  }
-  Eigen::Array3f mean() const { return channels(sum) / static_cast<float>(count); }
-  static Eigen::Array3f channels(const int (&values)[3]) {
-    return {static_cast<float>(values[0]), static_cast<float>(values[1]),
-            static_cast<float>(values[2])};
-  }
-};
+    return within;
+  };
+  if (is_within(1)) return true;
+  const auto middle = [&](int c) { return static_cast<float>(low[c] + high[c]) / 2; };
+  return is_within(light_between({own[0], own[1], own[2]}, {middle(0), middle(1), middle(2)},
+                                 1 / deepest_shadow));
+}
 
 }  // namespace
 
-TestimonyTaker::Difference TestimonyTaker::compare(const Testimony& a, const Testimony& b,
-                                                   const FloatTransform& b_from_a,
-                                                   const Tolerance& tolerance, int x, int y) const {
-  const float z_in_a = a.depth_m(x, y);
-  if (!(z_in_a > 0)) return {};
-  const Eigen::Vector3f point = transform(b_from_a, point_m(x, y, z_in_a));
-  const auto pixel = project(depth_, point, 1.F / Testimony::step);
-  if (!pixel || !grow(b.depth_m.bounds(), -tolerance.reach).contains(pixel->x, pixel->y)) {
-    return {};
-  }
-  const float z = point.z();
-  const float noise_m = usual_noise.at(z);
-  const Neighbourhood there(b, pixel->x, pixel->y, tolerance.reach, z, tolerance.depth * noise_m);
-  if (there.is_empty()) return {};
-  if (z < there.least_m - tolerance.depth * noise_m) return {Verdict::absent};
-  if (z > there.greatest_m + tolerance.depth * noise_m) return {};
-  const float center_m = b.depth_m(pixel->x, pixel->y);
-  const float depth = center_m > 0 ? std::abs(z - center_m) / noise_m : 0;
-  // Where surfaces end, colours are those of either side.
-  constexpr float step = 0.04F;
-  if (there.count == 0 || (tolerance.reach > 1 && (there.greatest_m - there.least_m > step * z ||
-                                                   is_edge(a.depth_m, x, y)))) {
-    return {Verdict::same, depth, 0};
-  }
-  const Eigen::Array3f own = to_channels(a.color(x, y));
-  const Eigen::Array3f mean = there.mean();
-  const float light = light_between(own, mean, 1 / deepest_shadow);
-  const bool differs = (own < light * there.channels(there.low) - tolerance.color).any() ||
-                       (own > light * there.channels(there.high) + tolerance.color).any();
-  return {differs ? Verdict::recolored : Verdict::same, depth,
-          (own - light * mean).abs().maxCoeff()};
-}
-
-int TestimonyTaker::count_same(const Testimony& a, const Testimony& b,
-                               const FloatTransform& b_from_a, Tolerance& tolerance) const {
-  constexpr int stride = 5;
-  std::vector<float> depths;
-  std::vector<float> colors;
-  for (int y = stride; y < grid().height; y += stride) {
-    for (int x = stride; x < grid().width; x += stride) {
-      const Difference difference = compare(a, b, b_from_a, tolerance, x, y);
-      if (difference.verdict != Verdict::same) continue;
-      depths.push_back(difference.depth);
-      colors.push_back(difference.color);
+int TestimonyComparison::count_same(const Testimony& a, const Testimony& b,
+                                    const FloatTransform& b_from_a, Tolerance& tolerance) {
+  constexpr int rows_apart = 6;
+  constexpr int columns_apart = 4;
+  const Rect& grid = grid_.bounds();
+  depth_differences_.clear();
+  color_differences_.clear();
+  std::int32_t places[TestimonyGrid::most_columns];
+  float depths[TestimonyGrid::most_columns];
+  for (int y = rows_apart / 2; y < grid.height; y += rows_apart) {
+    find_pixels({grid_.rays().x(y), grid_.rays().y(y), a.depth_m.row(y), grid.width},
+                {b_from_a, grid_.lens(), grid, grid.width}, places, depths);
+    for (int x = columns_apart / 2; x < grid.width; x += columns_apart) {
+      if (places[x] < 0) continue;
+      const float z = depths[x];
+      const float noise_m = usual_noise.at(z);
+      const float difference_m = std::abs(z - b.depth_m.data()[places[x]]);
+      if (!(difference_m <= tolerance.depth * noise_m)) continue;
+      const Eigen::Array3f own = to_channels(a.color(x, y));
+      const Eigen::Array3f other = to_channels(b.color.data()[places[x]]);
+      const float light = light_between(own, other, 1 / deepest_shadow);
+      const float difference = (own - light * other).abs().maxCoeff();
+      if (difference > tolerance.color) continue;
+      depth_differences_.push_back(difference_m / noise_m);
+      color_differences_.push_back(difference);
     }
   }
-  const auto count = static_cast<int>(depths.size());
+  const auto count = static_cast<int>(depth_differences_.size());
   if (count > 0) {
-    tolerance.depth = std::clamp(6 * median(depths), 0.5F, 2.F);
-    tolerance.color = std::clamp(5 * median(colors), 8.F, 30.F);
+    tolerance.depth = std::clamp(6 * median(depth_differences_), 0.5F, 2.F);
+    tolerance.color = std::clamp(4 * median(color_differences_), 8.F, 30.F);
   }
   return count;
 }
 
-void TestimonyTaker::compare(const Side& a, const Side& b) const {
+void TestimonyComparison::compare(const Side& a, const Side& b) {
   for (const Side* side : {&a, &b}) {
-    side->verdicts.resize(grid().width, grid().height, Verdict::unknown);
+    side->verdicts.resize(grid_.bounds().width, grid_.bounds().height, Verdict::unknown);
   }
   if (!a.testimony.is_given || !b.testimony.is_given) return;
   const RigidTransform b_from_a =
@@ -134,66 +102,132 @@ void TestimonyTaker::compare(const Side& a, const Side& b) const {
   const bool stands_still = same_if_still >= nearly_as_many * same_if_moving;
   const RigidTransform motion = stands_still ? RigidTransform() : b_from_a;
   const Tolerance& tolerance = stands_still ? still : moving;
-  judge(a, b.testimony, FloatTransform(motion), tolerance);
-  judge(b, a.testimony, FloatTransform(motion.inverse()), tolerance);
+  judge(a, b, FloatTransform(motion), tolerance);
+  judge(b, a, FloatTransform(motion.inverse()), tolerance);
 }
 
-void TestimonyTaker::judge(const Side& side, const Testimony& other,
-                           const FloatTransform& other_from_side,
-                           const Tolerance& tolerance) const {
-  const Rect part = intersect(side.part, grid());
-  const auto for_each = [&](const auto& visit) {
-    for_rows(part.height, [&](Rows rows) {
-      for (int y = part.y + rows.first; y < part.y + rows.last; ++y) {
-        for (int x = part.x; x < part.right(); ++x) visit(x, y);
-      }
-    });
-  };
-  Verdicts raw(grid().width, grid().height, Verdict::unknown);
-  for_each([&](int x, int y) {
-    raw(x, y) = compare(side.testimony, other, other_from_side, tolerance, x, y).verdict;
-  });
-  const auto count_changed = [&](int x, int y, int reach) {
-    const Rect around = intersect(grow({x, y, 1, 1}, reach), part);
-    int count = 0;
-    for (int row = around.y; row < around.bottom(); ++row) {
-      for (int column = around.x; column < around.right(); ++column) {
-        count += is_changed(raw(column, row)) ? 1 : 0;
+Verdict TestimonyComparison::verdict_of(const Place& own, const Place& there,
+                                        const Tolerance& tolerance) const {
+  const float least_m = around_.least_m(there.x, there.y);
+  const float greatest_m = around_.greatest_m(there.x, there.y);
+  if (!(greatest_m > 0)) return Verdict::unknown;
+  const float z_m = there.z_m;
+  const float tolerance_m = tolerance.depth * usual_noise.at(z_m);
+  if (z_m < least_m - tolerance_m) return Verdict::absent;
+  if (z_m > greatest_m + tolerance_m) return Verdict::unknown;
+  const std::uint8_t* low = around_.low(there.x, there.y);
+  const std::uint8_t* high = around_.high(there.x, there.y);
+  std::uint8_t low_of_surface[3] = {255, 255, 255};
+  std::uint8_t high_of_surface[3] = {};
+  if (greatest_m - least_m > edge * z_m) {
+    // Where surfaces end, colours are those of either side.
+    if (tolerance.reach > 1) return Verdict::same;
+    bool any = false;
+    for (int y = there.y - 1; y <= there.y + 1; ++y) {
+      for (int x = there.x - 1; x <= there.x + 1; ++x) {
+        const float z = there.testimony.depth_m(x, y);
+        if (!(z > 0) || std::abs(z - z_m) > tolerance_m) continue;
+        any = true;
+        const Bgr& color = there.testimony.color(x, y);
+        const std::uint8_t levels[3] = {color.b, color.g, color.r};
+        for (int c = 0; c < 3; ++c) {
+          low_of_surface[c] = std::min(low_of_surface[c], levels[c]);
+          high_of_surface[c] = std::max(high_of_surface[c], levels[c]);
+        }
       }
     }
-    return count;
-  };
-  // What changes is wider than the errors at the edges of things.
-  const int reach = tolerance.reach;
-  const int square = (2 * reach + 1) * (2 * reach + 1);
-  Mask core(grid().width, grid().height, std::uint8_t{0});
-  for_each([&](int x, int y) {
-    if (is_changed(raw(x, y)) && count_changed(x, y, reach) == square) core(x, y) = 1;
-  });
+    if (!any) return Verdict::same;
+    low = low_of_surface;
+    high = high_of_surface;
+  } else if (tolerance.reach > 1 && is_edge(own.testimony.depth_m, own.x, own.y)) {
+    return Verdict::same;
+  }
+  return is_between(own.testimony.color(own.x, own.y), low, high, tolerance.color)
+             ? Verdict::same
+             : Verdict::recolored;
+}
+
+void TestimonyComparison::judge(const Side& side, const Side& other,
+                                const FloatTransform& other_from_side, const Tolerance& tolerance) {
+  const Rect& grid = grid_.bounds();
+  const Rect inside = intersect(grow(grid, -tolerance.reach), other.part);
+  Rect part = intersect(side.part, grid);
+  if (tolerance.reach == 1) part = intersect(part, inside);
+  if (part.empty() || inside.empty()) return;
+  around_.find(other.testimony.depth_m, other.testimony.color, tolerance.reach, inside);
+  const Testimony& own = side.testimony;
+  const PointView view{other_from_side, grid_.lens(), inside, grid.width};
+  std::int32_t places[TestimonyGrid::most_columns];
+  float depths[TestimonyGrid::most_columns];
+  bool any = false;
+  for (int y = part.y; y < part.bottom(); ++y) {
+    const float* const depth_m = own.depth_m.row(y) + part.x;
+    if (tolerance.reach > 1) {
+      find_pixels({grid_.rays().x(y) + part.x, grid_.rays().y(y) + part.x, depth_m, part.width},
+                  view, places, depths);
+    } else {
+      for (int i = 0; i < part.width; ++i) {
+        places[i] = depth_m[i] > 0 ? y * grid.width + part.x + i : -1;
+        depths[i] = depth_m[i];
+      }
+    }
+    Verdict* const verdicts = side.verdicts.row(y) + part.x;
+    for (int i = 0; i < part.width; ++i) {
+      if (places[i] < 0) continue;
+      const int row = places[i] / grid.width;
+      const int column = places[i] - row * grid.width;
+      verdicts[i] = verdict_of({own, part.x + i, y, depth_m[i]},
+                               {other.testimony, column, row, depths[i]}, tolerance);
+      any = any || is_changed(verdicts[i]);
+    }
+  }
+  if (any) keep_wide_changes(part, tolerance.reach, side.verdicts);
+}
+
+void TestimonyComparison::keep_wide_changes(const Rect& part, int reach, Verdicts& verdicts) {
+  for (Padded<std::uint8_t>* image : {&changed_, &core_, &count_, &kept_, &across_}) {
+    image->resize(grid_.bounds(), 1, 0);
+  }
+  changed_.fill(0);
+  core_.fill(0);
+  for (int y = part.y; y < part.bottom(); ++y) {
+    const Verdict* const verdict = verdicts.row(y) + part.x;
+    std::uint8_t* const changed = changed_.at(part.x, y);
+    for (int i = 0; i < part.width; ++i) changed[i] = is_changed(verdict[i]) ? 1 : 0;
+  }
+  const auto least = [](std::uint8_t a, std::uint8_t b) { return std::min(a, b); };
+  const auto greatest = [](std::uint8_t a, std::uint8_t b) { return std::max(a, b); };
+  const auto sum = [](std::uint8_t a, std::uint8_t b) { return static_cast<std::uint8_t>(a + b); };
+  combine_around(changed_, part, reach, least, across_, core_);
+  combine_around(core_, part, reach + 1, greatest, across_, kept_);
+  combine_around(changed_, part, 1, sum, across_, count_);
+  // What is left of `changed_`: the verdicts on wide changes.
   constexpr int fewest = 4;
-  Verdicts kept = raw;
-  for_each([&](int x, int y) {
-    if (!is_changed(raw(x, y))) return;
-    const Rect around = intersect(grow({x, y, 1, 1}, reach + 1), part);
-    if (count_nonzero(core, around) > 0) {
-      if (raw(x, y) == Verdict::absent && reach == 1) kept(x, y) = Verdict::gone;
-    } else if (reach > 1 || count_changed(x, y, 1) < fewest) {
-      kept(x, y) = Verdict::same;
-    }
-  });
-  // What is beside a change has probably changed, too.
-  for_each([&](int x, int y) {
-    Verdict& verdict = side.verdicts(x, y);
-    verdict = kept(x, y);
-    if (is_changed(verdict)) return;
-    const Rect around = intersect(grow({x, y, 1, 1}, 1), part);
-    for (int row = around.y; row < around.bottom(); ++row) {
-      for (int column = around.x; column < around.right(); ++column) {
-        const Verdict beside = kept(column, row);
-        if (is_changed(beside)) verdict = std::min(beside, Verdict::recolored);
+  for (int y = part.y; y < part.bottom(); ++y) {
+    Verdict* const verdict = verdicts.row(y) + part.x;
+    std::uint8_t* const changed = changed_.at(part.x, y);
+    const std::uint8_t* const is_wide = kept_.at(part.x, y);
+    const std::uint8_t* const count = count_.at(part.x, y);
+    for (int i = 0; i < part.width; ++i) {
+      if (changed[i] == 0) continue;
+      if (is_wide[i] != 0) {
+        if (verdict[i] == Verdict::absent && reach == 1) verdict[i] = Verdict::gone;
+      } else if (reach > 1 || count[i] < fewest) {
+        verdict[i] = Verdict::same;
       }
+      changed[i] = is_changed(verdict[i]) ? static_cast<std::uint8_t>(verdict[i]) : 0;
     }
-  });
+  }
+  // What is beside a change has probably changed, too.
+  combine_around(changed_, part, 1, greatest, across_, kept_);
+  for (int y = part.y; y < part.bottom(); ++y) {
+    Verdict* const verdict = verdicts.row(y) + part.x;
+    const std::uint8_t* const beside = kept_.at(part.x, y);
+    for (int i = 0; i < part.width; ++i) {
+      if (beside[i] == 0 || is_changed(verdict[i])) continue;
+      verdict[i] = std::min(static_cast<Verdict>(beside[i]), Verdict::recolored);
+    }
+  }
 }
 
 }  // namespace diminish

@@ -1,4 +1,4 @@
-#include "memory/testimony.h"
+#include "memory/testimony_comparison.h"
 
 #include <gtest/gtest.h>
 
@@ -7,19 +7,19 @@
 namespace diminish {
 namespace {
 
-constexpr int width = 160;
-constexpr int height = 120;
+constexpr int width = 320;
+constexpr int height = 240;
 constexpr float wall_m = 2;
 constexpr float box_m = 1.5F;
 /// In the depth image.
-constexpr Rect box{60, 40, 30, 30};
+constexpr Rect box{120, 80, 60, 60};
 
 RgbdCamera camera() {
   RgbdCamera camera;
   camera.name = "rgbd0";
   camera.depth.width = camera.color.width = width;
   camera.depth.height = camera.color.height = height;
-  camera.depth.fx = camera.depth.fy = camera.color.fx = camera.color.fy = 150;
+  camera.depth.fx = camera.depth.fy = camera.color.fx = camera.color.fy = 300;
   camera.depth.cx = camera.color.cx = (width - 1) / 2.;
   camera.depth.cy = camera.color.cy = (height - 1) / 2.;
   return camera;
@@ -76,7 +76,8 @@ class Testimonies : public ::testing::Test {
     compare(then.testimony(taker), now.testimony(taker));
   }
   void compare(const Testimony& then, const Testimony& now) {
-    taker.compare({then, taker.grid(), then_by_now}, {now, taker.grid(), now_by_then});
+    comparison.compare({then, taker.grid().bounds(), then_by_now},
+                       {now, taker.grid().bounds(), now_by_then});
   }
   static std::size_t count(const Verdicts& verdicts, Verdict verdict, const Rect& part) {
     std::size_t found = 0;
@@ -92,12 +93,13 @@ class Testimonies : public ::testing::Test {
   }
 
   /// Pixels around the box that may be mixed with its colour.
-  static constexpr std::size_t rim = 20;
+  static constexpr std::size_t rim = 40;
   TestimonyTaker taker{camera()};
+  TestimonyComparison comparison{taker.grid()};
   Verdicts then_by_now, now_by_then;
   /// The box without its rim, on the testimony's grid.
-  const Rect inner{box.x / Testimony::step + 2, box.y / Testimony::step + 2,
-                   box.width / Testimony::step - 4, box.height / Testimony::step - 4};
+  const int step = taker.grid().step();
+  const Rect inner{box.x / step + 2, box.y / step + 2, box.width / step - 4, box.height / step - 4};
   const std::size_t pixels =
       static_cast<std::size_t>(inner.width) * static_cast<std::size_t>(inner.height);
 };

@@ -3,138 +3,164 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/rows.h"
 #include "core/tasks.h"
+#include "memory/point_rows.h"
 
 namespace diminish {
 
-/// From the keyframe's frame to an RGB-D camera's.
-struct Witness::View {
-  std::size_t k;
-  FloatTransform then, now;
-};
-
-Witness::Witness(const Rig& rig, const KeyframeGrid& grid) : grid_(grid), color_(Lens(rig.color)) {
-  for (const RgbdCamera& camera : rig.rgbd) cameras_.push_back({TestimonyTaker(camera), {}, {}});
+Witness::Witness(const Rig& rig, const KeyframeGrid& grid)
+    : grid_(grid), color_(Lens(rig.color)), picture_(rig.color.bounds()) {
+  for (const RgbdCamera& camera : rig.rgbd) {
+    const TestimonyGrid of_camera(camera.depth);
+    cameras_.push_back({of_camera,
+                        TestimonyComparison(of_camera),
+                        false,
+                        FloatTransform(RigidTransform()),
+                        {},
+                        {},
+                        {},
+                        {}});
+  }
 }
 
 Verdict Witness::was_there(std::size_t k, const Eigen::Vector3f& x_in_depth) const {
   const Camera& camera = cameras_[k];
-  const auto pixel = project(camera.taker.depth_lens(), x_in_depth, 1.F / Testimony::step);
+  const auto pixel = project(camera.grid.lens(), x_in_depth);
   if (!pixel || !camera.now.bounds().contains(pixel->x, pixel->y)) return Verdict::unknown;
   return camera.now(pixel->x, pixel->y);
 }
 
-bool Witness::has_changed(const View& view, const Inputs& inputs, const Eigen::Vector3f& point,
-                          bool& is_gone) const {
-  const Camera& camera = cameras_[view.k];
-  const auto look = [&](const Eigen::Vector3f& x_in_depth,
-                        const Testimony& testimony) -> std::optional<Pixel> {
-    const auto pixel = project(camera.taker.depth_lens(), x_in_depth, 1.F / Testimony::step);
-    return pixel && testimony.depth_m.bounds().contains(pixel->x, pixel->y) ? pixel : std::nullopt;
-  };
-  const Testimony& then = inputs.keyframe.testimonies[view.k];
-  const Eigen::Vector3f x_then = transform(view.then, point);
-  if (const auto pixel = look(x_then, then)) {
-    const float tolerance_m = between_cameras.at(x_then.z());
-    const float beyond_m = then.depth_m(pixel->x, pixel->y) - x_then.z();
-    // Nothing was there, for this camera: an error of calibration, so it cannot say.
-    if (beyond_m > tolerance_m) return false;
-    const Verdict verdict = camera.then(pixel->x, pixel->y);
-    if (beyond_m > -tolerance_m) {
-      is_gone = verdict == Verdict::gone;
-      return is_changed(verdict);
+void Witness::find_parts(const Inputs& inputs) {
+  constexpr int step = KeyframeGrid::overview_step;
+  const Keyframe& keyframe = inputs.keyframe;
+  const RayTable& rays = grid_.overview_rays();
+  const Rect near = intersect(grow(inputs.region, step * grid_.step()), picture_);
+  const PointView to_color{FloatTransform(inputs.color_from_keyframe), color_, near,
+                           picture_.width};
+  part_ = {};
+  for (Camera& camera : cameras_) camera.then_part = camera.now_part = {};
+  float depth_m[KeyframeGrid::most_columns];
+  std::int32_t pixels[KeyframeGrid::most_columns];
+  std::int32_t places[KeyframeGrid::most_columns];
+  float unused[KeyframeGrid::most_columns];
+  for (int y = 0; y < rays.height(); ++y) {
+    PointRow row{rays.x(y), rays.y(y), keyframe.overview_m.row(y), rays.width()};
+    find_pixels(row, to_color, pixels, unused);
+    bool any = false;
+    for (int x = 0; x < row.count; ++x) {
+      depth_m[x] = 0;
+      if (pixels[x] < 0) continue;
+      any = true;
+      depth_m[x] = row.depth_m[x];
+      extend(part_, x * step, y * step);
     }
-    // Hidden by something that has changed, or not measured beside it.
-    if (is_changed(verdict)) return true;
+    if (!any) continue;
+    row.depth_m = depth_m;
+    for (std::size_t k = 0; k < cameras_.size(); ++k) {
+      Camera& camera = cameras_[k];
+      if (!camera.is_asked) continue;
+      const Rect& bounds = camera.grid.bounds();
+      for (int x = 0; x < row.count; ++x) {
+        const Sight& sight = keyframe.sights[k](x * step, y * step);
+        if (!(depth_m[x] > 0) || sight.kind() == Sight::aside) continue;
+        extend(camera.then_part, sight.place() % bounds.width, sight.place() / bounds.width);
+      }
+      find_pixels(row, {camera.from_keyframe, camera.grid.lens(), bounds, bounds.width}, places,
+                  unused);
+      for (int x = 0; x < row.count; ++x) {
+        if (places[x] >= 0) {
+          extend(camera.now_part, places[x] % bounds.width, places[x] / bounds.width);
+        }
+      }
+    }
   }
-  const Testimony& now = inputs.now[view.k];
-  const Eigen::Vector3f x_now = transform(view.now, point);
-  const auto pixel = look(x_now, now);
-  return pixel && now.depth_m(pixel->x, pixel->y) > x_now.z() + 2 * between_cameras.at(x_now.z());
-}
-
-template <class Visit>
-void Witness::for_each_in_part(const Keyframe& keyframe, const FloatTransform& to_color,
-                               const Rect& part, const Visit& visit) const {
-  constexpr int stride = 4;
-  for (int y = 0; y < keyframe.depth.height(); y += stride) {
-    for (int x = 0; x < keyframe.depth.width(); x += stride) {
-      if (keyframe.depth(x, y) == 0) continue;
-      const Eigen::Vector3f point = grid_.point_m(x, y, keyframe.depth(x, y));
-      const auto pixel = project(color_, transform(to_color, point));
-      if (pixel && part.contains(pixel->x, pixel->y)) visit(point);
-    }
+  constexpr int margin = 8;
+  part_ = intersect(grow(part_, step), keyframe.depth.bounds());
+  for (Camera& camera : cameras_) {
+    camera.then_part = grow(camera.then_part, margin);
+    camera.now_part = grow(camera.now_part, margin);
   }
 }
 
 void Witness::judge(const Inputs& inputs, Image<std::uint16_t>& depth,
                     std::vector<Eigen::Vector3f>& gone) {
   const Keyframe& keyframe = inputs.keyframe;
-  std::vector<View> views;
   for (std::size_t k = 0; k < cameras_.size(); ++k) {
+    Camera& camera = cameras_[k];
     const auto& color_from_depth = inputs.poses.color_from_depth[k];
-    const auto& then = keyframe.color_from_depth[k];
-    if (!inputs.now[k].is_given || !keyframe.testimonies[k].is_given || !color_from_depth ||
-        !then) {
-      cameras_[k].now.resize(0, 0);
-      continue;
+    camera.is_asked = inputs.now[k].is_given && color_from_depth && !keyframe.sights[k].empty();
+    if (camera.is_asked) {
+      camera.from_keyframe =
+          FloatTransform(color_from_depth->inverse() * inputs.color_from_keyframe);
+    } else {
+      camera.now.resize(0, 0);
     }
-    views.push_back({k, FloatTransform(then->inverse()),
-                     FloatTransform(color_from_depth->inverse() * inputs.color_from_keyframe)});
   }
-  const Rect part = grow(inputs.region, grid_.step());
-  const FloatTransform to_color(inputs.color_from_keyframe);
-  for_tasks(views.size(), [&](std::size_t i) {
-    const View& view = views[i];
-    Camera& camera = cameras_[view.k];
-    // Where the cameras see what is in the region.
-    Rect then;
-    Rect now;
-    for_each_in_part(keyframe, to_color, part, [&](const Eigen::Vector3f& point) {
-      for (const auto& [to_depth, box] : {std::pair(&view.then, &then), {&view.now, &now}}) {
-        const auto pixel =
-            project(camera.taker.depth_lens(), transform(*to_depth, point), 1.F / Testimony::step);
-        if (pixel && camera.taker.grid().contains(pixel->x, pixel->y)) {
-          extend(*box, pixel->x, pixel->y);
-        }
-      }
-    });
-    constexpr int margin = 8;
-    camera.taker.compare({keyframe.testimonies[view.k], grow(then, margin), camera.then},
-                         {inputs.now[view.k], grow(now, margin), camera.now});
+  find_parts(inputs);
+  for_tasks(cameras_.size(), [&](std::size_t k) {
+    Camera& camera = cameras_[k];
+    if (!camera.is_asked) return;
+    camera.comparison.compare({keyframe.testimonies[k], camera.then_part, camera.then},
+                              {inputs.now[k], camera.now_part, camera.now});
   });
-  depth = keyframe.depth;
-  std::vector<Eigen::Vector3f> gone_in_band[most_bands];
   // A guess may be wrong by so much of its depth, which must not be seen.
   constexpr float guess_error = 0.2F;
   constexpr float most_px = 6;
-  const float least_guess_m = color_.fx *
-                              static_cast<float>(inputs.color_from_keyframe.translation.norm()) *
-                              guess_error / most_px;
-  for_rows(depth.height(), [&](Rows rows) {
+  least_guess_m_ = color_.fx * static_cast<float>(inputs.color_from_keyframe.translation.norm()) *
+                   guess_error / most_px;
+  depth = keyframe.depth;
+  gone.clear();
+  for (auto& band : gone_in_band_) band.clear();
+  for_rows(part_.height, [&](Rows rows) {
     for (int y = rows.first; y < rows.last; ++y) {
-      for (int x = 0; x < depth.width(); ++x) {
-        if (depth(x, y) == 0) continue;
-        const Eigen::Vector3f point = grid_.point_m(x, y, depth(x, y));
-        if (keyframe.guessed(x, y) != 0 && point.z() < least_guess_m) {
-          depth(x, y) = 0;
-          continue;
-        }
-        const auto pixel = project(color_, transform(to_color, point));
-        if (!pixel || !part.contains(pixel->x, pixel->y)) continue;
-        for (const View& view : views) {
-          bool is_gone = false;
-          if (!has_changed(view, inputs, point, is_gone)) continue;
-          depth(x, y) = 0;
-          if (is_gone) gone_in_band[rows.band].push_back(point);
-          break;
-        }
-      }
+      judge_row(inputs, part_.y + y, depth, gone_in_band_[rows.band]);
     }
   });
-  gone.clear();
-  for (const auto& band : gone_in_band) gone.insert(gone.end(), band.begin(), band.end());
+  for (const auto& band : gone_in_band_) gone.insert(gone.end(), band.begin(), band.end());
+}
+
+void Witness::judge_row(const Inputs& inputs, int y, Image<std::uint16_t>& depth,
+                        std::vector<Eigen::Vector3f>& gone) const {
+  const Keyframe& keyframe = inputs.keyframe;
+  std::uint16_t* const kept = depth.row(y) + part_.x;
+  const std::uint8_t* const guessed = keyframe.guessed.row(y) + part_.x;
+  for (int x = 0; x < part_.width; ++x) {
+    if (guessed[x] != 0 && KeyframeGrid::depth_m(kept[x]) < least_guess_m_) kept[x] = 0;
+  }
+  float looked_m[KeyframeGrid::most_columns];  // at what the camera did not see then
+  std::int32_t places[KeyframeGrid::most_columns];
+  for (std::size_t k = 0; k < cameras_.size(); ++k) {
+    const Camera& camera = cameras_[k];
+    if (!camera.is_asked) continue;
+    const Sight* const sights = keyframe.sights[k].row(y) + part_.x;
+    bool any = false;
+    for (int x = 0; x < part_.width; ++x) {
+      looked_m[x] = 0;
+      if (kept[x] == 0 || sights[x].kind() == Sight::through) continue;
+      if (sights[x].kind() != Sight::aside) {
+        const Verdict verdict = camera.then.data()[sights[x].place()];
+        if (is_changed(verdict)) {
+          if (sights[x].kind() == Sight::same && verdict == Verdict::gone) {
+            gone.push_back(grid_.point_m(part_.x + x, y, kept[x]));
+          }
+          kept[x] = 0;
+          continue;
+        }
+        if (sights[x].kind() == Sight::same) continue;
+      }
+      looked_m[x] = KeyframeGrid::depth_m(kept[x]);
+      any = true;
+    }
+    if (!any) continue;
+    const Rect& bounds = camera.grid.bounds();
+    find_pixels({grid_.rays().x(y) + part_.x, grid_.rays().y(y) + part_.x, looked_m, part_.width},
+                {camera.from_keyframe, camera.grid.lens(), bounds, bounds.width}, places, looked_m);
+    for (int x = 0; x < part_.width; ++x) {
+      if (places[x] < 0) continue;
+      const float seen_m = inputs.now[k].depth_m.data()[places[x]];
+      if (seen_m > looked_m[x] + 2 * between_cameras.at(looked_m[x])) kept[x] = 0;
+    }
+  }
 }
 
 }  // namespace diminish

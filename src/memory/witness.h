@@ -2,8 +2,10 @@
 
 #include <vector>
 
+#include "core/rows.h"
 #include "diminish/poses.h"
 #include "memory/keyframe.h"
+#include "memory/testimony_comparison.h"
 
 namespace diminish {
 
@@ -21,7 +23,7 @@ class Witness {
     const Rect& region;  ///< of the picture; what lies outside is not judged
   };
   /// Copies the keyframe's depth without what has changed. gone: points that are gone for ever, in
-  /// the keyframe's frame.
+  /// the keyframe's frame. Cost: 10 ns a place that is judged, and comparing testimonies there.
   void judge(const Inputs& inputs, Image<std::uint16_t>& depth, std::vector<Eigen::Vector3f>& gone);
 
   /// Whether what RGB-D camera `k` sees at a point was there when the keyframe of the last `judge`
@@ -30,21 +32,26 @@ class Witness {
 
  private:
   struct Camera {
-    TestimonyTaker taker;
+    TestimonyGrid grid;
+    TestimonyComparison comparison;
+    bool is_asked = false;
+    FloatTransform from_keyframe;  ///< to the depth sensor's frame of now
+    Rect then_part, now_part;      ///< of its testimonies: what they show of the region
     /// What has become of what the camera saw then; whether what it sees now was there.
     Verdicts then, now;
   };
-  struct View;
-  /// Visits some of the keyframe's points that lie in a part of the picture.
-  template <class Visit>
-  void for_each_in_part(const Keyframe& keyframe, const FloatTransform& to_color, const Rect& part,
-                        const Visit& visit) const;
-  bool has_changed(const View& view, const Inputs& inputs, const Eigen::Vector3f& point,
-                   bool& is_gone) const;
+  /// What lies in the region: of the keyframe's grid, and of each camera's testimonies.
+  void find_parts(const Inputs& inputs);
+  void judge_row(const Inputs& inputs, int y, Image<std::uint16_t>& depth,
+                 std::vector<Eigen::Vector3f>& gone) const;
 
   KeyframeGrid grid_;
   Projection color_;
+  Rect picture_;
+  Rect part_;  ///< of the grid
+  float least_guess_m_ = 0;
   std::vector<Camera> cameras_;
+  std::vector<Eigen::Vector3f> gone_in_band_[most_bands];
 };
 
 }  // namespace diminish
