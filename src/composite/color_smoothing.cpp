@@ -295,7 +295,7 @@ void ColorSmoothing::split_row(const Mask& origins, const Image<Bgr>& picture, c
   const std::uint8_t* const origin = origins.row(box.y + y) + box.x;
   std::uint8_t* const seen = seen_.row(y + reach) + reach;
   for (int x = 0; x < width; ++x) {
-    const bool is_seen = origin[x] >= provenance::first_rgbd && origin[x] < provenance::witnessed;
+    const bool is_seen = origin[x] >= provenance::first_rgbd && origin[x] <= provenance::remembered;
     seen[x] = is_seen ? 255 : 0;
   }
   std::uint8_t* channels[3];

@@ -23,10 +23,7 @@ Rect around(int x, int y, int distance, const Rect& bounds) {
 
 float likeness(const Bgr& a, const Bgr& b) {
   constexpr float scale = 300;
-  const int db = a.b - b.b;
-  const int dg = a.g - b.g;
-  const int dr = a.r - b.r;
-  const float weight = 1 / (1 + static_cast<float>(db * db + dg * dg + dr * dr) / scale);
+  const float weight = 1 / (1 + static_cast<float>(squared_difference(a, b)) / scale);
   return weight * weight;
 }
 
@@ -45,13 +42,9 @@ void ColorEdges::find_band(const Image<float>& inverse_depth) {
   }
 }
 
-void ColorEdges::align(ImageView<Bgr> picture, int step, Image<float>& inverse_depth) {
+void ColorEdges::align(const Image<Bgr>& colors, Image<float>& inverse_depth) {
   const Rect bounds = inverse_depth.bounds();
   before_ = inverse_depth;
-  colors_.resize(bounds.width, bounds.height);
-  for (int y = 0; y < bounds.height; ++y) {
-    for (int x = 0; x < bounds.width; ++x) colors_(x, y) = picture(x * step, y * step);
-  }
   find_band(before_);
   for_rows(bounds.height, [&](Rows rows) {
     for (int y = rows.first; y < rows.last; ++y) {
@@ -77,7 +70,7 @@ void ColorEdges::align(ImageView<Bgr> picture, int step, Image<float>& inverse_d
           for (int column = outer.x; column < outer.right(); column += 2) {
             const float value = before_(column, row);
             if (band_(column, row) != 0 || value > 1.1F * near || value < 0.9F * far) continue;
-            const float weight = likeness(colors_(column, row), colors_(x, y));
+            const float weight = likeness(colors(column, row), colors(x, y));
             const int side = value > middle ? 1 : 0;
             votes[side] += weight;
             sums[side] += weight * value;

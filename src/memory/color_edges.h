@@ -4,20 +4,26 @@
 
 namespace diminish {
 
+inline int squared_difference(const Bgr& a, const Bgr& b) {
+  const int db = a.b - b.b;
+  const int dg = a.g - b.g;
+  const int dr = a.r - b.r;
+  return db * db + dg * dg + dr * dr;
+}
+
 /// Moves the edges of a coarse depth image to the edges of the picture that it belongs to. Near an
 /// edge, a place takes the depth of that side whose colours, further from the edge, are more like
 /// its own.
 class ColorEdges {
  public:
-  /// inverse_depth: 1 / z at every `step`-th pixel of the picture; 0: unknown. Cost: 1 us per place
-  /// near an edge.
-  void align(ImageView<Bgr> picture, int step, Image<float>& inverse_depth);
+  /// colors: of the picture, at the places that have depth. inverse_depth: 1 / z; 0: unknown.
+  /// Cost: 1 us per place near an edge.
+  void align(const Image<Bgr>& colors, Image<float>& inverse_depth);
 
  private:
   void find_band(const Image<float>& inverse_depth);
 
   Image<float> before_;
-  Image<Bgr> colors_;
   Mask band_;  ///< 1 near an edge
 };
 

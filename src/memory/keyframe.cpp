@@ -14,7 +14,7 @@ constexpr int wanted_width = 320;
 
 std::size_t Keyframe::bytes() const {
   std::size_t bytes =
-      picture.size() * sizeof(Bgr) + depth.size() * sizeof(std::uint16_t) + guessed.size();
+      picture.size() * sizeof(Bgr) + depth.size() * sizeof(std::uint16_t) + doubt.size();
   for (const Testimony& testimony : testimonies) {
     bytes += testimony.depth_m.size() * (sizeof(float) + sizeof(Bgr));
   }
@@ -38,6 +38,13 @@ RgbdCamera KeyframeGrid::camera() const {
   camera.depth = grid_;
   camera.depth_unit_m = unit_m;
   return camera;
+}
+
+void KeyframeGrid::sample(ImageView<Bgr> picture, Image<Bgr>& colors) const {
+  colors.resize(grid_.width, grid_.height);
+  for (int y = 0; y < grid_.height; ++y) {
+    for (int x = 0; x < grid_.width; ++x) colors(x, y) = picture(x * step_, y * step_);
+  }
 }
 
 }  // namespace diminish

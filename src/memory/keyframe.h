@@ -48,7 +48,7 @@ struct Keyframe {
   Image<Bgr> picture;
   /// KeyframeGrid::unit_m; 0 where nothing may be shown: objects to remove, what is gone.
   Image<std::uint16_t> depth;
-  Mask guessed;  ///< by place, 1 where the depth was neither measured nor between measured ones
+  Mask doubt;  ///< by place: how much of the depth may be wrong, in units of doubt_unit
   std::vector<Testimony> testimonies;  ///< of each RGB-D camera
 
   // What follows from that, for as long as it is kept: by KeyframePreparation.
@@ -58,6 +58,9 @@ struct Keyframe {
 
   std::size_t bytes() const;
 };
+
+/// Of Keyframe::doubt.
+inline constexpr float doubt_unit = 1.F / 255;
 
 /// The places of the picture for which a keyframe has depth: every `step`-th pixel, row by row.
 class KeyframeGrid {
@@ -85,6 +88,8 @@ class KeyframeGrid {
   Eigen::Vector2f ray(int x, int y) const { return (*rays_)(x, y); }
   const RayTable& rays() const { return *rays_; }
   const Projection& lens() const { return lens_; }
+  /// The picture's colours at the places.
+  void sample(ImageView<Bgr> picture, Image<Bgr>& colors) const;
 
   /// Every so many places: enough to tell what a keyframe shows.
   static constexpr int overview_step = 4;

@@ -8,6 +8,11 @@
 namespace diminish {
 namespace {
 
+/// How much of the depth may be wrong where something is thought to go on, and where it is a plane
+/// and looks like it.
+constexpr float guess_doubt = 0.2F;
+constexpr float plane_doubt = 0.05F;
+
 Rig with_picture(Rig rig, const Intrinsics& color) {
   rig.color = color;
   return rig;
@@ -19,7 +24,8 @@ KeyframeDepth::KeyframeDepth(const Rig& rig, const KeyframeGrid& grid)
     : grid_(grid),
       depth_(with_picture(rig, grid.intrinsics())),
       drawer_(Registry<Reconstructor>::get("cpu")(with_picture(rig, grid.intrinsics()))),
-      planes_(grid.intrinsics()) {}
+      planes_(grid.intrinsics()),
+      carried_(grid) {}
 
 void KeyframeDepth::find(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks,
                          const SceneSamples& samples, const Options& options, Keyframe& keyframe) {
@@ -27,9 +33,9 @@ void KeyframeDepth::find(const FrameSet& frame, const Poses& poses, const Occlus
   depth_.clean(frame, poses, masks, whole, options);
   drawer_->reconstruct(frame, depth_.depths(), poses, masks, TiledRegion(whole), options, drawn_);
   label(samples);
-  complete();
-  edges_.align(frame.color, grid_.step(), completed_);
-  keyframe.guessed = guessed_;
+  complete(keyframe, masks.color);
+  edges_.align(colors_, completed_);
+  keyframe.doubt = doubt_;
   keyframe.depth.resize(whole.width, whole.height);
   std::transform(completed_.begin(), completed_.end(), keyframe.depth.begin(), [](float inverse_z) {
     constexpr auto units = static_cast<float>(1 / KeyframeGrid::unit_m);
@@ -66,12 +72,34 @@ void KeyframeDepth::find_columns() {
 KeyframeDepth::Guess KeyframeDepth::between(const Ends& ends) {
   constexpr float same_surface = 0.06F;
   const int span = ends.to_first + ends.to_last;
-  if (ends.first == 0 || ends.last == 0) return {std::max(ends.first, ends.last), span, false};
+  if (ends.first == 0 || ends.last == 0)
+    return {std::max(ends.first, ends.last), span, false, guess_doubt};
   const float nearer = std::max(ends.first, ends.last);
   const float further = std::min(ends.first, ends.last);
-  if (nearer - further > same_surface * nearer) return {further, span, false};
+  if (nearer - further > same_surface * nearer) return {further, span, false, guess_doubt};
   const float part = static_cast<float>(ends.to_first) / static_cast<float>(span);
-  return {ends.first + part * (ends.last - ends.first), span, true};
+  return {ends.first + part * (ends.last - ends.first), span, true, 0};
+}
+
+bool KeyframeDepth::continues(const BackgroundPlane& plane, int x, int y, const End& end) const {
+  constexpr float on_plane = 0.03F;
+  constexpr int reach = 2;
+  constexpr int alike = 300;  // squared levels
+  const Eigen::Vector2f ray = grid_.ray(end.x, end.y);
+  if (!(end.inverse_z > 0) ||
+      std::abs(plane.inverse_depth(ray.x(), ray.y()) - end.inverse_z) > on_plane * end.inverse_z) {
+    return false;
+  }
+  const Rect around = intersect(grow({end.x, end.y, 1, 1}, reach), colors_.bounds());
+  for (int row = around.y; row < around.bottom(); ++row) {
+    for (int column = around.x; column < around.right(); ++column) {
+      if (seen_(column, row) > 0 &&
+          squared_difference(colors_(column, row), colors_(x, y)) < alike) {
+        return true;
+      }
+    }
+  }
+  return false;
 }
 
 KeyframeDepth::Guess KeyframeDepth::complete(int x, int y, const Ends& row) const {
@@ -86,25 +114,30 @@ KeyframeDepth::Guess KeyframeDepth::complete(int x, int y, const Ends& row) cons
   const Guess& better = is_better(across, along) ? across : along;
   if (better.is_same) return better;
   const std::uint8_t label = surfaces_.label(x, y);
-  if (label == surface_label::unknown || label == surface_label::foreground) {
-    return better;
-  }
+  if (label == surface_label::unknown || label == surface_label::foreground) return better;
   const BackgroundPlane& plane = planes_.planes()[label - surface_label::first_plane];
   const Eigen::Vector2f ray = grid_.ray(x, y);
   const float on_plane = plane.inverse_depth(ray.x(), ray.y());
   const float nearest = std::max({row.first, row.last, column.first, column.last});
   constexpr float margin = 1.1F;
-  return on_plane > 0 && on_plane < margin * nearest ? Guess{on_plane, 0, false} : better;
+  if (!(on_plane > 0 && on_plane < margin * nearest)) return better;
+  const bool looks_so = continues(plane, x, y, {row.first, x - row.to_first, y}) ||
+                        continues(plane, x, y, {row.last, x + row.to_last, y}) ||
+                        continues(plane, x, y, {column.first, x, y - column.to_first}) ||
+                        continues(plane, x, y, {column.last, x, y + column.to_last});
+  return {on_plane, 0, false, looks_so ? plane_doubt : guess_doubt};
 }
 
-void KeyframeDepth::complete() {
+void KeyframeDepth::complete(const Keyframe& keyframe, const Mask& objects) {
   const int width = drawn_.depth_m.width();
   const int height = drawn_.depth_m.height();
   seen_.resize(width, height);
   std::transform(drawn_.depth_m.begin(), drawn_.depth_m.end(), seen_.begin(),
                  [](float z) { return z > 0 ? 1 / z : 0.F; });
+  grid_.sample(keyframe.picture, colors_);
+  carried_.fill(keyframe.color_from_world, colors_, objects, seen_);
   completed_ = seen_;
-  guessed_.resize(width, height, 0);
+  doubt_.resize(width, height, 0);
   find_columns();
   for_rows(height, [&](Rows rows) {
     for (int y = rows.first; y < rows.last; ++y) {
@@ -117,7 +150,7 @@ void KeyframeDepth::complete() {
         for (int i = x; i < end; ++i) {
           const Guess guess = complete(i, y, {before, after, i - x + 1, end - i});
           completed_(i, y) = guess.inverse_z;
-          guessed_(i, y) = guess.is_same ? 0 : 1;
+          doubt_(i, y) = static_cast<std::uint8_t>(std::lrint(guess.doubt / doubt_unit));
         }
         x = end;
       }

@@ -7,6 +7,7 @@
 #include "diminish/reconstructor.h"
 #include "diminish/scene_samples.h"
 #include "diminish/surfaces.h"
+#include "memory/carried_depth.h"
 #include "memory/color_edges.h"
 #include "memory/keyframe.h"
 #include "scene/background_planes.h"
@@ -14,16 +15,19 @@
 namespace diminish {
 
 /// Finds depth for the whole picture of the user's camera, by drawing what the RGB-D cameras see.
-/// What they do not see is completed from what is around it: the same surface goes on if it is seen
-/// on both sides; else the background's plane, or what is further away, goes on behind the nearer.
+/// Where they saw something earlier that looks the same, it is still there. The rest is completed
+/// from what is around it: the same surface goes on if it is seen on both sides; else the
+/// background's plane, or what is further away, goes on behind the nearer. That is a guess, and
+/// doubtful; less so where the picture looks like the plane.
 class KeyframeDepth {
  public:
   KeyframeDepth(const Rig& rig, const KeyframeGrid& grid);
 
-  /// poses and samples: after refinement. Fills `depth` and `guessed`. Cost: that of cleaning the
-  /// depth images, and 10 ms.
+  /// poses and samples: after refinement. keyframe: with its pose and picture. Fills `depth` and
+  /// `doubt`. Cost: that of cleaning the depth images, and 10 ms.
   void find(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks,
             const SceneSamples& samples, const Options& options, Keyframe& keyframe);
+  void forget() { carried_.forget(); }
 
  private:
   /// The nearest known places on both sides along a row or column: 1 / z, or 0 if there is none.
@@ -35,24 +39,34 @@ class KeyframeDepth {
     float inverse_z = 0;
     int span = 0;          ///< how far apart what it is made of is
     bool is_same = false;  ///< a single surface on both sides
+    float doubt = 0;       ///< how much of the depth it may be wrong by
   };
   static Guess between(const Ends& ends);
 
   void label(const SceneSamples& samples);
   void find_columns();
-  void complete();
+  void complete(const Keyframe& keyframe, const Mask& objects);
   Guess complete(int x, int y, const Ends& row) const;
+  /// A seen place, the nearest in one direction; inverse_z is 0 if there is none.
+  struct End {
+    float inverse_z;
+    int x, y;
+  };
+  /// Whether a place looks like that end, which is on the plane.
+  bool continues(const BackgroundPlane& plane, int x, int y, const End& end) const;
 
   KeyframeGrid grid_;
   DepthStage depth_;
   std::unique_ptr<Reconstructor> drawer_;
   BackgroundPlanes planes_;
+  CarriedDepth carried_;
   ColorEdges edges_;
   std::vector<SceneSample> samples_;
   Reconstruction drawn_;
   Surfaces surfaces_;
   Image<float> seen_, completed_;  ///< 1 / z; 0: unknown
-  Mask guessed_;
+  Mask doubt_;
+  Image<Bgr> colors_;
   Image<Ends> columns_;
 };
 

@@ -21,6 +21,7 @@ class Memory : public ::testing::Test {
     double stamp_s = 0;
     bool has_box = true;
     Rect object = {};          ///< to remove, in the picture
+    Rect hole = {};            ///< in the object
     bool is_witnessed = true;  ///< the RGB-D camera delivers
     double turn = 0;           ///< an error of the user's camera's pose, about its axis; radians
     bool is_lost = false;      ///< the object is not found
@@ -43,9 +44,11 @@ class Memory : public ::testing::Test {
     now.poses.color_from_world = error * *now.poses.color_from_world;
     OcclusionMasks masks = testing::empty_masks(now.rig);
     masks.color.fill(moment.object, 255);
+    masks.color.fill(moment.hole, 0);
     for (int y = moment.object.y; y < moment.object.bottom(); ++y) {
-      std::fill_n(now.frame.color.own().row(y) + moment.object.x, moment.object.width,
-                  Bgr{255, 0, 255});
+      for (int x = moment.object.x; x < moment.object.right(); ++x) {
+        if (masks.color(x, y) != 0) now.frame.color.own()(x, y) = {255, 0, 255};
+      }
     }
     TiledRegion region(intersect(grow(moment.object, 16), now.rig.color.bounds()));
     drawer->reconstruct(now.frame, testing::depths_of(now.frame), now.poses, masks, region, options,
@@ -150,6 +153,17 @@ TEST_F(Memory, LearnsNothingUnderTheObjects) {
   show({.stamp_s = 0, .object = hidden});
   const Reconstruction& shown = show({.stamp_s = 0.3, .object = hidden, .is_witnessed = false});
   EXPECT_EQ(count(shown, provenance::remembered), 0U);
+}
+
+TEST_F(Memory, ShowsNoSpecks) {
+  const auto remembered_through = [&](const Rect& hole) {
+    memory.forget();
+    show({.stamp_s = 0, .object = hidden, .hole = hole});
+    return count(show({.stamp_s = 0.3, .object = hidden, .is_witnessed = false}),
+                 provenance::remembered);
+  };
+  EXPECT_GT(remembered_through({120, 95, 60, 50}), 800U);
+  EXPECT_EQ(remembered_through({150, 110, 24, 24}), 0U);
 }
 
 TEST_F(Memory, LearnsNothingThatOnlyPasses) {

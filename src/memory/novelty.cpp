@@ -35,7 +35,7 @@ void Novelty::filter(bool is_uncertain, Keyframe& keyframe) {
       is_first ? RigidTransform() : color_from_world_ * keyframe.color_from_world.inverse());
   const Rect inside = grow(keyframe.depth.bounds(), -reach);
   now_depth_m_.resize(width, height);
-  now_color_.resize(width, height);
+  grid_.sample(keyframe.picture, now_color_);
   now_since_s_.resize(width, height);
   if (!is_first) around_.find(depth_m_, color_, reach, inside);
   const double unseen_before_s = is_uncertain ? keyframe.stamp_s : always;
@@ -58,7 +58,6 @@ void Novelty::filter(bool is_uncertain, Keyframe& keyframe) {
       float* const now_m = now_depth_m_.row(y);
       for (int x = 0; x < width; ++x) {
         now_m[x] = KeyframeGrid::depth_m(keyframe.depth(x, y));
-        now_color_(x, y) = keyframe.picture(x * grid_.step(), y * grid_.step());
       }
       find_pixels({grid_.rays().x(y), grid_.rays().y(y), now_m, width},
                   {then_from_now, grid_.lens(), inside, width}, places, then_m);

@@ -123,6 +123,36 @@ void RecallMerge::merge_row(const RecallInputs& inputs, std::span<const Recollec
   }
 }
 
+void RecallMerge::drop_specks(const RecallInputs& inputs, Reconstruction& reconstruction) {
+  constexpr int reach = 8;
+  const Rect bounds{0, 0, region_.width, region_.height};
+  known_.resize(bounds.width + 1, bounds.height + 1, 0);
+  for (int y = 0; y < bounds.height; ++y) {
+    int known = 0;
+    for (int x = 0; x < bounds.width; ++x) {
+      const int column = x + region_.x;
+      const int row = y + region_.y;
+      const bool is_known =
+          inputs.masks.color(column, row) == 0 || reconstruction.source(column, row) != 0;
+      known += is_known ? 1 : 0;
+      known_(x + 1, y + 1) = known_(x + 1, y) + known;
+    }
+  }
+  for_rows(bounds.height, [&](Rows rows) {
+    for (int y = rows.first; y < rows.last; ++y) {
+      for (int x = 0; x < bounds.width; ++x) {
+        std::uint8_t& source = reconstruction.source(x + region_.x, y + region_.y);
+        if (source != provenance::remembered) continue;
+        const Rect around = intersect(grow({x, y, 1, 1}, reach), bounds);
+        const int known = known_(around.right(), around.bottom()) -
+                          known_(around.x, around.bottom()) - known_(around.right(), around.y) +
+                          known_(around.x, around.y);
+        if (2 * known < around.width * around.height) source = 0;
+      }
+    }
+  });
+}
+
 void RecallMerge::merge(const RecallInputs& inputs, std::span<const Recollection> recollections,
                         bool witnessed_only, Reconstruction& reconstruction) {
   region_ = inputs.region;
@@ -145,6 +175,7 @@ void RecallMerge::merge(const RecallInputs& inputs, std::span<const Recollection
       merge_row(inputs, recollections, witnessed_only, y, reconstruction);
     }
   });
+  drop_specks(inputs, reconstruction);
 }
 
 std::vector<std::size_t> RecallMerge::count_remembered(std::size_t recollections,

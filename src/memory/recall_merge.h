@@ -19,6 +19,8 @@ namespace diminish {
 ///    viewpoint than the keyframe is.
 /// 3. Elsewhere the keyframe is shown: as witnessed where a camera sees the same surface now, else
 ///    as remembered.
+/// 4. What is remembered in specks amid what is unknown is left out: it says nothing, and what is
+///    invented around it would go by it.
 class RecallMerge {
  public:
   explicit RecallMerge(const Intrinsics& color);
@@ -37,6 +39,7 @@ class RecallMerge {
   void layer_rows(std::span<const Recollection> recollections, Rows rows);
   void merge_row(const RecallInputs& inputs, std::span<const Recollection> recollections,
                  bool witnessed_only, int y, Reconstruction& reconstruction) const;
+  void drop_specks(const RecallInputs& inputs, Reconstruction& reconstruction);
   bool is_nearer(float z_m, int x, int y, float tolerance_m) const;
 
   Intrinsics color_;
@@ -48,6 +51,7 @@ class RecallMerge {
   Rect region_;
   Image<std::uint8_t> layer_;
   Image<float> depth_m_;
+  Image<int> known_;  ///< pixels that are seen or remembered, above and left of each
 };
 
 }  // namespace diminish

@@ -21,6 +21,7 @@ SceneMemory::SceneMemory(const Rig& rig)
 
 void SceneMemory::forget() {
   store_.clear();
+  depth_.forget();
   novelty_.forget();
 }
 

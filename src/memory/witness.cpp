@@ -103,11 +103,10 @@ void Witness::judge(const Inputs& inputs, Image<std::uint16_t>& depth,
     camera.comparison.compare({keyframe.testimonies[k], camera.then_part, camera.then},
                               {inputs.now[k], camera.now_part, camera.now});
   });
-  // A guess may be wrong by so much of its depth, which must not be seen.
-  constexpr float guess_error = 0.2F;
+  // An error in depth must not be seen.
   constexpr float most_px = 6;
-  least_guess_m_ = color_.fx * static_cast<float>(inputs.color_from_keyframe.translation.norm()) *
-                   guess_error / most_px;
+  doubted_m_ = color_.fx * static_cast<float>(inputs.color_from_keyframe.translation.norm()) *
+               doubt_unit / most_px;
   depth = keyframe.depth;
   gone.clear();
   for (auto& band : gone_in_band_) band.clear();
@@ -123,9 +122,10 @@ void Witness::judge_row(const Inputs& inputs, int y, Image<std::uint16_t>& depth
                         std::vector<Eigen::Vector3f>& gone) const {
   const Keyframe& keyframe = inputs.keyframe;
   std::uint16_t* const kept = depth.row(y) + part_.x;
-  const std::uint8_t* const guessed = keyframe.guessed.row(y) + part_.x;
+  const std::uint8_t* const doubt = keyframe.doubt.row(y) + part_.x;
   for (int x = 0; x < part_.width; ++x) {
-    if (guessed[x] != 0 && KeyframeGrid::depth_m(kept[x]) < least_guess_m_) kept[x] = 0;
+    const float least_m = doubted_m_ * static_cast<float>(doubt[x]);
+    if (KeyframeGrid::depth_m(kept[x]) < least_m) kept[x] = 0;
   }
   float looked_m[KeyframeGrid::most_columns];  // at what the camera did not see then
   std::int32_t places[KeyframeGrid::most_columns];

@@ -48,8 +48,8 @@ class Witness {
   KeyframeGrid grid_;
   Projection color_;
   Rect picture_;
-  Rect part_;  ///< of the grid
-  float least_guess_m_ = 0;
+  Rect part_;            ///< of the grid
+  float doubted_m_ = 0;  ///< nearer than that, times its doubt, a place is not shown
   std::vector<Camera> cameras_;
   std::vector<Eigen::Vector3f> gone_in_band_[most_bands];
 };
