@@ -17,12 +17,15 @@ class Composing {
                const std::vector<SceneSample>& samples, DiminishedFrame& result) {
     ColorCorrector& corrector = correctors_.get(options.color_correct);
     maps_.fit(camera, occlusion, samples, corrector.declaration().maps);
-    const Compositor::Inputs inputs{camera, occlusion, bounding_box(occlusion), options};
+    const Compositor::Inputs inputs{camera, occlusion, bounding_box(occlusion), options,
+                                    smoothing_share};
     Compositor::sort(inputs, result);
     compositor_.correct_colors(inputs, maps_.by_source(), corrector, result);
     compositor_.inpaint(inputs, inpainters_.get(options.inpaint), result);
     compositor_.finish(inputs, modes_.get(options.mode), result);
   }
+
+  int smoothing_share = ColorSmoothing::whole_change;
 
  private:
   Methods<ColorCorrector> correctors_;

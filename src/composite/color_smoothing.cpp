@@ -36,6 +36,7 @@ struct SmoothedRow {
   /// Of the later neighbours, and of the pixels of which this is the later one.
   const std::uint8_t* later[ColorSmoothing::later_count];
   const std::uint8_t* earlier[ColorSmoothing::later_count];
+  std::int16_t share;
 };
 
 /// Padding beyond a row's last pixel.
@@ -52,6 +53,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr int weight_bits = std::countr_zero(ColorSmoothing::weight_part);
 constexpr int quotient_bits = std::countr_zero(ColorSmoothing::one) - 16;
+constexpr int share_bits = std::countr_zero(unsigned{ColorSmoothing::whole_change});
 
 using Words = hn::CappedTag<std::int16_t, padding / 2>;
 using Bytes = hn::Rebind<std::uint8_t, Words>;
@@ -88,10 +90,9 @@ struct Division {
     half = hn::BitCast(Unsigned(), hn::ShiftRight<1>(weights));
   }
 
-  HWY_INLINE hn::Vec<Bytes> operator()(hn::Vec<Words> sum) const {
+  HWY_INLINE hn::Vec<Words> operator()(hn::Vec<Words> sum) const {
     const auto rounded = hn::Add(hn::BitCast(Unsigned(), sum), half);
-    const auto mean = hn::ShiftRight<quotient_bits>(hn::MulHigh(rounded, inverse));
-    return hn::DemoteTo(Bytes(), hn::BitCast(Words(), mean));
+    return hn::BitCast(Words(), hn::ShiftRight<quotient_bits>(hn::MulHigh(rounded, inverse)));
   }
 };
 
@@ -144,6 +145,8 @@ void SmoothRow(const SmoothedRow& row, int width, std::uint8_t* picture) {
   const Bytes bytes;
   const Words words;
   const auto lanes = static_cast<int>(hn::Lanes(bytes));
+  const auto share = hn::Set(words, row.share);
+  const auto half = hn::Set(words, std::int16_t{ColorSmoothing::whole_change / 2});
   for (int x = 0; x < width; x += lanes) {
     const auto is_seen = hn::Gt(hn::LoadU(bytes, row.seen + x), hn::Zero(bytes));
     if (hn::AllFalse(bytes, is_seen)) continue;
@@ -169,8 +172,10 @@ void SmoothRow(const SmoothedRow& row, int width, std::uint8_t* picture) {
     const Division mean(weights);
     hn::Vec<Bytes> result[3];
     for (int c = 0; c < 3; ++c) {
-      const auto value = hn::DemoteTo(bytes, hn::LoadU(words, row.values[c][reach] + x));
-      result[c] = hn::IfThenElse(is_seen, mean(sum[c]), value);
+      const auto value = hn::LoadU(words, row.values[c][reach] + x);
+      const auto change = hn::Mul(hn::Sub(mean(sum[c]), value), share);
+      const auto level = hn::Add(value, hn::ShiftRight<share_bits>(hn::Add(change, half)));
+      result[c] = hn::IfThenElse(is_seen, hn::DemoteTo(bytes, level), hn::DemoteTo(bytes, value));
     }
     if (x + lanes <= width) {
       hn::StoreInterleaved3(result[0], result[1], result[2], bytes, &picture[3 * x]);
@@ -247,7 +252,8 @@ HWY_EXPORT(SplitChannels);
 HWY_EXPORT(AverageAlongRow);
 HWY_EXPORT(MakeGuide);
 
-void ColorSmoothing::smooth(const Mask& origins, const Rect& box, Image<Bgr>& picture) {
+void ColorSmoothing::smooth(const Mask& origins, const Rect& box, int share, Image<Bgr>& picture) {
+  if (share == 0) return;
   begin(box);
   for_rows(box.height, [&](Rows rows) {
     for (int y = rows.first; y < rows.last; ++y) split_row(origins, picture, box, y);
@@ -264,7 +270,7 @@ void ColorSmoothing::smooth(const Mask& origins, const Rect& box, Image<Bgr>& pi
     }
     for (int y = rows.first; y < rows.last; ++y) {
       compare_row(y, box.width, *weights_of(y));
-      smooth_row(box, y, {weights_of(y), weights_of(y - 1), weights_of(y - 2)}, picture);
+      smooth_row(box, y, {weights_of(y), weights_of(y - 1), weights_of(y - 2)}, share, picture);
     }
   });
 }
@@ -342,8 +348,9 @@ void ColorSmoothing::compare_row(int y, int width, Weights& weights) const {
 
 void ColorSmoothing::smooth_row(const Rect& box, int y,
                                 const std::array<const Weights*, reach + 1>& weights,
-                                Image<Bgr>& picture) const {
+                                int share, Image<Bgr>& picture) const {
   SmoothedRow row{};
+  row.share = static_cast<std::int16_t>(share);
   row.seen = seen_.row(y + reach) + reach;
   for (int i = 0; i < SmoothedRow::rows; ++i) {
     for (int c = 0; c < 3; ++c) row.values[c][i] = words_[c].row(y + i) + reach;

@@ -42,10 +42,13 @@ class ColorSmoothing {
     return (sum + weight / 2) * inverse / one;
   }
 
+  /// How much of its change a pixel makes: all of it.
+  static constexpr int whole_change = 128;
+
   /// origins: which camera saw each pixel (DiminishedFrame::provenance). Pixels that no RGB-D
-  /// camera saw neither change nor count. box: where to look for seen pixels. Cost: 1 ns per pixel
-  /// of the box.
-  void smooth(const Mask& origins, const Rect& box, Image<Bgr>& picture);
+  /// camera saw neither change nor count. box: where to look for seen pixels. share: of the change,
+  /// 0 to whole_change. Cost: 1 ns per pixel of the box.
+  void smooth(const Mask& origins, const Rect& box, int share, Image<Bgr>& picture);
 
  private:
   void begin(const Rect& box);
@@ -57,7 +60,7 @@ class ColorSmoothing {
   void compare_row(int y, int width, Weights& weights) const;
   /// weights: of this row, the one above, and so on.
   void smooth_row(const Rect& box, int y, const std::array<const Weights*, reach + 1>& weights,
-                  Image<Bgr>& picture) const;
+                  int share, Image<Bgr>& picture) const;
 
   // These cover the box, and `reach` pixels and a few more around it.
   Mask seen_;                               ///< 255 or 0

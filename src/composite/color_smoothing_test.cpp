@@ -51,7 +51,7 @@ double rms(const Image<Bgr>& a, const Image<Bgr>& b) {
 
 Image<Bgr> smoothed(const Image<Bgr>& picture, const Mask& origins, const Rect& box) {
   Image<Bgr> result = picture;
-  ColorSmoothing().smooth(origins, box, result);
+  ColorSmoothing().smooth(origins, box, ColorSmoothing::whole_change, result);
   return result;
 }
 
@@ -65,7 +65,7 @@ class Plain {
     return box_.contains(x, y) && origins_(x, y) >= provenance::first_rgbd &&
            origins_(x, y) < provenance::witnessed;
   }
-  Bgr smooth(int x, int y) const {
+  Bgr smooth(int x, int y, int share) const {
     std::uint32_t sums[3] = {};
     std::uint32_t weights = 0;
     constexpr int reach = ColorSmoothing::reach;
@@ -83,10 +83,12 @@ class Plain {
         }
       }
     }
-    const auto mean = [&](int c) {
-      return static_cast<std::uint8_t>(ColorSmoothing::mean(sums[c], weights));
+    const auto level = [&](int c) {
+      const int change = static_cast<int>(ColorSmoothing::mean(sums[c], weights)) - value(x, y, c);
+      const double part = static_cast<double>(share) / ColorSmoothing::whole_change;
+      return static_cast<std::uint8_t>(value(x, y, c) + std::floor(change * part + 0.5));
     };
-    return {mean(0), mean(1), mean(2)};
+    return {level(0), level(1), level(2)};
   }
 
  private:
@@ -140,11 +142,12 @@ TEST(ColorSmoothing, DoesWhatThePlainVersionDoes) {
     for (int i = 0; i < 20; ++i) picture.data()[random() % picture.size()] = {255, 255, 255};
     const Rect box{4, 2, width, height};
     Image<Bgr> result = picture;
-    smoothing.smooth(origins, box, result);
+    const int share = width % 3 == 0 ? 53 : ColorSmoothing::whole_change;
+    smoothing.smooth(origins, box, share, result);
     const Plain plain(picture, origins, box);
     for (int y = 0; y < picture.height(); ++y) {
       for (int x = 0; x < picture.width(); ++x) {
-        const Bgr expected = plain.is_seen(x, y) ? plain.smooth(x, y) : picture(x, y);
+        const Bgr expected = plain.is_seen(x, y) ? plain.smooth(x, y, share) : picture(x, y);
         ASSERT_EQ(result(x, y), expected) << x << ' ' << y << " of " << width << 'x' << height;
       }
     }

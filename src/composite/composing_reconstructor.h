@@ -37,6 +37,7 @@ struct FrameInputs {
   const std::vector<BackgroundPlane>* planes;  ///< null: not looked for
   std::span<const CastShadows::Shadow> shadows;
   ColorMapsBySource color_maps;
+  int smoothing_share;               ///< of ColorSmoothing's change
   bool wants_reconstruction;         ///< in the result
   TextureOutput* texture = nullptr;  ///< where the picture goes; null: to the result
 };

@@ -120,11 +120,11 @@ void Compositor::inpaint(const Inputs& inputs, Inpainter& inpainter, DiminishedF
 }
 
 void Compositor::finish(const Inputs& inputs, const ViewMode& mode, DiminishedFrame& result) {
-  const auto& [camera, occlusion, objects, options] = inputs;
+  const auto& [camera, occlusion, objects, options, smoothing_share] = inputs;
   const bool has_shadows = !result.surfaces.light.empty();
   if (options.smooth_colors && result.report.valid_pixels > 0) {
     color_smoothing_.smooth(result.provenance, intersect(objects, result.reconstruction.region),
-                            result.picture);
+                            smoothing_share, result.picture);
   }
   if (has_shadows && !options.remove_shadows) {
     shadow_lifting_.restore_outside(camera, occlusion, result.surfaces, result.picture);

@@ -21,6 +21,7 @@ class Compositor {
     const Mask& occlusion;  ///< of the objects to remove
     Rect objects;           ///< its bounding box
     const Options& options;
+    int smoothing_share;  ///< of ColorSmoothing's change
   };
 
   /// Stage::compositing. Fills picture, mask, provenance and the pixel counts. The picture becomes

@@ -26,6 +26,7 @@ std::string define_smoothing() {
   return define_as("SMOOTHING_NEIGHBOURS", "ivec2[](" + neighbours + ")") +
          define("SMOOTHING_LARGEST_DIFFERENCE", Smoothing::largest_difference) +
          define_as("SMOOTHING_WEIGHT_PART", fmt::format("{}u", Smoothing::weight_part)) +
+         define("SMOOTHING_WHOLE_CHANGE", Smoothing::whole_change) +
          define_as("SMOOTHING_ONE", fmt::format("{}u", Smoothing::one));
 }
 

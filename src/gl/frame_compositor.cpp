@@ -225,10 +225,11 @@ void FrameCompositor::finish(const FrameInputs& inputs, const FrameUpload& uploa
     filling_.fill({picture_, state_, surface_}, region_, region_, window, timer);
     bind(upload, reconstruction);
   }
-  if (inputs.options.smooth_colors) {
+  if (inputs.options.smooth_colors && inputs.smoothing_share > 0) {
     timer.measure("smooth", [&] {
       values_.bind(5);  // the membrane is done
       run_pass(smooth_guide_);
+      smooth_colors_.set("share", inputs.smoothing_share);
       run_pass(smooth_colors_);
     });
   }

@@ -53,7 +53,8 @@ class Composition : public ::testing::Test, protected testing::DiminishedWall {
     const auto cast = with_shadows ? shadows.shadows() : std::span<const CastShadows::Shadow>();
     const FrameInputs inputs{
         frame.frame, depths,   frame.poses,      masks, bounding_box(masks.color), region,
-        options,     declared, &planes.planes(), cast,  maps.by_source(),          true};
+        options,     declared, &planes.planes(), cast,  maps.by_source(), composing.smoothing_share,
+        true};
     const Image<Bgr>& camera = frame.frame.color.own();
     result.picture = camera;
     result.provenance.resize(camera.width(), camera.height(), provenance::camera);
@@ -159,6 +160,7 @@ TEST_F(Composition, LabelsAndLightAreTheCpus) {
 
 // Pass by pass: what is sorted, then mapped, then with the membrane, then without shadows.
 TEST_F(Composition, ColorsAreTheCpus) {
+  composing.smoothing_share = 90;
   options.inpaint = "none";
   options.soft_rim_px = 0;
   for (const char* merge : {"blend", "choose"}) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "composite/compositor.h"
+#include "composite/smoothing_share.h"
 #include "depth/depth_stage.h"
 #include "detect/occlusion_masks.h"
 #include "diminish/validate.h"
@@ -116,6 +117,12 @@ struct Pipeline::Implementation {
     if (correction) refinement.apply(*correction, poses, samples);
   }
 
+  void find_smoothing(const FrameSet& frame) {
+    if (!options.smooth_colors) return;
+    smoothing = smoothing_share(rig, frame, occluders.masks().color, samples.surfaces,
+                                color_maps.by_source());
+  }
+
   void process(const FrameSet& frame, DiminishedFrame& result);
 
   Rig rig;
@@ -139,6 +146,7 @@ struct Pipeline::Implementation {
   PoseRefinement refinement;
   Background background;
   ColorMaps color_maps;
+  int smoothing = 0;  ///< its share
   TiledRegion region;  ///< to be drawn
   Backend backend;
   MemoryStage memory;
@@ -244,6 +252,7 @@ void Pipeline::Implementation::process(const FrameSet& frame, DiminishedFrame& r
               [&] {
                 stage(Stage::color_maps, [&] {
                   color_maps.fit(frame.color, masks.color, samples.surfaces, methods.color.maps);
+                  find_smoothing(frame);
                 });
               });
         });
@@ -252,7 +261,7 @@ void Pipeline::Implementation::process(const FrameSet& frame, DiminishedFrame& r
     choose_region();
     backend.draw({frame, depth.depths(), report.poses, masks, objects, region, options, methods,
                   background.planes(), background.shadows(), color_maps.by_source(),
-                  wants_reconstruction, texture.output()},
+                  smoothing, wants_reconstruction, texture.output()},
                  result);
   });
 
@@ -264,7 +273,7 @@ void Pipeline::Implementation::process(const FrameSet& frame, DiminishedFrame& r
   });
 
   // 3.4 Compositing, colour correction, inpainting; a backend may have done these
-  const Compositor::Inputs inputs{frame.color, masks.color, objects, options};
+  const Compositor::Inputs inputs{frame.color, masks.color, objects, options, smoothing};
   stage(Stage::compositing, [&] {
     background.label(result.reconstruction, result.surfaces);
     Compositor::sort(inputs, result);

@@ -3,6 +3,8 @@
 
 layout(local_size_x = 64) in;
 
+uniform int share;  // of the change, out of SMOOTHING_WHOLE_CHANGE
+
 const ivec2 neighbours[] = SMOOTHING_NEIGHBOURS;
 
 void main() {
@@ -24,5 +26,9 @@ void main() {
     sum += weight * levels_of(values[other]);
   }
   uint inverse = (SMOOTHING_ONE + weights / 2u) / weights;
-  picture[index] = word_of((sum + weights / 2u) * inverse / SMOOTHING_ONE);
+  ivec3 value = ivec3(levels_of(values[index]));
+  ivec3 change = ivec3((sum + weights / 2u) * inverse / SMOOTHING_ONE) - value;
+  const int whole = SMOOTHING_WHOLE_CHANGE;
+  // Negative changes are rounded down, too.
+  picture[index] = word_of(uvec3(value + (change * share + whole / 2 + 256 * whole) / whole - 256));
 }

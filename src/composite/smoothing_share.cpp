@@ -1,0 +1,133 @@
+#include "composite/smoothing_share.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "composite/color_smoothing.h"
+#include "core/channels.h"
+
+namespace diminish {
+namespace {
+
+constexpr int reach = ColorSmoothing::reach + 1;  ///< with the guide's
+constexpr int side = 2 * reach + 1;
+using Window = std::array<std::array<Eigen::Array3f, side>, side>;
+
+/// Bilinear, as surfaces are drawn; the four pixels must be inside.
+Eigen::Array3f look_up(ImageView<Bgr> image, float x, float y) {
+  const int column = static_cast<int>(x);
+  const int row = static_cast<int>(y);
+  const float right = x - static_cast<float>(column);
+  const float below = y - static_cast<float>(row);
+  const Bgr* const upper = image.row(row) + column;
+  const Bgr* const lower = image.row(row + 1) + column;
+  return (1 - below) * ((1 - right) * to_channels(upper[0]) + right * to_channels(upper[1])) +
+         below * ((1 - right) * to_channels(lower[0]) + right * to_channels(lower[1]));
+}
+
+/// What ColorSmoothing makes of the pixel in the middle.
+Eigen::Array3f smoothed(const Window& colors) {
+  Window rows = colors;
+  for (std::size_t y = 0; y < side; ++y) {
+    for (std::size_t x = 1; x + 1 < side; ++x) {
+      rows[y][x] = 0.25F * (colors[y][x - 1] + colors[y][x + 1]) + 0.5F * colors[y][x];
+    }
+  }
+  const auto guide = [&](std::size_t x, std::size_t y) -> Eigen::Array3f {
+    return 0.25F * (rows[y - 1][x] + rows[y + 1][x]) + 0.5F * rows[y][x];
+  };
+  const Eigen::Array3f own = guide(reach, reach);
+  Eigen::Array3f sum = Eigen::Array3f::Zero();
+  float weights = 0;
+  for (int dy = -ColorSmoothing::reach; dy <= ColorSmoothing::reach; ++dy) {
+    for (int dx = -ColorSmoothing::reach; dx <= ColorSmoothing::reach; ++dx) {
+      if (!ColorSmoothing::is_neighbour(dx, dy)) continue;
+      const auto x = static_cast<std::size_t>(reach + dx);
+      const auto y = static_cast<std::size_t>(reach + dy);
+      const float difference = (guide(x, y) - own).abs().sum();
+      const float weight =
+          std::max(0.F, static_cast<float>(ColorSmoothing::largest_difference) - difference);
+      weights += weight;
+      sum += weight * colors[y][x];
+    }
+  }
+  return sum / weights;
+}
+
+Eigen::Array3f mean(const Window& colors) {
+  Eigen::Array3f sum = Eigen::Array3f::Zero();
+  for (const auto& row : colors) {
+    for (const Eigen::Array3f& color : row) sum += color;
+  }
+  return sum / static_cast<float>(side * side);
+}
+
+/// Sums over samples, of what smoothing changes and of what the colour camera sees instead.
+struct Sums {
+  float change_residual = 0, change_change = 0, squares = 0;
+  int count = 0;
+};
+
+/// step: the RGB-D camera's pixels in one of the colour camera's.
+void add(ImageView<Bgr> camera, const Mask& occlusion, ImageView<Bgr> rgbd, float step,
+         const SceneSample& sample, const ColorMap& map, Sums& sums) {
+  constexpr float most = 60;  // levels: more is another surface
+  const float margin = step * reach + 1;
+  const Eigen::Vector2f& texture = sample.texture;
+  const auto x = static_cast<int>(std::lrint(sample.pixel.x()));
+  const auto y = static_cast<int>(std::lrint(sample.pixel.y()));
+  const Rect around = grow({x, y, 1, 1}, reach);
+  if (!(texture.x() > margin && texture.y() > margin &&
+        texture.x() < static_cast<float>(rgbd.width() - 1) - margin &&
+        texture.y() < static_cast<float>(rgbd.height() - 1) - margin) ||
+      intersect(around, camera.bounds()) != around || count_nonzero(occlusion, around) > 0) {
+    return;
+  }
+  Window drawn;
+  Window seen;
+  for (int dy = -reach; dy <= reach; ++dy) {
+    for (int dx = -reach; dx <= reach; ++dx) {
+      const auto column = static_cast<std::size_t>(reach + dx);
+      const auto row = static_cast<std::size_t>(reach + dy);
+      drawn[row][column] = look_up(rgbd, texture.x() + step * static_cast<float>(dx),
+                                   texture.y() + step * static_cast<float>(dy));
+      seen[row][column] = to_channels(camera(x + dx, y + dy));
+    }
+  }
+  const auto mapped = [&](const Eigen::Array3f& color) {
+    return map(color, sample.pixel.x(), sample.pixel.y());
+  };
+  const Eigen::Array3f own = mapped(drawn[reach][reach]);
+  const Eigen::Array3f change = mapped(smoothed(drawn)) - own;
+  const Eigen::Array3f residual = (seen[reach][reach] - mean(seen)) - (own - mapped(mean(drawn)));
+  if (!(residual.abs() < most).all()) return;
+  const float product = (change * residual).sum();
+  sums.change_residual += product;
+  sums.squares += product * product;
+  sums.change_change += change.square().sum();
+  ++sums.count;
+}
+
+}  // namespace
+
+int smoothing_share(const Rig& rig, const FrameSet& frame, const Mask& occlusion,
+                    const std::vector<SceneSample>& samples, ColorMapsBySource maps) {
+  constexpr std::size_t wanted = 1000;
+  constexpr int fewest = 100;
+  const std::size_t stride = std::max<std::size_t>(1, samples.size() / wanted);
+  Sums sums;
+  for (std::size_t i = 0; i < samples.size(); i += stride) {
+    const SceneSample& sample = samples[i];
+    const std::size_t k = sample.source - 1U;
+    const auto step = static_cast<float>(rig.rgbd[k].color.fx / rig.color.fx);
+    add(frame.color, occlusion, frame.rgbd[k].color, step, sample, maps[sample.source], sums);
+  }
+  constexpr int whole = ColorSmoothing::whole_change;
+  if (sums.count < fewest) return whole;
+  const float share =
+      (sums.change_residual + std::sqrt(sums.squares)) / std::max(sums.change_change, 1e-6F);
+  return static_cast<int>(std::lrint(whole * std::clamp(share, 0.F, 1.F)));
+}
+
+}  // namespace diminish

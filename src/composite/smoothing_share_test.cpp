@@ -1,0 +1,107 @@
+#include "composite/smoothing_share.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "analytic_scene.h"
+#include "composite/color_smoothing.h"
+#include "core/channels.h"
+#include "core/mat.h"
+#include "diminish/diminished_frame.h"
+#include "diminish/reconstructor.h"
+#include "scene/scene_sampler.h"
+#include "score/image_quality.h"
+
+namespace diminish {
+namespace {
+
+constexpr int whole = ColorSmoothing::whole_change;
+
+/// A wall with a pattern, seen by both cameras; `noise`: in levels, of both.
+struct Wall : testing::AnalyticFrame {
+  explicit Wall(double noise) : AnalyticFrame({.has_box = false}, {{-0.1, 0.05, 1.1}}) {
+    std::mt19937 random(11);
+    std::normal_distribution<double> normal(0, noise);
+    const auto add = [&](Image<Bgr>& image) {
+      const auto level = [&](std::uint8_t value) {
+        return static_cast<std::uint8_t>(std::clamp(std::lround(value + normal(random)), 0L, 255L));
+      };
+      for (Bgr& color : image) color = {level(color.b), level(color.g), level(color.r)};
+    };
+    if (noise > 0) {
+      add(frame.color.own());
+      add(frame.rgbd[0].color.own());
+    }
+    SceneSampler(rig).sample(frame, poses, testing::empty_masks(rig), samples);
+  }
+  int share(const Mask& occlusion) const {
+    return smoothing_share(rig, frame, occlusion, samples.surfaces, std::vector<ColorMap>(256));
+  }
+  int share() const { return share(Mask(rig.color.width, rig.color.height, 0)); }
+
+  SceneSamples samples;
+};
+
+/// The share that brings what is drawn of the RGB-D camera's images closest to the truth.
+double best_share(const Wall& wall, const Wall& clean) {
+  const Rect view = wall.rig.color.bounds();
+  Reconstruction drawn;
+  Registry<Reconstructor>::get("cpu")(wall.rig)->reconstruct(
+      wall.frame, testing::depths_of(wall.frame), wall.poses, testing::empty_masks(wall.rig),
+      TiledRegion(view), {}, drawn);
+  Image<Bgr> noisy(view.width, view.height);
+  std::transform(drawn.color.begin(), drawn.color.end(), noisy.begin(), [](const Bgra& color) {
+    return Bgr{color.b, color.g, color.r};
+  });
+  Image<Bgr> smoothed = noisy;
+  ColorSmoothing().smooth(drawn.source, view, whole, smoothed);
+  double change_residual = 0;
+  double change_change = 0;
+  for (int y = 0; y < view.height; ++y) {
+    for (int x = 0; x < view.width; ++x) {
+      if (drawn.source(x, y) == 0) continue;
+      const Eigen::Array3f own = to_channels(noisy(x, y));
+      const Eigen::Array3f change = to_channels(smoothed(x, y)) - own;
+      change_residual += (change * (to_channels(clean.frame.color(x, y)) - own)).sum();
+      change_change += change.square().sum();
+    }
+  }
+  return whole * std::clamp(change_residual / change_change, 0.0, 1.0);
+}
+
+TEST(SmoothingShare, IsTheBestByTheTruth) {
+  const Wall clean(0);
+  double last = -1;
+  for (const double noise : {0.5, 2.0, 4.0, 8.0}) {
+    const Wall wall(noise);
+    const double best = best_share(wall, clean);
+    EXPECT_NEAR(wall.share(), best, whole / 8.0) << "noise " << noise;
+    EXPECT_GT(best, last);
+    last = best;
+  }
+  EXPECT_GT(last, 0.6 * whole);
+}
+
+TEST(SmoothingShare, IsAllWhereTooLittleIsSeen) {
+  const Wall wall(0);
+  EXPECT_EQ(wall.share(Mask(wall.rig.color.width, wall.rig.color.height, 255)), whole);
+}
+
+TEST(SmoothingShare, KeepsATextureWithoutNoise) {
+  Wall wall(0);
+  const Image<Bgr>& truth = wall.frame.rgbd[0].color.own();
+  const Mask seen(truth.width(), truth.height(), provenance::first_rgbd);
+  const auto lost_by = [&](int share) {
+    Image<Bgr> smoothed = truth;
+    ColorSmoothing().smooth(seen, truth.bounds(), share, smoothed);
+    return 1 - cv::mean(ssim_map(as_mat(smoothed), as_mat(truth)))[0];
+  };
+  EXPECT_GT(lost_by(whole), 0.005);
+  EXPECT_LT(lost_by(wall.share()), 0.002);
+}
+
+}  // namespace
+}  // namespace diminish
