@@ -347,8 +347,8 @@ void ColorSmoothing::compare_row(int y, int width, Weights& weights) const {
 }
 
 void ColorSmoothing::smooth_row(const Rect& box, int y,
-                                const std::array<const Weights*, reach + 1>& weights,
-                                int share, Image<Bgr>& picture) const {
+                                const std::array<const Weights*, reach + 1>& weights, int share,
+                                Image<Bgr>& picture) const {
   SmoothedRow row{};
   row.share = static_cast<std::int16_t>(share);
   row.seen = seen_.row(y + reach) + reach;

@@ -51,10 +51,19 @@ class Composition : public ::testing::Test, protected testing::DiminishedWall {
     const FrameMethods declared = methods();
     maps.fit(frame.frame.color, masks.color, samples, declared.color.maps);
     const auto cast = with_shadows ? shadows.shadows() : std::span<const CastShadows::Shadow>();
-    const FrameInputs inputs{
-        frame.frame, depths,   frame.poses,      masks, bounding_box(masks.color), region,
-        options,     declared, &planes.planes(), cast,  maps.by_source(), composing.smoothing_share,
-        true};
+    const FrameInputs inputs{frame.frame,
+                             depths,
+                             frame.poses,
+                             masks,
+                             bounding_box(masks.color),
+                             region,
+                             options,
+                             declared,
+                             &planes.planes(),
+                             cast,
+                             maps.by_source(),
+                             composing.smoothing_share,
+                             true};
     const Image<Bgr>& camera = frame.frame.color.own();
     result.picture = camera;
     result.provenance.resize(camera.width(), camera.height(), provenance::camera);

@@ -146,7 +146,7 @@ struct Pipeline::Implementation {
   PoseRefinement refinement;
   Background background;
   ColorMaps color_maps;
-  int smoothing = 0;  ///< its share
+  int smoothing = 0;   ///< its share
   TiledRegion region;  ///< to be drawn
   Backend backend;
   MemoryStage memory;
@@ -260,8 +260,8 @@ void Pipeline::Implementation::process(const FrameSet& frame, DiminishedFrame& r
   stage(Stage::drawing, [&] {
     choose_region();
     backend.draw({frame, depth.depths(), report.poses, masks, objects, region, options, methods,
-                  background.planes(), background.shadows(), color_maps.by_source(),
-                  smoothing, wants_reconstruction, texture.output()},
+                  background.planes(), background.shadows(), color_maps.by_source(), smoothing,
+                  wants_reconstruction, texture.output()},
                  result);
   });
 
