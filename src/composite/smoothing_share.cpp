@@ -5,40 +5,50 @@
 #include <cmath>
 
 #include "composite/color_smoothing.h"
-#include "core/channels.h"
 
 namespace diminish {
 namespace {
 
 constexpr int reach = ColorSmoothing::reach + 1;  ///< with the guide's
 constexpr int side = 2 * reach + 1;
-using Window = std::array<std::array<Eigen::Array3f, side>, side>;
+/// A fourth channel, 0, makes it a vector.
+using Color = Eigen::Array4f;
+using Window = std::array<std::array<Color, side>, side>;
+
+Color color_of(const Bgr& color) {
+  return {static_cast<float>(color.b), static_cast<float>(color.g), static_cast<float>(color.r), 0};
+}
 
 /// Bilinear, as surfaces are drawn; the four pixels must be inside.
-Eigen::Array3f look_up(ImageView<Bgr> image, float x, float y) {
+Color look_up(ImageView<Bgr> image, float x, float y) {
   const int column = static_cast<int>(x);
   const int row = static_cast<int>(y);
   const float right = x - static_cast<float>(column);
   const float below = y - static_cast<float>(row);
   const Bgr* const upper = image.row(row) + column;
   const Bgr* const lower = image.row(row + 1) + column;
-  return (1 - below) * ((1 - right) * to_channels(upper[0]) + right * to_channels(upper[1])) +
-         below * ((1 - right) * to_channels(lower[0]) + right * to_channels(lower[1]));
+  const Color top = color_of(upper[0]) + right * (color_of(upper[1]) - color_of(upper[0]));
+  const Color bottom = color_of(lower[0]) + right * (color_of(lower[1]) - color_of(lower[0]));
+  return top + below * (bottom - top);
+}
+
+Color mean_of_three(const Color& first, const Color& own, const Color& second) {
+  return 0.25F * (first + second) + 0.5F * own;
 }
 
 /// What ColorSmoothing makes of the pixel in the middle.
-Eigen::Array3f smoothed(const Window& colors) {
-  Window rows = colors;
+Color smoothed(const Window& colors) {
+  Window rows;
   for (std::size_t y = 0; y < side; ++y) {
     for (std::size_t x = 1; x + 1 < side; ++x) {
-      rows[y][x] = 0.25F * (colors[y][x - 1] + colors[y][x + 1]) + 0.5F * colors[y][x];
+      rows[y][x] = mean_of_three(colors[y][x - 1], colors[y][x], colors[y][x + 1]);
     }
   }
-  const auto guide = [&](std::size_t x, std::size_t y) -> Eigen::Array3f {
-    return 0.25F * (rows[y - 1][x] + rows[y + 1][x]) + 0.5F * rows[y][x];
+  const auto guide = [&](std::size_t x, std::size_t y) {
+    return mean_of_three(rows[y - 1][x], rows[y][x], rows[y + 1][x]);
   };
-  const Eigen::Array3f own = guide(reach, reach);
-  Eigen::Array3f sum = Eigen::Array3f::Zero();
+  const Color own = guide(reach, reach);
+  Color sum = Color::Zero();
   float weights = 0;
   for (int dy = -ColorSmoothing::reach; dy <= ColorSmoothing::reach; ++dy) {
     for (int dx = -ColorSmoothing::reach; dx <= ColorSmoothing::reach; ++dx) {
@@ -55,10 +65,10 @@ Eigen::Array3f smoothed(const Window& colors) {
   return sum / weights;
 }
 
-Eigen::Array3f mean(const Window& colors) {
-  Eigen::Array3f sum = Eigen::Array3f::Zero();
+Color mean(const Window& colors) {
+  Color sum = Color::Zero();
   for (const auto& row : colors) {
-    for (const Eigen::Array3f& color : row) sum += color;
+    for (const Color& color : row) sum += color;
   }
   return sum / static_cast<float>(side * side);
 }
@@ -92,15 +102,16 @@ void add(ImageView<Bgr> camera, const Mask& occlusion, ImageView<Bgr> rgbd, floa
       const auto row = static_cast<std::size_t>(reach + dy);
       drawn[row][column] = look_up(rgbd, texture.x() + step * static_cast<float>(dx),
                                    texture.y() + step * static_cast<float>(dy));
-      seen[row][column] = to_channels(camera(x + dx, y + dy));
+      seen[row][column] = color_of(camera(x + dx, y + dy));
     }
   }
-  const auto mapped = [&](const Eigen::Array3f& color) {
-    return map(color, sample.pixel.x(), sample.pixel.y());
+  const auto mapped = [&](const Color& color) -> Eigen::Array3f {
+    return map(color.head<3>(), sample.pixel.x(), sample.pixel.y());
   };
+  const Color seen_apart = seen[reach][reach] - mean(seen);
   const Eigen::Array3f own = mapped(drawn[reach][reach]);
   const Eigen::Array3f change = mapped(smoothed(drawn)) - own;
-  const Eigen::Array3f residual = (seen[reach][reach] - mean(seen)) - (own - mapped(mean(drawn)));
+  const Eigen::Array3f residual = seen_apart.head<3>() - (own - mapped(mean(drawn)));
   if (!(residual.abs() < most).all()) return;
   const float product = (change * residual).sum();
   sums.change_residual += product;
@@ -113,8 +124,8 @@ void add(ImageView<Bgr> camera, const Mask& occlusion, ImageView<Bgr> rgbd, floa
 
 int smoothing_share(const Rig& rig, const FrameSet& frame, const Mask& occlusion,
                     const std::vector<SceneSample>& samples, ColorMapsBySource maps) {
-  constexpr std::size_t wanted = 1000;
-  constexpr int fewest = 100;
+  constexpr std::size_t wanted = 300;
+  constexpr int fewest = 50;
   const std::size_t stride = std::max<std::size_t>(1, samples.size() / wanted);
   Sums sums;
   for (std::size_t i = 0; i < samples.size(); i += stride) {

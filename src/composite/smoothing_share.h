@@ -17,7 +17,7 @@ namespace diminish {
 /// seen. What is compared is each pixel against its surroundings, because light differs otherwise,
 /// too.
 /// occlusion: where the colour camera shows objects to remove. maps: by SceneSample::source. Cost:
-/// 1 us per sample, of which it takes a thousand.
+/// 1 us per sample, of which it takes three hundred.
 int smoothing_share(const Rig& rig, const FrameSet& frame, const Mask& occlusion,
                     const std::vector<SceneSample>& samples, ColorMapsBySource maps);
 
