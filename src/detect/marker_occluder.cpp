@@ -38,8 +38,8 @@ class MarkerOccluder : public ShapeDetector {
 
   bool needs_markers() const override { return true; }
 
-  void outline(const Observation& observation, std::uint32_t object, OcclusionOutlines& outlines,
-               OccluderReport& report) override {
+  void outline(const Observation& observation, std::uint32_t object, ObjectTrack* track,
+               OcclusionOutlines& outlines, OccluderReport& report) override {
     // The colour camera first, then the RGB-D cameras' colour sensors.
     views_.clear();
     views_.push_back({&color_lens_, corners_in(observation.markers.color), RigidTransform{}});
@@ -51,6 +51,7 @@ class MarkerOccluder : public ShapeDetector {
       views_.push_back(view);
     }
     locate_marker(views_, marker_.size_m, camera_from_marker_);
+    const bool is_continued = track && follow(observation, *track);
 
     if (const auto& pose = camera_from_marker_[0]) {
       add_shape(*pose, in_color_, object, outlines.color);
@@ -64,9 +65,42 @@ class MarkerOccluder : public ShapeDetector {
     }
     report.name = name_;
     report.message = message();
+    if (is_continued) report.message += "; continued by its last motion";
   }
 
  private:
+  bool is_seen() const {
+    return std::any_of(views_.begin(), views_.end(), [](const auto& view) { return view.corners; });
+  }
+
+  /// If no camera sees the marker, puts it where its last motion takes it, and returns true. The
+  /// frame that stands still is the world, or else the first RGB-D camera.
+  bool follow(const Observation& observation, ObjectTrack& track) {
+    const Poses& poses = observation.poses;
+    const bool is_world = poses.color_from_world.has_value();
+    const std::optional<RigidTransform>& color_from_frame =
+        is_world || poses.color_from_depth.empty() ? poses.color_from_world
+                                                   : poses.color_from_depth[0];
+    const double stamp_s = observation.frame.stamp_s;
+    if (!color_from_frame) return false;
+    std::optional<RigidTransform>& color_from_marker = camera_from_marker_[0];
+    if (is_seen()) {
+      if (color_from_marker) {
+        track.add(stamp_s, is_world, color_from_frame->inverse() * *color_from_marker);
+      }
+      return false;
+    }
+    const auto frame_from_marker = track.at(stamp_s, is_world);
+    if (!frame_from_marker) return false;
+    color_from_marker = *color_from_frame * *frame_from_marker;
+    for (std::size_t k = 0; k < rig_.rgbd.size(); ++k) {
+      const auto& color_from_rgbd = views_[k + 1].common_from_camera;
+      if (color_from_rgbd)
+        camera_from_marker_[k + 1] = color_from_rgbd->inverse() * *color_from_marker;
+    }
+    return true;
+  }
+
   std::optional<std::array<Eigen::Vector2d, 4>> corners_in(const std::vector<Marker>& seen) const {
     const Marker* found = find_marker(seen, marker_.id);
     if (!found) return std::nullopt;
@@ -89,9 +123,7 @@ class MarkerOccluder : public ShapeDetector {
   /// What is missing. An object that is out of a camera's sight is not: its place is known.
   std::string message() const {
     const auto marker = [&] { return name_ + ": marker " + std::to_string(marker_.id); };
-    if (std::none_of(views_.begin(), views_.end(), [](const auto& view) { return view.corners; })) {
-      return marker() + " not visible in any camera";
-    }
+    if (!is_seen()) return marker() + " not visible in any camera";
     std::string cameras;
     for (std::size_t i = 0; i < camera_from_marker_.size(); ++i) {
       if (camera_from_marker_[i]) continue;

@@ -21,6 +21,7 @@ OccluderStage::OccluderStage(const Rig& rig, const Scene& scene) : rig_(rig) {
     detectors_.push_back(Detectors::get(spec.detector).make(spec, rig));
     names_.push_back(spec.name);
   }
+  shared_->tracks.resize(detectors_.size());
   drawings_.resize(1 + 2 * rig.rgbd.size());
   masks_.color = Mask(rig.color.width, rig.color.height);
   for (const RgbdCamera& camera : rig.rgbd) {
@@ -48,6 +49,11 @@ void OccluderStage::detect(const Observation& observation, std::vector<OccluderR
   is_blank_ = true;
   reports.resize(detectors_.size());
   const std::vector<std::string> kept = kept_objects(observation.options);
+  const bool remembers = observation.options.memory != "off";
+  if (remembers) {
+    take_turn();
+    shared_->turns.wait(*turn_);
+  }
   for (std::size_t i = 0; i < detectors_.size(); ++i) {
     OccluderReport& report = reports[i];
     auto* const shape = dynamic_cast<ShapeDetector*>(detectors_[i].get());
@@ -63,9 +69,11 @@ void OccluderStage::detect(const Observation& observation, std::vector<OccluderR
     report.kept = is_kept;
     report.message.clear();
     if (shape && !is_kept) {
-      shape->outline(observation, static_cast<std::uint32_t>(i), outlines_, report);
+      ObjectTrack* const track = remembers ? &shared_->tracks[i] : nullptr;
+      shape->outline(observation, static_cast<std::uint32_t>(i), track, outlines_, report);
     }
   }
+  end_turn();
   draw(observation.options, reports);
   objects_ = bounding_box(masks_.color, parts_[0]);
 }

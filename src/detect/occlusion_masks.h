@@ -1,16 +1,20 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/turns.h"
 #include "detect/shape_detector.h"
 #include "detect/silhouette/mask_drawer.h"
 #include "diminish/occluder_detector.h"
 
 namespace diminish {
 
-/// Finds all of a scene's objects to remove.
+/// Finds all of a scene's objects to remove. With the option `memory`, one that nobody sees for a
+/// moment is continued by its motion: several stages then share what they know of it, and each,
+/// with a frame of the same sequence, takes its turn.
 class OccluderStage {
  public:
   /// Throws Error on unknown detectors and wrong settings.
@@ -23,9 +27,19 @@ class OccluderStage {
   /// next frame tries again.
   void draw_by(const std::string& drawer);
 
-  /// Replaces the masks by the union of all objects' masks in this frame, grown by the options'
-  /// margins, and `reports` by one report for each object. Objects in the option `keep` are not
-  /// looked for.
+  void share(OccluderStage& other) { shared_ = other.shared_; }
+  void take_turn() {
+    if (!turn_) turn_ = shared_->turns.take();
+  }
+  /// Does nothing if there is none.
+  void end_turn() {
+    if (turn_) shared_->turns.end(*turn_);
+    turn_.reset();
+  }
+
+  /// With the option `memory`, waits for its turn. Ends it. Replaces the masks by the union of all
+  /// objects' masks in this frame, grown by the options' margins, and `reports` by one report for
+  /// each object. Objects in the option `keep` are not looked for.
   void detect(const Observation& observation, std::vector<OccluderReport>& reports);
 
   const OcclusionMasks& masks() const { return masks_; }
@@ -35,6 +49,11 @@ class OccluderStage {
   const std::string& message() const { return message_; }
 
  private:
+  struct Shared {
+    Turns turns;
+    std::vector<ObjectTrack> tracks;
+  };
+
   void clear();
   void draw(const Options& options, std::vector<OccluderReport>& reports);
   void list_drawings(const Options& options);
@@ -43,6 +62,8 @@ class OccluderStage {
   Rig rig_;
   std::vector<std::unique_ptr<OccluderDetector>> detectors_;
   std::vector<std::string> names_;  ///< of the objects
+  std::shared_ptr<Shared> shared_ = std::make_shared<Shared>();
+  std::optional<std::size_t> turn_;
   OcclusionOutlines outlines_;
   bool is_blank_ = true;               ///< no detector has set pixels in this frame yet
   std::vector<MaskDrawing> drawings_;  ///< color, and of each RGB-D camera color and depth

@@ -60,6 +60,65 @@ TEST(OccluderStage, UnitesTheOccludersMasksAndGrowsThem) {
   EXPECT_EQ(count_nonzero(masks.color, masks.color.bounds()), 2u);
 }
 
+/// A sign that moves along x in front of a camera that stands still.
+class LostSign : public ::testing::Test {
+ protected:
+  static constexpr double speed_m_s = 0.4;
+
+  Mask detect(OccluderStage& with, double stamp_s, bool is_seen) {
+    detection.frame.stamp_s = stamp_s;
+    detection.markers.color.clear();
+    if (is_seen) {
+      const Lens lens(detection.rig.color);
+      const Eigen::Vector3d center(speed_m_s * stamp_s - 0.2, 0, 1);
+      Marker marker{5, {}};
+      const Eigen::Vector3d corners[] = {
+          {-0.1, -0.1, 0}, {0.1, -0.1, 0}, {0.1, 0.1, 0}, {-0.1, 0.1, 0}};
+      for (int i = 0; i < 4; ++i) marker.corners[i] = lens.project(center + corners[i]).value();
+      detection.markers.color = {marker};
+    }
+    with.detect(detection.observation(), reports);
+    return with.masks().color;
+  }
+
+  Detection detection = [] {
+    Detection with_poses(small_rig());
+    with_poses.options.memory = "on";
+    with_poses.poses.color_from_world = RigidTransform{};
+    with_poses.poses.color_from_depth[0] = RigidTransform{};
+    return with_poses;
+  }();
+  const Scene scene = scene_with(
+      "[{name: sign, detector: marker, marker: {id: 5, size_m: 0.2}, vertices: [[-0.1, -0.1, 0], "
+      "[0.1, -0.1, 0], [0.1, 0.1, 0], [-0.1, 0.1, 0]]}]");
+  OccluderStage stage{detection.rig, scene}, other{detection.rig, scene};
+  std::vector<OccluderReport> reports;
+};
+
+TEST_F(LostSign, GoesOnForAMoment) {
+  other.share(stage);  // every other frame is the other's
+  for (const double stamp_s : {0., 0.2}) {
+    detect(stage, stamp_s, true);
+    detect(other, stamp_s + 0.1, true);
+    EXPECT_EQ(reports[0].message, "");
+  }
+  OccluderStage alone(detection.rig, scene);
+  const Mask expected = detect(alone, 0.6, true);
+  EXPECT_GT(intersection_over_union(detect(stage, 0.6, false), expected), 0.95);
+  EXPECT_TRUE(reports[0].in_color);
+  EXPECT_EQ(reports[0].message,
+            "sign: marker 5 not visible in any camera; continued by its last motion");
+  EXPECT_FALSE(any_set(detect(stage, 0.9, false)));
+  EXPECT_EQ(reports[0].message, "sign: marker 5 not visible in any camera");
+}
+
+TEST_F(LostSign, IsLostAtOnceWithoutMemory) {
+  detection.options.memory = "off";
+  detect(stage, 0, true);
+  detect(stage, 0.1, true);
+  EXPECT_FALSE(any_set(detect(stage, 0.2, false)));
+}
+
 TEST(OccluderStage, TheDepthMasksMarginCoversTheSameAngle) {
   Detection detection(small_rig());
   Image<std::uint16_t>& depth = detection.frame.rgbd[0].depth.own();

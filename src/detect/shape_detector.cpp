@@ -14,7 +14,7 @@ OccluderReport ShapeDetector::detect(const Observation& observation, OcclusionMa
   outlines_.clear(masks.rgbd_color.size());
   OccluderReport report;
   report.in_rgbd.assign(masks.rgbd_color.size(), false);
-  outline(observation, 0, outlines_, report);
+  outline(observation, 0, nullptr, outlines_, report);
   const auto fill = [&](const Polygons& polygons, Mask& mask) {
     std::uint8_t covers = 0;
     filler_.fill(polygons, mask, {&covers, 1});

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "detect/object_track.h"
 #include "detect/silhouette/polygon_filler.h"
 #include "detect/silhouette/polygons.h"
 #include "diminish/occluder_detector.h"
@@ -23,8 +24,9 @@ struct OcclusionOutlines {
 class ShapeDetector : public OccluderDetector {
  public:
   /// Adds the object's outlines, labelled `object`, and leaves the others alone. What they cover is
-  /// known only after drawing: of the report, fills the name and the message.
-  virtual void outline(const Observation& observation, std::uint32_t object,
+  /// known only after drawing: of the report, fills the name and the message. track: of this
+  /// object, to be followed and continued; null if frames stand alone.
+  virtual void outline(const Observation& observation, std::uint32_t object, ObjectTrack* track,
                        OcclusionOutlines& outlines, OccluderReport& report) = 0;
 
   /// Outlines, then draws.

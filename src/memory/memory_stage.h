@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
+#include "core/turns.h"
 #include "memory/recall_merge.h"
 #include "memory/scene_memory.h"
-#include "memory/turns.h"
 
 namespace diminish {
 

@@ -185,11 +185,14 @@ const Options& Pipeline::options() const {
 
 void Pipeline::share_memory(Pipeline& other) {
   implementation_->memory.share(other.implementation_->memory);
+  implementation_->occluders.share(other.implementation_->occluders);
 }
 void Pipeline::take_turn() {
   implementation_->memory.take_turn();
+  implementation_->occluders.take_turn();
 }
 void Pipeline::pass_turn() {
+  implementation_->occluders.end_turn();
   implementation_->memory.end_turn();
 }
 void Pipeline::forget() {
@@ -197,7 +200,11 @@ void Pipeline::forget() {
 }
 
 void Pipeline::process(const FrameSet& frame, DiminishedFrame& result) {
-  const MemoryStage::Turn turn(implementation_->memory);
+  take_turn();
+  const struct Turn {
+    Pipeline& pipeline;
+    ~Turn() { pipeline.pass_turn(); }
+  } turn{*this};
   // A thread that waits for another within this frame must not begin something else.
   oneapi::tbb::this_task_arena::isolate([&] { implementation_->process(frame, result); });
 }

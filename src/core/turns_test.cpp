@@ -1,4 +1,4 @@
-#include "memory/turns.h"
+#include "core/turns.h"
 
 #include <gtest/gtest.h>
 
