@@ -44,6 +44,8 @@ struct Figures {
   std::string device;                   ///< the GPU; empty: the CPU
   std::vector<std::pair<std::string, double>> gpu_passes_ms;  ///< medians
   double frame_ms = 0, cpu_frame_ms = 0;                      ///< medians, by turns
+  double remembering_frame_ms = 0, forgetful_frame_ms = 0;    ///< medians, by turns
+  Distribution memory_ms;                                     ///< how much longer a frame takes
   Distribution allocated_bytes, allocations;                  ///< per frame
   WorkAndSpan cost{};
   std::size_t peak_memory_bytes = 0;
@@ -70,6 +72,8 @@ struct BenchCommand {
                        Figures& figures) const;
   void measure_backend(const Recording& input, const std::vector<FrameSet>& frames,
                        Figures& figures) const;
+  void measure_memory(const Recording& input, const std::vector<FrameSet>& frames,
+                      Figures& figures) const;
   void measure_throughput(const Recording& input, std::vector<FrameSet> frames,
                           Figures& figures) const;
   double run_fps(const Recording& input, FrameSource& source) const;
@@ -184,6 +188,37 @@ void BenchCommand::measure_backend(const Recording& input, const std::vector<Fra
   }
 }
 
+/// Each frame with the memory beside the same without, in turn.
+void BenchCommand::measure_memory(const Recording& input, const std::vector<FrameSet>& loaded,
+                                  Figures& figures) const {
+  Options without = options;
+  without.memory = "off";
+  Pipeline remembering(input.rig, input.scene, options);
+  Pipeline forgetful(input.rig, input.scene, without);
+  for (Pipeline* pipeline : {&remembering, &forgetful}) pipeline->want_reconstruction(false);
+  DiminishedFrame result;
+  std::vector<double> remembering_ms;
+  std::vector<double> forgetful_ms;
+  std::vector<double> more_ms;
+  constexpr std::size_t fewest_frames = 20;
+  const Clock::time_point start = Clock::now();
+  for (std::size_t i = 0; i < fewest_frames || seconds_since(start) < seconds; ++i) {
+    const FrameSet& frame = loaded[i % loaded.size()];
+    const Clock::time_point forgetful_start = Clock::now();
+    forgetful.process(frame, result);
+    const Clock::time_point remembering_start = Clock::now();
+    remembering.process(frame, result);
+    if (i < loaded.size() && i < fewest_frames / 2) continue;  // lets memory grow to its size
+    remembering_ms.push_back(1000 * seconds_since(remembering_start));
+    forgetful_ms.push_back(
+        std::chrono::duration<double, std::milli>(remembering_start - forgetful_start).count());
+    more_ms.push_back(remembering_ms.back() - forgetful_ms.back());
+  }
+  figures.remembering_frame_ms = distribution_of(std::move(remembering_ms)).p50;
+  figures.forgetful_frame_ms = distribution_of(std::move(forgetful_ms)).p50;
+  figures.memory_ms = distribution_of(std::move(more_ms));
+}
+
 void BenchCommand::measure_throughput(const Recording& input, std::vector<FrameSet> loaded,
                                       Figures& figures) const {
   const double frame_s = figures.times_ms[whole_frame_row].average / 1000;
@@ -261,6 +296,14 @@ void print(const Figures& figures, int threads) {
                figures.device.empty() ? "the CPU" : figures.device, figures.frame_ms,
                figures.cpu_frame_ms, figures.cpu_frame_ms / figures.frame_ms);
   }
+  if (figures.remembering_frame_ms > 0) {
+    fmt::print(
+        "Frame with memory: p50 {:.2f} ms; without {:.2f} ms, ratio {:.2f}; "
+        "longer by p50 {:.2f}, p95 {:.2f}, p99 {:.2f} ms\n",
+        figures.remembering_frame_ms, figures.forgetful_frame_ms,
+        figures.remembering_frame_ms / figures.forgetful_frame_ms, figures.memory_ms.p50,
+        figures.memory_ms.p95, figures.memory_ms.p99);
+  }
   double gpu_ms = 0;
   for (const auto& [name, ms] : figures.gpu_passes_ms) {
     fmt::print("  GPU time, {:<10}{:>9.3f} ms\n", name, ms);
@@ -318,6 +361,11 @@ void write_json(const BenchCommand& command, const Figures& figures) {
                        {"cpu_frame_p50_ms", figures.cpu_frame_ms}};
     for (const auto& [name, ms] : figures.gpu_passes_ms) json["backend"]["gpu_ms"][name] = ms;
   }
+  if (figures.remembering_frame_ms > 0) {
+    json["memory"] = {{"frame_p50_ms", figures.remembering_frame_ms},
+                      {"off_frame_p50_ms", figures.forgetful_frame_ms},
+                      {"longer_ms", to_json(figures.memory_ms)}};
+  }
   json["first_frame_ms"] = figures.start_up.first_frame_ms;
   json["pipeline_bytes"] = figures.start_up.pipeline_bytes;
   json["peak_memory_bytes"] = figures.peak_memory_bytes;
@@ -338,6 +386,7 @@ int BenchCommand::execute() const {
   measure_latency(input, loaded, figures);
   if (!trace.empty()) write_trace(input, loaded, options, trace);
   if (options.backend != "cpu") measure_backend(input, loaded, figures);
+  if (options.memory != "off") measure_memory(input, loaded, figures);
   measure_throughput(input, std::move(loaded), figures);
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);

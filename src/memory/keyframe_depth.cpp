@@ -27,16 +27,19 @@ KeyframeDepth::KeyframeDepth(const Rig& rig, const KeyframeGrid& grid)
       planes_(grid.intrinsics()),
       carried_(grid) {}
 
-void KeyframeDepth::find(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks,
-                         const SceneSamples& samples, const Options& options, Keyframe& keyframe) {
+void KeyframeDepth::draw(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks,
+                         const SceneSamples& samples, const Options& options) {
   const Rect whole = grid_.intrinsics().bounds();
   depth_.clean(frame, poses, masks, whole, options);
   drawer_->reconstruct(frame, depth_.depths(), poses, masks, TiledRegion(whole), options, drawn_);
   label(samples);
-  complete(keyframe, masks.color);
+}
+
+void KeyframeDepth::complete(const Mask& objects, Keyframe& keyframe) {
+  fill_gaps(keyframe, objects);
   edges_.align(colors_, completed_);
   keyframe.doubt = doubt_;
-  keyframe.depth.resize(whole.width, whole.height);
+  keyframe.depth.resize(completed_.width(), completed_.height());
   std::transform(completed_.begin(), completed_.end(), keyframe.depth.begin(), [](float inverse_z) {
     constexpr auto units = static_cast<float>(1 / KeyframeGrid::unit_m);
     constexpr float most = 65535;
@@ -102,7 +105,7 @@ bool KeyframeDepth::continues(const BackgroundPlane& plane, int x, int y, const 
   return false;
 }
 
-KeyframeDepth::Guess KeyframeDepth::complete(int x, int y, const Ends& row) const {
+KeyframeDepth::Guess KeyframeDepth::guess(int x, int y, const Ends& row) const {
   const Ends& column = columns_(x, y);
   const Guess across = between(row);
   const Guess along = between(column);
@@ -128,7 +131,7 @@ KeyframeDepth::Guess KeyframeDepth::complete(int x, int y, const Ends& row) cons
   return {on_plane, 0, false, looks_so ? plane_doubt : guess_doubt};
 }
 
-void KeyframeDepth::complete(const Keyframe& keyframe, const Mask& objects) {
+void KeyframeDepth::fill_gaps(const Keyframe& keyframe, const Mask& objects) {
   const int width = drawn_.depth_m.width();
   const int height = drawn_.depth_m.height();
   seen_.resize(width, height);
@@ -148,9 +151,9 @@ void KeyframeDepth::complete(const Keyframe& keyframe, const Mask& objects) {
         const float before = x > 0 ? seen_(x - 1, y) : 0;
         const float after = end < width ? seen_(end, y) : 0;
         for (int i = x; i < end; ++i) {
-          const Guess guess = complete(i, y, {before, after, i - x + 1, end - i});
-          completed_(i, y) = guess.inverse_z;
-          doubt_(i, y) = static_cast<std::uint8_t>(std::lrint(guess.doubt / doubt_unit));
+          const Guess found = guess(i, y, {before, after, i - x + 1, end - i});
+          completed_(i, y) = found.inverse_z;
+          doubt_(i, y) = static_cast<std::uint8_t>(std::lrint(found.doubt / doubt_unit));
         }
         x = end;
       }

@@ -23,10 +23,13 @@ class KeyframeDepth {
  public:
   KeyframeDepth(const Rig& rig, const KeyframeGrid& grid);
 
-  /// poses and samples: after refinement. keyframe: with its pose and picture. Fills `depth` and
-  /// `doubt`. Cost: that of cleaning the depth images, and 10 ms.
-  void find(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks,
-            const SceneSamples& samples, const Options& options, Keyframe& keyframe);
+  /// Two steps, between which other frames may come. First what the RGB-D cameras see is drawn.
+  /// poses and samples: after refinement. Cost: that of cleaning the depth images, and 3 ms.
+  void draw(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks,
+            const SceneSamples& samples, const Options& options);
+  /// Then it is completed. objects: to remove, in the picture. keyframe: of that frame, with its
+  /// pose and picture; fills `depth` and `doubt`. Cost: 5 ms.
+  void complete(const Mask& objects, Keyframe& keyframe);
   void forget() { carried_.forget(); }
 
  private:
@@ -45,8 +48,8 @@ class KeyframeDepth {
 
   void label(const SceneSamples& samples);
   void find_columns();
-  void complete(const Keyframe& keyframe, const Mask& objects);
-  Guess complete(int x, int y, const Ends& row) const;
+  void fill_gaps(const Keyframe& keyframe, const Mask& objects);
+  Guess guess(int x, int y, const Ends& row) const;
   /// A seen place, the nearest in one direction; inverse_z is 0 if there is none.
   struct End {
     float inverse_z;

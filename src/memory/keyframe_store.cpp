@@ -101,19 +101,26 @@ void KeyframeStore::find_shown(const Keyframe& keyframe, const RigidTransform& c
 void KeyframeStore::choose(std::size_t most, const Mask& objects, const TiledRegion& region,
                            const RigidTransform& color_from_world,
                            std::vector<std::shared_ptr<const Keyframe>>& chosen) {
-  constexpr int fewest = 256;  // pixels
+  constexpr int least_pixels = 256;
+  constexpr int least_share = 64;  // of the objects: 1 / 64
+  constexpr int sampled_rows = 2;
   constexpr double near_m = 0.05;
   const int cell = cell_px(grid_);
   const Rect cells = cells_of(region, cell);
   wanted_.assign(static_cast<std::size_t>(cells.width) * static_cast<std::size_t>(cells.height), 0);
-  for (int y = region.y; y < region.bottom(); ++y) {
+  int all = 0;
+  for (int y = region.y; y < region.bottom(); y += sampled_rows) {
     int* const wanted = wanted_.data() + (y - region.y) / cell * cells.width;
     const std::uint8_t* const masked = objects.row(y) + region.x;
     for (int i = 0; i < cells.width; ++i) {
       const int last = std::min(region.width, (i + 1) * cell);
-      for (int x = i * cell; x < last; ++x) wanted[i] += masked[x] != 0 ? 1 : 0;
+      int pixels = 0;
+      for (int x = i * cell; x < last; ++x) pixels += masked[x] != 0 ? sampled_rows : 0;
+      wanted[i] += pixels;
+      all += pixels;
     }
   }
+  const int fewest = std::max(least_pixels, all / least_share);
   shown_.resize(size());
   weights_.resize(size());
   for_tasks(size(), [&](std::size_t k) {

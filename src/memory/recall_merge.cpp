@@ -125,29 +125,53 @@ void RecallMerge::merge_row(const RecallInputs& inputs, std::span<const Recollec
 
 void RecallMerge::drop_specks(const RecallInputs& inputs, Reconstruction& reconstruction) {
   constexpr int reach = 8;
-  const Rect bounds{0, 0, region_.width, region_.height};
-  known_.resize(bounds.width + 1, bounds.height + 1, 0);
-  for (int y = 0; y < bounds.height; ++y) {
-    int known = 0;
-    for (int x = 0; x < bounds.width; ++x) {
-      const int column = x + region_.x;
-      const int row = y + region_.y;
-      const bool is_known =
-          inputs.masks.color(column, row) == 0 || reconstruction.source(column, row) != 0;
-      known += is_known ? 1 : 0;
-      known_(x + 1, y + 1) = known_(x + 1, y) + known;
-    }
-  }
-  for_rows(bounds.height, [&](Rows rows) {
+  const int width = region_.width;
+  const int height = region_.height;
+  known_.resize(width, height);
+  for_rows(height, [&](Rows rows) {
     for (int y = rows.first; y < rows.last; ++y) {
-      for (int x = 0; x < bounds.width; ++x) {
-        std::uint8_t& source = reconstruction.source(x + region_.x, y + region_.y);
-        if (source != provenance::remembered) continue;
-        const Rect around = intersect(grow({x, y, 1, 1}, reach), bounds);
-        const int known = known_(around.right(), around.bottom()) -
-                          known_(around.x, around.bottom()) - known_(around.right(), around.y) +
-                          known_(around.x, around.y);
-        if (2 * known < around.width * around.height) source = 0;
+      const std::uint8_t* const objects = inputs.masks.color.row(y + region_.y) + region_.x;
+      const std::uint8_t* const source = reconstruction.source.row(y + region_.y) + region_.x;
+      std::uint8_t* const known = known_.row(y);
+      for (int x = 0; x < width; ++x) known[x] = objects[x] == 0 || source[x] != 0 ? 1 : 0;
+    }
+  });
+  for_rows(height, [&](Rows rows) {
+    // Of known pixels, in the rows within reach.
+    column_sums_[rows.band].assign(static_cast<std::size_t>(width), 0);
+    std::uint8_t* const sums = column_sums_[rows.band].data();
+    const auto add = [&](int y) {
+      if (y >= height) return;
+      const std::uint8_t* const known = known_.row(y);
+      for (int x = 0; x < width; ++x) sums[x] = static_cast<std::uint8_t>(sums[x] + known[x]);
+    };
+    const auto subtract = [&](int y) {
+      if (y < 0) return;
+      const std::uint8_t* const known = known_.row(y);
+      for (int x = 0; x < width; ++x) sums[x] = static_cast<std::uint8_t>(sums[x] - known[x]);
+    };
+    for (int y = std::max(0, rows.first - reach); y < rows.first + reach; ++y) add(y);
+    for (int y = rows.first; y < rows.last; ++y) {
+      add(y + reach);
+      if (y > rows.first) subtract(y - reach - 1);
+      std::uint8_t* const source = reconstruction.source.row(y + region_.y) + region_.x;
+      const int around_rows = std::min(height, y + reach + 1) - std::max(0, y - reach);
+      const std::uint8_t* const next = std::find(source, source + width, provenance::remembered);
+      int first = static_cast<int>(next - source);
+      int last = first;  // the sum is of columns [first, last)
+      int sum = 0;
+      for (int x = first; x < width; ++x) {
+        if (source[x] != provenance::remembered) continue;
+        const int left = std::max(0, x - reach);
+        const int right = std::min(width, x + reach + 1);
+        if (left >= last) {
+          first = last = left;
+          sum = 0;
+        }
+        for (; first > left; --first) sum += sums[first - 1];
+        for (; first < left; ++first) sum -= sums[first];
+        for (; last < right; ++last) sum += sums[last];
+        if (2 * sum < (right - left) * around_rows) source[x] = 0;
       }
     }
   });

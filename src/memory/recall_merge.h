@@ -51,7 +51,8 @@ class RecallMerge {
   Rect region_;
   Image<std::uint8_t> layer_;
   Image<float> depth_m_;
-  Image<int> known_;  ///< pixels that are seen or remembered, above and left of each
+  Mask known_;  ///< 1: seen or remembered, or no object
+  std::vector<std::uint8_t> column_sums_[most_bands];
 };
 
 }  // namespace diminish

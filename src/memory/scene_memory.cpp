@@ -20,6 +20,7 @@ SceneMemory::SceneMemory(const Rig& rig)
 }
 
 void SceneMemory::forget() {
+  pending_.steps = 0;
   store_.clear();
   depth_.forget();
   novelty_.forget();
@@ -41,6 +42,11 @@ std::size_t SceneMemory::recall(const RecallInputs& inputs,
   // A recording that begins anew.
   if (now_s < last_stamp_s_) forget();
   last_stamp_s_ = now_s;
+  // The last keyframe's steps come one a frame, but within a moment.
+  constexpr double moment_s = 0.1;
+  do {
+    take_step();
+  } while (now_s >= pending_.keyframe.stamp_s + moment_s && pending_.steps > 0);
   store_.drop_older_than(now_s - inputs.options.memory_max_age_s);
   if (store_.empty() || inputs.region.empty()) return 0;
   const RigidTransform& color_from_world = *inputs.poses.color_from_world;
@@ -57,6 +63,7 @@ std::size_t SceneMemory::recall(const RecallInputs& inputs,
 }
 
 bool SceneMemory::is_worth_a_keyframe(const RecallInputs& inputs) const {
+  if (pending_.steps > 0) return false;
   if (store_.empty()) return true;
   constexpr double shortest_s = 0.2;
   constexpr double longest_s = 2;
@@ -88,12 +95,12 @@ bool SceneMemory::has_just_lost(const std::vector<OccluderReport>& objects, doub
   return lost;
 }
 
-void SceneMemory::leave_out_objects(const RecallInputs& inputs, Keyframe& keyframe) {
-  const Mask& objects = inputs.masks.color;
+void SceneMemory::leave_out_objects(Keyframe& keyframe) {
+  const Mask& objects = pending_.objects;
   const int step = grid_.step();
   // A cell of the grid, and what their edges shine onto.
   const int margin = step + 6;
-  const Rect part = grow(inputs.objects, margin);
+  const Rect part = grow(last_objects_, margin);
   object_columns_.resize(static_cast<std::size_t>(objects.width()));
   for (int y = 0; y < keyframe.depth.height(); ++y) {
     const Rect band = intersect({0, y * step - margin, objects.width(), 2 * margin + 1},
@@ -127,17 +134,26 @@ void SceneMemory::learn(const RecallInputs& inputs, const SceneSamples& samples,
   if (!sees) return;
   last_keyframe_s_ = frame.stamp_s;
   last_objects_ = inputs.objects;
-  Keyframe keyframe;
+  Keyframe& keyframe = pending_.keyframe;
+  keyframe = {};
   keyframe.stamp_s = frame.stamp_s;
   keyframe.color_from_world = *inputs.poses.color_from_world;
   keyframe.color_from_depth = inputs.poses.color_from_depth;
   keyframe.testimonies = testimonies_;
   copy(frame.color.view(), keyframe.picture);
-  depth_.find(frame, inputs.poses, inputs.masks, samples, inputs.options, keyframe);
-  leave_out_objects(inputs, keyframe);
-  const bool is_uncertain = std::any_of(objects.begin(), objects.end(),
-                                        [](const auto& object) { return !object.message.empty(); });
-  novelty_.filter(is_uncertain, keyframe);
+  pending_.objects = inputs.masks.color;
+  pending_.is_uncertain = std::any_of(objects.begin(), objects.end(),
+                                      [](const auto& object) { return !object.message.empty(); });
+  depth_.draw(frame, inputs.poses, inputs.masks, samples, inputs.options);
+  pending_.steps = 2;
+}
+
+void SceneMemory::take_step() {
+  if (pending_.steps == 0) return;
+  Keyframe& keyframe = pending_.keyframe;
+  if (--pending_.steps > 0) return depth_.complete(pending_.objects, keyframe);
+  leave_out_objects(keyframe);
+  novelty_.filter(pending_.is_uncertain, keyframe);
   store_.add(std::move(keyframe));
 }
 

@@ -23,21 +23,29 @@ class SceneMemory {
   /// Returns their number.
   std::size_t recall(const RecallInputs& inputs, std::vector<Recollection>& recollections);
 
-  /// Takes a keyframe if there is something new. objects: the reports about the objects to remove.
+  /// Takes a keyframe if there is something new; what that costs is spread over this frame and the
+  /// next two, after which the keyframe is used. (They recall, so that the result does not depend
+  /// on threads; within 0.1 s, however few frames come.) objects: the reports about the objects to
+  /// remove.
   void learn(const RecallInputs& inputs, const SceneSamples& samples,
              const std::vector<OccluderReport>& objects);
 
   void forget();
 
-  std::size_t keyframes() const { return store_.size(); }
-  std::size_t bytes() const { return store_.bytes(); }
+  /// With the one that is pending.
+  std::size_t keyframes() const { return store_.size() + (pending_.steps > 0 ? 1 : 0); }
+  std::size_t bytes() const {
+    return store_.bytes() + (pending_.steps > 0 ? pending_.keyframe.bytes() : 0);
+  }
 
  private:
   bool is_worth_a_keyframe(const RecallInputs& inputs) const;
   /// Whether an object is lost that was there a moment ago: it may be anywhere.
   bool has_just_lost(const std::vector<OccluderReport>& objects, double stamp_s);
   void look(const RecallInputs& inputs);
-  void leave_out_objects(const RecallInputs& inputs, Keyframe& keyframe);
+  /// The next one towards a keyframe, if one is pending.
+  void take_step();
+  void leave_out_objects(Keyframe& keyframe);
 
   Rig rig_;
   KeyframeGrid grid_;
@@ -47,6 +55,14 @@ class SceneMemory {
   std::vector<std::shared_ptr<const Keyframe>> chosen_;
   std::vector<TestimonyTaker> takers_;
   std::vector<Testimony> testimonies_;
+  /// A keyframe that is not ready yet, of the frame that gave it.
+  struct Pending {
+    int steps = 0;  ///< that are left
+    Keyframe keyframe;
+    Mask objects;
+    bool is_uncertain = false;
+  };
+  Pending pending_;
   std::vector<std::uint8_t> object_columns_;
   bool has_looked_ = false;  ///< in this frame
   double last_stamp_s_ = 0;  ///< of any frame
