@@ -90,6 +90,32 @@ bool RecallMerge::is_nearer(float z_m, int x, int y, float tolerance_m) const {
   return true;
 }
 
+Bgr RecallMerge::mean_color(std::span<const Recollection> recollections, int x, int y) const {
+  constexpr float other_surface = 60;  // levels
+  const int column = x + region_.x;
+  const int row = y + region_.y;
+  const auto color_of = [&](const Recollection& recollection) {
+    return mapped(recollection.color_map(), recollection.drawn().color(column, row), column, row);
+  };
+  const std::size_t best = layer_(x, y) - 1U;
+  const Eigen::Array3f best_color = color_of(recollections[best]);
+  const float tolerance_m = between_cameras.at(depth_m_(x, y));
+  Eigen::Array3f sum = best_color;
+  int count = 1;
+  for (std::size_t i = best + 1; i < recollections.size(); ++i) {
+    const Reconstruction& drawn = recollections[i].drawn();
+    if (usable_[i] == 0 || drawn.source(column, row) == 0 ||
+        std::abs(drawn.depth_m(column, row) - depth_m_(x, y)) > tolerance_m) {
+      continue;
+    }
+    const Eigen::Array3f color = color_of(recollections[i]);
+    if ((color - best_color).abs().maxCoeff() > other_surface) continue;
+    sum += color;
+    ++count;
+  }
+  return to_color(sum / static_cast<float>(count));
+}
+
 void RecallMerge::merge_row(const RecallInputs& inputs, std::span<const Recollection> recollections,
                             bool witnessed_only, int y, Reconstruction& reconstruction) const {
   const int row = y + region_.y;
@@ -114,8 +140,7 @@ void RecallMerge::merge_row(const RecallInputs& inputs, std::span<const Recollec
       is_witnessed = std::abs(live_m - z_m) <= tolerance_m;
     }
     if (witnessed_only && !is_witnessed) continue;
-    const Bgr color = to_color(
-        mapped(recollection.color_map(), recollection.drawn().color(column, row), column, row));
+    const Bgr color = mean_color(recollections, x, y);
     reconstruction.color(column, row) = {color.b, color.g, color.r, 255};
     reconstruction.depth_m(column, row) = z_m;
     reconstruction.source(column, row) =

@@ -18,7 +18,8 @@ namespace diminish {
 ///    than anything remembered around. It also wins if the RGB-D camera is nearer to the user's
 ///    viewpoint than the keyframe is.
 /// 3. Elsewhere the keyframe is shown: as witnessed where a camera sees the same surface now, else
-///    as remembered.
+///    as remembered. If several show the same surface, the mean of them: each has noise, and
+///    objects' shadows, of its own.
 /// 4. What is remembered in specks amid what is unknown is left out: it says nothing, and what is
 ///    invented around it would go by it.
 class RecallMerge {
@@ -39,6 +40,8 @@ class RecallMerge {
   void layer_rows(std::span<const Recollection> recollections, Rows rows);
   void merge_row(const RecallInputs& inputs, std::span<const Recollection> recollections,
                  bool witnessed_only, int y, Reconstruction& reconstruction) const;
+  /// Of all that show the same surface.
+  Bgr mean_color(std::span<const Recollection> recollections, int x, int y) const;
   void drop_specks(const RecallInputs& inputs, Reconstruction& reconstruction);
   bool is_nearer(float z_m, int x, int y, float tolerance_m) const;
 

@@ -27,7 +27,8 @@ Recollection::Recollection(const Rig& rig, const KeyframeGrid& grid)
       fine_(rig.color, 2 * PoseRefinement::usual_width),
       witness_(rig, grid),
       drawer_(Registry<Reconstructor>::get("cpu")(rig_)),
-      depth_(1) {
+      depth_(1),
+      edges_(rig.color, grid) {
   const Intrinsics& small = grid.intrinsics();
   frame_.rgbd.resize(1);
   masks_.rgbd_color.emplace_back(rig.color.width, rig.color.height, std::uint8_t{0});
@@ -65,6 +66,9 @@ void Recollection::draw(const RecallInputs& inputs) {
   Options options = inputs.options;
   join_narrow_gaps(rig_.color.fx, baseline_m(), options);
   drawer_->reconstruct(frame_, depth_, poses_, masks_, inputs.region, options, drawn_);
+  edges_.close(
+      {keyframe_->picture, depth_[0], FloatTransform(poses_.color_from_depth[0]->inverse())},
+      inputs.masks.color, inputs.region, drawn_);
 }
 
 }  // namespace diminish

@@ -5,6 +5,7 @@
 
 #include "diminish/options.h"
 #include "diminish/reconstructor.h"
+#include "memory/torn_edges.h"
 #include "memory/witness.h"
 #include "pose/pose_refinement.h"
 #include "scene/color_maps.h"
@@ -60,6 +61,7 @@ class Recollection {
   SceneSamples samples_;
   std::vector<Eigen::Vector3f> gone_;
   Reconstruction drawn_;
+  TornEdges edges_;
 };
 
 }  // namespace diminish
