@@ -1,0 +1,263 @@
+#include "inpaint/line_painting.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/channels.h"
+#include "core/rows.h"
+
+namespace diminish {
+namespace {
+
+constexpr float half_width = RimLine::half_width;
+constexpr float feather = 3;           ///< pixels at each side over which a line fades
+constexpr float side_by_side = 0.98F;  ///< cosine between their normals
+constexpr std::uint8_t nobody = 255;
+
+// Two ends of one edge:
+constexpr float same_direction = 0.985F;  ///< cosine
+/// The one lies on the other's line, but for this many pixels and this share of their distance.
+constexpr float offset_px = 2;
+constexpr float offset_share = 0.04F;
+constexpr float shortest_join = 8;  ///< pixels
+constexpr float contrast_ratio = 2;
+constexpr float color_difference = 40;  ///< levels, the mean over both profiles
+
+// One end alone:
+constexpr float reach = 2.5F;       ///< times its length outside
+constexpr float fading = 0.25F;     ///< the share of that over which it fades
+constexpr int most_seen = 12;       ///< pixels in a row that it may cross
+constexpr int measured_depth = 12;  ///< pixels outside where is asked what it belongs to
+constexpr float measured_side = 4;  ///< pixels beside it
+/// Its colours are half those outside, half the smooth filling's with only its contrast.
+constexpr float own_colors = 0.5F;
+
+std::uint8_t label_at(const Surfaces& surfaces, int x, int y) {
+  if (!intersect(surfaces.region, surfaces.label.bounds()).contains(x, y)) {
+    return surface_label::unknown;
+  }
+  return surfaces.label(x, y);
+}
+std::uint8_t label_at(const Surfaces& surfaces, const Eigen::Vector2f& at) {
+  return label_at(surfaces, static_cast<int>(std::lrint(at.x())),
+                  static_cast<int>(std::lrint(at.y())));
+}
+
+/// Whether something in front of the planes was measured beside the line.
+bool bounds_foreground(const RimLine& line, const Surfaces& surfaces) {
+  for (const float side : {-measured_side, measured_side}) {
+    int count = 0;
+    for (int k = 1; k <= measured_depth; ++k) {
+      const Eigen::Vector2f at =
+          line.entry + static_cast<float>(k) * line.outward + side * line.normal;
+      count += label_at(surfaces, at) == surface_label::foreground ? 1 : 0;
+    }
+    if (2 * count >= measured_depth) return true;
+  }
+  return false;
+}
+
+/// Between two entries.
+Eigen::Array3f profile_at(const RimLine& line, float position) {
+  const auto i = static_cast<std::size_t>(position);
+  const float share = position - static_cast<float>(i);
+  return line.profile[i] + share * (line.profile[i + 1] - line.profile[i]);
+}
+
+}  // namespace
+
+void LinePainting::match(const std::vector<RimLine>& lines) {
+  pairs_.clear();
+  mates_.assign(lines.size(), -1);
+  const int count = static_cast<int>(lines.size());
+  for (int i = 0; i < count; ++i) {
+    const RimLine& a = lines[static_cast<std::size_t>(i)];
+    for (int k = i + 1; k < count; ++k) {
+      const RimLine& b = lines[static_cast<std::size_t>(k)];
+      if (a.outward.dot(b.outward) > -same_direction || a.normal.dot(b.normal) < same_direction) {
+        continue;
+      }
+      const Eigen::Vector2f between = b.entry - a.entry;
+      const float apart = -between.dot(a.outward);
+      const float most = offset_px + offset_share * apart;
+      const float offset_a = std::abs(between.dot(a.normal));
+      const float offset_b = std::abs(between.dot(b.normal));
+      if (apart < shortest_join || offset_a > most || offset_b > most) continue;
+      const float ratio = a.contrast / b.contrast;
+      if (ratio > contrast_ratio || ratio * contrast_ratio < 1) continue;
+      float difference = 0;
+      for (std::size_t s = 0; s < a.profile.size(); ++s) {
+        difference += (a.profile[s] - b.profile[s]).abs().mean();
+      }
+      difference /= RimLine::profile_size;
+      if (difference > color_difference) continue;
+      pairs_.push_back({(offset_a + offset_b) / most + 2 * difference / color_difference, i, k});
+    }
+  }
+  std::stable_sort(pairs_.begin(), pairs_.end(),
+                   [](const Pair& a, const Pair& b) { return a.misfit < b.misfit; });
+  for (const Pair& pair : pairs_) {
+    int& first = mates_[static_cast<std::size_t>(pair.first)];
+    int& second = mates_[static_cast<std::size_t>(pair.second)];
+    if (first >= 0 || second >= 0) continue;
+    first = pair.second;
+    second = pair.first;
+  }
+}
+
+/// How far a line runs into the mask that has no second end.
+float LinePainting::free_length(const RimLine& line, const Holes& holes) const {
+  const int most = static_cast<int>(reach * static_cast<float>(line.length));
+  int seen = 0;
+  int on_other_plane = 0;
+  std::uint8_t plane = surface_label::unknown;
+  for (int k = 1; k <= most; ++k) {
+    const Eigen::Vector2f at = line.entry - static_cast<float>(k) * line.outward;
+    const int x = static_cast<int>(std::lrint(at.x()));
+    const int y = static_cast<int>(std::lrint(at.y()));
+    if (!holes.occlusion.bounds().contains(x, y) || holes.occlusion(x, y) == 0) {
+      return static_cast<float>(k);
+    }
+    seen = holes.missing(x, y) != 0 ? 0 : seen + 1;
+    if (seen > most_seen) return static_cast<float>(k - seen);
+    const std::uint8_t label = label_at(holes.surfaces, x, y);
+    if (label == surface_label::unknown || label == surface_label::foreground) continue;
+    if (plane == surface_label::unknown) plane = label;
+    on_other_plane = label == plane ? 0 : on_other_plane + 1;
+    if (on_other_plane > most_seen) return static_cast<float>(k - on_other_plane);
+  }
+  return static_cast<float>(most);
+}
+
+void LinePainting::lay_out(const std::vector<RimLine>& lines, const Holes& holes) {
+  strokes_.clear();
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const RimLine& line = lines[i];
+    if (mates_[i] >= 0) {
+      const auto mate = static_cast<std::size_t>(mates_[i]);
+      if (mate < i) continue;
+      const Eigen::Vector2f between = lines[mate].entry - line.entry;
+      const float length = between.norm();
+      const Eigen::Vector2f along = between / length;
+      Eigen::Vector2f normal(-along.y(), along.x());
+      if (normal.dot(line.normal) < 0) normal = -normal;
+      strokes_.push_back({&line, &lines[mate], line.entry, along, normal, length});
+      continue;
+    }
+    if (bounds_foreground(line, holes.surfaces)) continue;
+    const float length = free_length(line, holes);
+    if (length < 2) continue;
+    strokes_.push_back({&line, nullptr, line.entry, -line.outward, line.normal, length});
+  }
+}
+
+/// Calls visit(pixel, across) for the missing pixels that are no further than `width` from a
+/// stroke; across: how far, along its normal.
+template <class Visit>
+void LinePainting::for_each_beside(const Stroke& stroke, float width, const Mask& missing,
+                                   const Visit& visit) const {
+  constexpr float before = 12;  ///< pixels: lines may enter at an angle
+  const float after = stroke.end != nullptr ? before : 0;
+  const Eigen::Vector2f from = stroke.start - before * stroke.along;
+  const Eigen::Vector2f to = stroke.start + (stroke.length + after) * stroke.along;
+  const bool steep = std::abs(stroke.along.y()) > std::abs(stroke.along.x());
+  const int main = steep ? 1 : 0;
+  const int side = 1 - main;
+  const int low[] = {part_.x, part_.y};
+  const int high[] = {part_.right(), part_.bottom()};
+  const float slope = stroke.along[side] / stroke.along[main];
+  const float wide = width / std::abs(stroke.along[main]);
+  const float margin = width * std::abs(stroke.along[side]);
+  const int first =
+      std::max(low[main], static_cast<int>(std::floor(std::min(from[main], to[main]) - margin)));
+  const int last = std::min(high[main] - 1,
+                            static_cast<int>(std::ceil(std::max(from[main], to[main]) + margin)));
+  for (int i = first; i <= last; ++i) {
+    const float centre = stroke.start[side] + slope * (static_cast<float>(i) - stroke.start[main]);
+    const int begin = std::max(low[side], static_cast<int>(std::ceil(centre - wide)));
+    const int end = std::min(high[side] - 1, static_cast<int>(std::floor(centre + wide)));
+    for (int k = begin; k <= end; ++k) {
+      const int x = steep ? k : i;
+      const int y = steep ? i : k;
+      if (missing(x, y) == 0) continue;
+      const Eigen::Vector2f pixel(static_cast<float>(x), static_cast<float>(y));
+      const float along = (pixel - stroke.start).dot(stroke.along);
+      if (along < -before || along > stroke.length + after) continue;
+      visit(x, y, (pixel - stroke.start).dot(stroke.normal));
+    }
+  }
+}
+
+/// Gives each pixel beside a stroke to the nearest one.
+void LinePainting::claim(const Mask& missing) {
+  claims_.resize(part_.width, part_.height,
+                 {std::numeric_limits<float>::infinity(), nobody, false});
+  for (std::size_t i = 0; i < strokes_.size(); ++i) {
+    const float handicap = strokes_[i].end != nullptr ? 0.F : 1.F;
+    for_each_beside(strokes_[i], half_width, missing, [&](int x, int y, float across) {
+      Claim& claim = claims_(x - part_.x, y - part_.y);
+      const float distance = std::abs(across) + handicap;
+      if (distance >= claim.distance) return;
+      claim.distance = distance;
+      claim.stroke = static_cast<std::uint8_t>(i);
+    });
+  }
+  for (const Stroke& stroke : strokes_) {
+    for_each_beside(stroke, half_width + feather, missing, [&](int x, int y, float across) {
+      Claim& claim = claims_(x - part_.x, y - part_.y);
+      if (claim.stroke == nobody) return;
+      const Stroke& nearest = strokes_[claim.stroke];
+      const float turned = stroke.normal.dot(nearest.normal);
+      if (std::abs(turned) < side_by_side) return;
+      const Eigen::Vector2f pixel(static_cast<float>(x), static_cast<float>(y));
+      claim.is_between |= across * (pixel - nearest.start).dot(nearest.normal) * turned < 0;
+    });
+  }
+}
+
+void LinePainting::color(int x, int y, Bgr& pixel) const {
+  const Claim& claim = claims_(x - part_.x, y - part_.y);
+  const Stroke& stroke = strokes_[claim.stroke];
+  const Eigen::Vector2f offset =
+      Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y)) - stroke.start;
+  const float across = std::clamp(offset.dot(stroke.normal), -half_width, half_width);
+  const float position = std::min(across + half_width, 2 * half_width - 0.001F);
+  float weight =
+      claim.is_between ? 1.F : std::clamp((half_width - std::abs(across)) / feather, 0.F, 1.F);
+  const Eigen::Array3f smooth = to_channels(pixel);
+  Eigen::Array3f color = profile_at(*stroke.begin, position);
+  if (stroke.end != nullptr) {
+    const float share = std::clamp(offset.dot(stroke.along) / stroke.length, 0.F, 1.F);
+    color += share * (profile_at(*stroke.end, position) - color);
+  } else {
+    const auto& profile = stroke.begin->profile;
+    const Eigen::Array3f dark = (profile[0] + profile[1] + profile[2]) / 3;
+    const Eigen::Array3f bright =
+        (profile[profile.size() - 3] + profile[profile.size() - 2] + profile[profile.size() - 1]) /
+        3;
+    const Eigen::Array3f without = dark + position / (2 * half_width) * (bright - dark);
+    color = own_colors * color + (1 - own_colors) * (smooth + color - without);
+    const float whole = reach * static_cast<float>(stroke.begin->length);
+    weight *= std::clamp((1 - offset.dot(stroke.along) / whole) / fading, 0.F, 1.F);
+  }
+  pixel = to_color(smooth + weight * (color - smooth));
+}
+
+void LinePainting::paint(const std::vector<RimLine>& lines, const Holes& holes, const Rect& objects,
+                         Image<Bgr>& picture) {
+  match(lines);
+  lay_out(lines, holes);
+  if (strokes_.empty()) return;
+  part_ = objects;
+  claim(holes.missing);
+  for_rows(objects.height, [&](Rows rows) {
+    for (int y = objects.y + rows.first; y < objects.y + rows.last; ++y) {
+      for (int x = objects.x; x < objects.right(); ++x) {
+        if (claims_(x - objects.x, y - objects.y).stroke != nobody) color(x, y, picture(x, y));
+      }
+    }
+  });
+}
+
+}  // namespace diminish
