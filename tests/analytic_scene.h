@@ -23,6 +23,7 @@ struct AnalyticScene {
   Eigen::Vector3d box_min{-0.15, -0.1, 0.2};
   Eigen::Vector3d box_max{0.15, 0.1, 0.4};
   bool has_box = true;
+  double wave_m = 0.06;  ///< of the wall's pattern
 
   struct Hit {
     Eigen::Vector3d point;
@@ -49,7 +50,7 @@ struct AnalyticScene {
   /// The brightness changes by several levels per pixel: a shift of a tenth of a pixel shows.
   Eigen::Vector3d color(const Hit& hit) const {
     const Eigen::Vector3d& p = hit.point;
-    const double wave = 2 * std::numbers::pi / 0.06;
+    const double wave = 2 * std::numbers::pi / wave_m;
     if (hit.on_box) return {30, 40 + 15 * std::sin(wave * (p.x() + p.z())), 220};
     return {128 + 60 * std::sin(wave * p.x()), 128 + 60 * std::sin(wave * p.y()), 90};
   }
@@ -141,9 +142,10 @@ struct AnalyticFrame {
   FrameSet frame;
 
   AnalyticFrame(const AnalyticScene& scene, const std::vector<Eigen::Vector3d>& rgbd_eyes,
-                LensModel model = LensModel::plumb_bob)
+                LensModel model = LensModel::plumb_bob,
+                const Eigen::Vector3d& color_eye = {0.05, 0.02, 1.2})
       : rig(small_rig(static_cast<int>(rgbd_eyes.size()), model)) {
-    poses.color_from_world = look_at({0.05, 0.02, 1.2}, {0, 0, 0});
+    poses.color_from_world = look_at(color_eye, {0, 0, 0});
     frame.name = "000000";
     frame.color = scene.color_image(Lens(rig.color), *poses.color_from_world);
     for (std::size_t k = 0; k < rgbd_eyes.size(); ++k) {

@@ -176,10 +176,52 @@ TEST_F(ProgramTest, ReportsOnOnePage) {
               HasSubstr("summary.json: expected the summary that `diminish run` writes"));
 }
 
+TEST_F(ProgramTest, ScansAPlaceAndShowsItLater) {
+  const std::string calendar = testing::recordings_dir() + "/calendar";
+  const std::string room = recording.path("room").string();
+  const auto scanned = Program::run({"scan", calendar, "--out", room});
+  ASSERT_EQ(scanned.exit_code, 0) << scanned.err;
+  EXPECT_THAT(scanned.out, HasSubstr(" keyframes of "));
+
+  // A scan is a recording.
+  ASSERT_EQ(Program::run({"run", room, "--out", recording.path("itself").string()}).exit_code, 0);
+
+  // Without the RGB-D camera.
+  const fs::path lone = recording.path("lone");
+  fs::copy(calendar, lone, fs::copy_options::recursive);
+  const std::string rig = read_text_file(lone / "rig.yaml", 1 << 20);
+  recording.write("lone/rig.yaml", rig.substr(0, rig.find("rgbd:")) + "rgbd: []\n");
+  const auto refused = Program::run({"run", lone.string(), "--out", recording.out()});
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("memory: expected 'on', and a background"));
+  const auto outcome = Program::run(
+      {"run", lone.string(), "--background", room, "--out", recording.out(), "--force"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("truly seen 0.0 %, remembered "));
+  const auto summary = nlohmann::json::parse(read_text_file(out("summary.json"), 1 << 20));
+  EXPECT_EQ(summary["options"]["memory"], "on");
+  EXPECT_GT(summary["pixels"]["background"], 1000);
+  EXPECT_EQ(summary["pixels"]["background"], summary["pixels"]["remembered"]);
+}
+
+TEST_F(ProgramTest, SaysWhatIsWrongWithABackground) {
+  const std::string calendar = testing::recordings_dir() + "/calendar";
+  const auto no_scan = run({"--background", calendar});
+  EXPECT_EQ(no_scan.exit_code, 1);
+  EXPECT_THAT(no_scan.err, HasSubstr("calendar/rig.yaml: rgbd: expected a scan"));
+  const auto off = run({"--background", calendar, "--memory", "off"});
+  EXPECT_EQ(off.exit_code, 2);
+  EXPECT_THAT(off.err, HasSubstr("needs --memory on"));
+  // Fixed poses: whose world would that be?
+  const auto fixed = Program::run({"scan", recording.folder(), "--out", recording.out()});
+  EXPECT_EQ(fixed.exit_code, 1);
+  EXPECT_THAT(fixed.err, HasSubstr("rig.yaml:8: pose.source: expected marker or file"));
+}
+
 TEST_F(ProgramTest, ExplainsItself) {
   const auto help = Program::run({"--help"});
   EXPECT_EQ(help.exit_code, 0);
-  for (const char* command : {"run", "score", "report", "train-color"}) {
+  for (const char* command : {"run", "scan", "score", "report", "train-color"}) {
     EXPECT_THAT(help.out, HasSubstr(command));
   }
   const auto run_help = Program::run({"run", "--help"});

@@ -16,6 +16,7 @@ void add_live(CLI::App& program, int& exit_code);
 void add_markers(CLI::App& program, int& exit_code);
 void add_report(CLI::App& program, int& exit_code);
 void add_run(CLI::App& program, int& exit_code);
+void add_scan(CLI::App& program, int& exit_code);
 void add_score(CLI::App& program, int& exit_code);
 void add_serve(CLI::App& program, int& exit_code);
 void add_sync_check(CLI::App& program, int& exit_code);

@@ -49,6 +49,7 @@ void LiveSetup::add_flags(CLI::App& command) {
       ->check(CLI::Range(0.0, 10.0))
       ->type_name("SECONDS");
   add_option_flags(command, options);
+  background.add_flag(command, options);
 }
 
 std::vector<LiveCamera> LiveSetup::cameras(const Rig& rig) const {
@@ -109,7 +110,9 @@ LiveRun LiveSetup::start() const {
   }
   std::vector<LiveCamera> all = cameras(rig);
   if (draw_clock) all.front().uri = "clock:" + all.front().uri;
-  run.session = std::make_unique<LiveSession>(rig, scene, options, all, live_options);
+  LiveOptions with_background = live_options;
+  with_background.background = background.load();
+  run.session = std::make_unique<LiveSession>(rig, scene, options, all, with_background);
   if (run.recording) {
     run.recording_listener = run.session->on_frame(
         [writer = run.recording](const auto& frame) { writer->offer(frame); });

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "background.h"
 #include "diminish/live.h"
 #include "diminish/recording_writer.h"
 #include "diminish/virtual_camera.h"
@@ -30,6 +31,7 @@ struct LiveSetup {
   std::string virtual_camera;
   bool draw_clock = false;  ///< into the colour camera's pictures
   Options options;
+  Background background;
   LiveOptions live_options;
 
   void add_flags(CLI::App& command);

@@ -29,6 +29,7 @@ int main(int argc, char** argv) {
     diminish::add_serve(program, exit_code);
     diminish::add_view(program, exit_code);
     diminish::add_live(program, exit_code);
+    diminish::add_scan(program, exit_code);
     diminish::add_score(program, exit_code);
     diminish::add_report(program, exit_code);
     diminish::add_bench(program, exit_code);

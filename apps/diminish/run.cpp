@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <atomic>
 #include <csignal>
@@ -8,9 +7,11 @@
 #include <string>
 #include <thread>
 
+#include "background.h"
 #include "commands.h"
 #include "diminish/diminish.h"
 #include "option_flags.h"
+#include "progress.h"
 
 namespace diminish {
 namespace {
@@ -27,23 +28,17 @@ struct RunCommand {
   bool force = false;
   bool preview = false;
   Options options;
+  Background background;
 
   int execute() const;
 };
-
-/// A bar on a terminal, nothing elsewhere.
-void show_progress(std::size_t done, std::size_t total) {
-  if (isatty(STDERR_FILENO) == 0) return;
-  constexpr std::size_t width = 40;
-  const std::size_t filled = total > 0 ? width * done / total : 0;
-  fmt::print(stderr, "\r[{:=<{}}{: <{}}] {}/{}{}", "", filled, "", width - filled, done, total,
-             done == total ? "\n" : "");
-}
 
 int RunCommand::execute() const {
   check(options);
   const Recording input = load_recording(recording);
   const auto source = open_recording(input, options);
+  RunnerOptions runner;
+  runner.background = background.load();
   std::error_code ignored;
   if (std::filesystem::equivalent(recording, out, ignored)) {
     throw Error(out.string() + ": --out is the recording itself, expected another folder");
@@ -53,7 +48,6 @@ int RunCommand::execute() const {
 
   std::signal(SIGINT, [](int) { stop_requested = true; });
   std::signal(SIGTERM, [](int) { stop_requested = true; });
-  RunnerOptions runner;
   runner.threads = threads;
   runner.reconstructions = !preview;
   runner.stop = &stop_requested;
@@ -88,6 +82,7 @@ void add_run(CLI::App& program, int& exit_code) {
       ->check(CLI::Range(1, 1024))
       ->type_name("N");
   add_option_flags(*sub, command->options);
+  command->background.add_flag(*sub, command->options);
   sub->callback([command, &exit_code] { exit_code = command->execute(); });
 }
 

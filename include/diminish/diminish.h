@@ -54,6 +54,7 @@
 #include "diminish/rig_calibration.h"
 #include "diminish/rigid_transform.h"
 #include "diminish/runner.h"
+#include "diminish/scan.h"
 #include "diminish/scene.h"
 #include "diminish/scene_samples.h"
 #include "diminish/score.h"

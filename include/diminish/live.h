@@ -15,6 +15,7 @@
 #include "diminish/frame_set.h"
 #include "diminish/options.h"
 #include "diminish/rig.h"
+#include "diminish/scan.h"
 #include "diminish/scene.h"
 
 namespace diminish {
@@ -97,6 +98,8 @@ struct LiveOptions {
   /// How long a colour image waits for its RGB-D images. 0: 0.02 s longer than the last few needed,
   /// at least 0.06 s.
   double sync_wait_s = 0;
+  /// What was seen of the place before (Pipeline::set_background); null: nothing.
+  std::shared_ptr<const Scan> background;
 };
 
 /// Cameras in, pictures out, until stopped. Each camera has a thread, and so does the pipeline. The

@@ -9,6 +9,7 @@
 #include "diminish/gl_texture.h"
 #include "diminish/options.h"
 #include "diminish/rig.h"
+#include "diminish/scan.h"
 #include "diminish/scene.h"
 
 namespace diminish {
@@ -54,8 +55,16 @@ class DIMINISH_EXPORT Pipeline {
   void take_turn();
   /// For a frame that will not be processed.
   void pass_turn();
-  /// Forgets all that was seen before the next frame.
+  /// Forgets all that was seen before the next frame, the background too.
   void forget();
+
+  /// Fills the memory with what was seen of the place before. Call it before the first frame.
+  /// Throws Error if the scan is of another colour camera, or its world is not the one that the
+  /// rig's poses are in.
+  void set_background(const Scan& scan);
+  /// What is remembered after the frames so far, without objects to remove. Throws Error if the
+  /// rig's poses are not in a world that another recording can share.
+  Scan scan();
 
   /// `result`'s memory is used again. Never throws for what a camera delivered: that is reported.
   void process(const FrameSet& frame, DiminishedFrame& result);

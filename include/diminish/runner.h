@@ -3,11 +3,13 @@
 #include <atomic>
 #include <cstddef>
 #include <functional>
+#include <memory>
 
 #include "diminish/export.h"
 #include "diminish/frame_sink.h"
 #include "diminish/frame_source.h"
 #include "diminish/options.h"
+#include "diminish/scan.h"
 
 namespace diminish {
 
@@ -17,6 +19,8 @@ struct RunnerOptions {
   int threads = 1;
   /// Whether the sink uses DiminishedFrame::reconstruction (Pipeline::want_reconstruction).
   bool reconstructions = true;
+  /// What was seen of the place before (Pipeline::set_background); null: nothing.
+  std::shared_ptr<const Scan> background;
   /// Set it to true from anywhere (such as a signal handler) to end the run after the current
   /// frames.
   const std::atomic<bool>* stop = nullptr;
@@ -30,5 +34,12 @@ struct RunnerOptions {
 DIMINISH_EXPORT std::size_t run(FrameSource& source, const Rig& rig, const Scene& scene,
                                 const Options& options, FrameSink& sink,
                                 const RunnerOptions& runner_options);
+
+/// Keeps what a recording shows of a place: at most 16 of its frames, those that together show
+/// most. What the RGB-D cameras see behind the objects to remove is kept apart, for rigs without
+/// them. Uses `stop` and `progress`. Throws Error if the rig's poses are not in a world that
+/// another recording can share, or if no frame has poses and RGB-D images.
+DIMINISH_EXPORT Scan scan_recording(const Recording& recording, const Options& options,
+                                    const RunnerOptions& runner_options);
 
 }  // namespace diminish

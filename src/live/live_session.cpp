@@ -56,6 +56,7 @@ struct LiveSession::Implementation {
         assembler{make_inboxes(), rgbd_inboxes()} {  // braces: evaluated from left to right
     check_cameras(rig, cameras);
     pipeline.want_reconstruction(false);
+    if (live_options.background) pipeline.set_background(*live_options.background);
     last_good_options = options;
     const double epoch_s = monotonic_now_s();
     for (const LiveCamera& camera : cameras) {

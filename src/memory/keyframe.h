@@ -43,6 +43,7 @@ class Sight {
 /// RGB-D camera's images; `depth` is in the camera's own view, on KeyframeGrid.
 struct Keyframe {
   double stamp_s = 0;
+  bool is_background = false;  ///< of a scan: its time says nothing, and it does not age
   RigidTransform color_from_world;
   std::vector<std::optional<RigidTransform>> color_from_depth;  ///< of each RGB-D camera
   Image<Bgr> picture;
@@ -79,6 +80,11 @@ class KeyframeGrid {
 
   static float depth_m(std::uint16_t depth) {
     return static_cast<float>(depth) * static_cast<float>(unit_m);
+  }
+  /// 0 if it is too far away.
+  static std::uint16_t units(float depth_m) {
+    const float units = depth_m / static_cast<float>(unit_m);
+    return static_cast<std::uint16_t>(units < 65535 ? std::lrint(units) : 0);
   }
   /// The point at a place, in the keyframe's frame. depth: not 0.
   Eigen::Vector3f point_m(int x, int y, std::uint16_t depth) const {
@@ -122,6 +128,12 @@ inline std::optional<Pixel> project(const Projection& lens, const Eigen::Vector3
 inline Eigen::Vector3f transform(const FloatTransform& a_from_b, const Eigen::Vector3f& point_m) {
   const auto& [x, y, z] = std::array{point_m.x(), point_m.y(), point_m.z()};
   return {a_from_b.apply(0, x, y, z), a_from_b.apply(1, x, y, z), a_from_b.apply(2, x, y, z)};
+}
+
+/// How far around the objects to remove a keyframe holds nothing: a cell of the grid, and what
+/// their edges shine onto.
+constexpr int object_margin_px(int grid_step) {
+  return grid_step + 6;
 }
 
 /// How far the depths of the same surface may be apart as two cameras see it.

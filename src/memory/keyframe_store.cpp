@@ -73,7 +73,9 @@ std::size_t KeyframeStore::bytes() const {
 }
 
 void KeyframeStore::drop_older_than(double stamp_s) {
-  std::erase_if(keyframes_, [&](const auto& keyframe) { return keyframe->stamp_s < stamp_s; });
+  std::erase_if(keyframes_, [&](const auto& keyframe) {
+    return !keyframe->is_background && keyframe->stamp_s < stamp_s;
+  });
 }
 
 void KeyframeStore::find_shown(const Keyframe& keyframe, const RigidTransform& color_from_keyframe,

@@ -22,9 +22,11 @@ class KeyframeStore {
   std::size_t size() const { return keyframes_.size(); }
   std::size_t bytes() const;
   const Keyframe& newest() const { return *keyframes_.back(); }
+  const std::vector<std::shared_ptr<Keyframe>>& all() const { return keyframes_; }
 
   /// If there are too many, the one goes that shows least of what the others do not.
   void add(Keyframe keyframe);
+  /// The background stays.
   void drop_older_than(double stamp_s);
   void clear() { keyframes_.clear(); }
 

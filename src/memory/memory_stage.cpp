@@ -1,11 +1,11 @@
 #include "memory/memory_stage.h"
 
 #include <algorithm>
-#include <numeric>
 #include <span>
 #include <utility>
 
 #include "core/tasks.h"
+#include "memory/scan_frames.h"
 
 namespace diminish {
 namespace {
@@ -14,13 +14,19 @@ namespace {
 void report_ages(std::span<const Recollection> recollections, std::span<const std::size_t> pixels,
                  double now_s, MemoryReport& report) {
   std::vector<std::pair<double, std::size_t>> ages;
+  std::size_t all = 0;
   for (std::size_t i = 0; i < recollections.size(); ++i) {
-    if (pixels[i] > 0) ages.emplace_back(now_s - recollections[i].stamp_s(), pixels[i]);
+    if (pixels[i] == 0) continue;
+    if (recollections[i].keyframe().is_background) {
+      report.background_pixels += pixels[i];
+    } else {
+      ages.emplace_back(now_s - recollections[i].keyframe().stamp_s, pixels[i]);
+      all += pixels[i];
+    }
   }
   if (ages.empty()) return;
   std::sort(ages.begin(), ages.end());
   report.oldest_age_s = ages.back().first;
-  const std::size_t all = std::accumulate(pixels.begin(), pixels.end(), std::size_t{0});
   std::size_t younger = 0;
   for (const auto& [age_s, count] : ages) {
     report.median_age_s = age_s;
@@ -41,7 +47,8 @@ void MemoryStage::remember(const RecallInputs& inputs, const SceneSamples& sampl
                                      inputs.options};
   shared_->turns.wait(*turn_);
   if (!shared_->memory) shared_->memory.emplace(shared_->rig);
-  const std::size_t count = shared_->memory->recall(anchored_inputs, recollections_);
+  const std::size_t count = shared_->memory->recall(
+      anchored_inputs, !inputs.poses.color_from_world.has_value(), recollections_);
   shared_->memory->learn(anchored_inputs, samples, objects);
   report.keyframes = shared_->memory->keyframes();
   report.bytes = shared_->memory->bytes();
@@ -58,6 +65,20 @@ void MemoryStage::forget() {
   const Turn turn(*this);
   shared_->turns.wait(*turn_);
   if (shared_->memory) shared_->memory->forget();
+}
+
+void MemoryStage::set_background(const Scan& scan, const Scene& scene) {
+  const Turn turn(*this);
+  shared_->turns.wait(*turn_);
+  shared_->memory.emplace(shared_->rig);
+  shared_->memory->set_background(keyframes_of(scan, shared_->rig, scene));
+}
+
+Scan MemoryStage::scan(const Scene& scene) {
+  const Turn turn(*this);
+  shared_->turns.wait(*turn_);
+  if (!shared_->memory) return make_scan({}, shared_->rig, scene);
+  return make_scan(shared_->memory->all(), shared_->rig, scene);
 }
 
 }  // namespace diminish

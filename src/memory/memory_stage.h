@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/turns.h"
+#include "diminish/scan.h"
 #include "memory/recall_merge.h"
 #include "memory/scene_memory.h"
 
@@ -44,6 +45,11 @@ class MemoryStage {
                 const std::vector<OccluderReport>& objects, Reconstruction& reconstruction,
                 MemoryReport& report);
   void forget();
+
+  /// Fills the memory before the first frame. Throws Error (keyframes_of).
+  void set_background(const Scan& scan, const Scene& scene);
+  /// What is remembered after the frames so far. Throws Error (expect_world).
+  Scan scan(const Scene& scene);
 
  private:
   struct Shared {

@@ -36,8 +36,7 @@ class Recollection {
   void draw(const RecallInputs& inputs);
 
   const Reconstruction& drawn() const { return drawn_; }
-  /// When the keyframe was taken.
-  double stamp_s() const { return keyframe_->stamp_s; }
+  const Keyframe& keyframe() const { return *keyframe_; }
   /// From the keyframe's colours to the frame's.
   const ColorMap& color_map() const { return color_maps_.by_source()[1]; }
   const Witness& witness() const { return witness_; }

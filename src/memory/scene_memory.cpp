@@ -6,6 +6,7 @@
 
 #include "core/rows.h"
 #include "core/tasks.h"
+#include "memory/stands_still.h"
 
 namespace diminish {
 
@@ -20,10 +21,22 @@ SceneMemory::SceneMemory(const Rig& rig)
 }
 
 void SceneMemory::forget() {
-  pending_.steps = 0;
   store_.clear();
+  begin_anew();
+}
+
+void SceneMemory::begin_anew() {
+  pending_.steps = 0;
+  store_.drop_older_than(std::numeric_limits<double>::infinity());
   depth_.forget();
   novelty_.forget();
+  last_keyframe_from_world_.reset();
+  last_from_world_.reset();
+}
+
+void SceneMemory::set_background(std::vector<Keyframe> keyframes) {
+  forget();
+  for (Keyframe& keyframe : keyframes) store_.add(std::move(keyframe));
 }
 
 void SceneMemory::look(const RecallInputs& inputs) {
@@ -35,21 +48,47 @@ void SceneMemory::look(const RecallInputs& inputs) {
   });
 }
 
-std::size_t SceneMemory::recall(const RecallInputs& inputs,
+bool SceneMemory::has_jumped(const RigidTransform& color_from_world, double elapsed_s) const {
+  if (!last_from_world_) return false;
+  constexpr double reach_m = 0.05;
+  constexpr double fastest_m_per_s = 3;
+  constexpr double reach_deg = 5;
+  constexpr double fastest_deg_per_s = 300;
+  const RigidTransform motion = color_from_world * last_from_world_->inverse();
+  return motion.translation.norm() > reach_m + fastest_m_per_s * elapsed_s ||
+         rotation_difference_deg(motion.rotation, Eigen::Matrix3d::Identity()) >
+             reach_deg + fastest_deg_per_s * elapsed_s;
+}
+
+bool SceneMemory::has_lost_its_world(const RecallInputs& inputs) {
+  look(inputs);
+  const auto stood = [&](const Keyframe& keyframe) {
+    return !keyframe.testimonies[0].is_given ||
+           stands_still(keyframe.testimonies[0], testimonies_[0]);
+  };
+  return testimonies_[0].is_given && !(pending_.steps > 0 && stood(pending_.keyframe)) &&
+         std::none_of(store_.all().begin(), store_.all().end(),
+                      [&](const auto& keyframe) { return stood(*keyframe); });
+}
+
+std::size_t SceneMemory::recall(const RecallInputs& inputs, bool is_anchored,
                                 std::vector<Recollection>& recollections) {
   has_looked_ = false;
   const double now_s = inputs.frame.stamp_s;
+  const RigidTransform& color_from_world = *inputs.poses.color_from_world;
   // A recording that begins anew.
-  if (now_s < last_stamp_s_) forget();
+  if (now_s < last_stamp_s_) begin_anew();
+  has_jumped_ = has_jumped(color_from_world, now_s - last_stamp_s_);
   last_stamp_s_ = now_s;
+  last_from_world_ = color_from_world;
   // The last keyframe's steps come one a frame, but within a moment.
   constexpr double moment_s = 0.1;
   do {
     take_step();
   } while (now_s >= pending_.keyframe.stamp_s + moment_s && pending_.steps > 0);
   store_.drop_older_than(now_s - inputs.options.memory_max_age_s);
+  if (is_anchored && keyframes() > 0 && has_lost_its_world(inputs)) begin_anew();
   if (store_.empty() || inputs.region.empty()) return 0;
-  const RigidTransform& color_from_world = *inputs.poses.color_from_world;
   store_.choose(most_recalled, inputs.masks.color, inputs.region, color_from_world, chosen_);
   if (chosen_.empty()) return 0;
   look(inputs);
@@ -64,7 +103,7 @@ std::size_t SceneMemory::recall(const RecallInputs& inputs,
 
 bool SceneMemory::is_worth_a_keyframe(const RecallInputs& inputs) const {
   if (pending_.steps > 0) return false;
-  if (store_.empty()) return true;
+  if (!last_keyframe_from_world_) return true;
   constexpr double shortest_s = 0.2;
   constexpr double longest_s = 2;
   constexpr int moved_px = 8;
@@ -74,7 +113,7 @@ bool SceneMemory::is_worth_a_keyframe(const RecallInputs& inputs) const {
   if (since_s < shortest_s) return false;
   if (since_s >= longest_s) return true;
   const RigidTransform motion =
-      *inputs.poses.color_from_world * store_.newest().color_from_world.inverse();
+      *inputs.poses.color_from_world * last_keyframe_from_world_->inverse();
   const Rect& objects = inputs.objects;
   const int objects_moved =
       std::max({std::abs(objects.x - last_objects_.x), std::abs(objects.y - last_objects_.y),
@@ -98,8 +137,7 @@ bool SceneMemory::has_just_lost(const std::vector<OccluderReport>& objects, doub
 void SceneMemory::leave_out_objects(Keyframe& keyframe) {
   const Mask& objects = pending_.objects;
   const int step = grid_.step();
-  // A cell of the grid, and what their edges shine onto.
-  const int margin = step + 6;
+  const int margin = object_margin_px(step);
   const Rect part = grow(last_objects_, margin);
   object_columns_.resize(static_cast<std::size_t>(objects.width()));
   for (int y = 0; y < keyframe.depth.height(); ++y) {
@@ -127,12 +165,13 @@ void SceneMemory::learn(const RecallInputs& inputs, const SceneSamples& samples,
                         const std::vector<OccluderReport>& objects) {
   const FrameSet& frame = inputs.frame;
   const bool lost = has_just_lost(objects, frame.stamp_s);
-  if (lost || !is_worth_a_keyframe(inputs)) return;
+  if (lost || has_jumped_ || !is_worth_a_keyframe(inputs)) return;
   look(inputs);
   const bool sees = std::any_of(testimonies_.begin(), testimonies_.end(),
                                 [](const Testimony& testimony) { return testimony.is_given; });
   if (!sees) return;
   last_keyframe_s_ = frame.stamp_s;
+  last_keyframe_from_world_ = inputs.poses.color_from_world;
   last_objects_ = inputs.objects;
   Keyframe& keyframe = pending_.keyframe;
   keyframe = {};
@@ -146,6 +185,11 @@ void SceneMemory::learn(const RecallInputs& inputs, const SceneSamples& samples,
                                       [](const auto& object) { return !object.message.empty(); });
   depth_.draw(frame, inputs.poses, inputs.masks, samples, inputs.options);
   pending_.steps = 2;
+}
+
+const std::vector<std::shared_ptr<Keyframe>>& SceneMemory::all() {
+  while (pending_.steps > 0) take_step();
+  return store_.all();
 }
 
 void SceneMemory::take_step() {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "diminish/diminished_frame.h"
@@ -21,7 +22,9 @@ class SceneMemory {
   /// Prepares what this frame is to be reminded of (at most `most_recalled`), and forgets what the
   /// RGB-D cameras see to be gone. inputs.poses: anchored. recollections: as many as are used.
   /// Returns their number.
-  std::size_t recall(const RecallInputs& inputs, std::vector<Recollection>& recollections);
+  /// is_anchored: the world is where the first RGB-D camera stands.
+  std::size_t recall(const RecallInputs& inputs, bool is_anchored,
+                     std::vector<Recollection>& recollections);
 
   /// Takes a keyframe if there is something new; what that costs is spread over this frame and the
   /// next two, after which the keyframe is used. (They recall, so that the result does not depend
@@ -30,7 +33,13 @@ class SceneMemory {
   void learn(const RecallInputs& inputs, const SceneSamples& samples,
              const std::vector<OccluderReport>& objects);
 
+  /// All, the background too.
   void forget();
+
+  /// Keyframes of an earlier recording; they are the oldest.
+  void set_background(std::vector<Keyframe> keyframes);
+  /// Oldest first. Completes the one that is pending.
+  const std::vector<std::shared_ptr<Keyframe>>& all();
 
   /// With the one that is pending.
   std::size_t keyframes() const { return store_.size() + (pending_.steps > 0 ? 1 : 0); }
@@ -39,9 +48,15 @@ class SceneMemory {
   }
 
  private:
+  void begin_anew();
   bool is_worth_a_keyframe(const RecallInputs& inputs) const;
   /// Whether an object is lost that was there a moment ago: it may be anywhere.
   bool has_just_lost(const std::vector<OccluderReport>& objects, double stamp_s);
+  /// Whether the camera cannot have come here since the last frame: it was moved between two
+  /// recordings, or a pose is wrong.
+  bool has_jumped(const RigidTransform& color_from_world, double elapsed_s) const;
+  /// Whether the camera that is the world still stands where it stood.
+  bool has_lost_its_world(const RecallInputs& inputs);
   void look(const RecallInputs& inputs);
   /// The next one towards a keyframe, if one is pending.
   void take_step();
@@ -64,11 +79,14 @@ class SceneMemory {
   };
   Pending pending_;
   std::vector<std::uint8_t> object_columns_;
-  bool has_looked_ = false;  ///< in this frame
-  double last_stamp_s_ = 0;  ///< of any frame
+  bool has_looked_ = false;                        ///< in this frame
+  bool has_jumped_ = false;                        ///< since the last frame
+  std::optional<RigidTransform> last_from_world_;  ///< the colour camera's pose in the last frame
+  double last_stamp_s_ = 0;                        ///< of any frame
   double last_keyframe_s_ = 0;
-  Rect last_objects_;            ///< in the last keyframe
-  std::vector<double> found_s_;  ///< when each object was last found
+  std::optional<RigidTransform> last_keyframe_from_world_;  ///< nothing: none was taken
+  Rect last_objects_;                                       ///< in the last keyframe
+  std::vector<double> found_s_;                             ///< when each object was last found
 };
 
 /// The poses with a world: if none is known, it is where the first RGB-D camera's depth sensor is,

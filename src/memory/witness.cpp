@@ -44,6 +44,7 @@ Witness::Witness(const Rig& rig, const KeyframeGrid& grid)
     cameras_.push_back({of_camera,
                         TestimonyComparison(of_camera),
                         false,
+                        false,
                         FloatTransform(RigidTransform()),
                         {},
                         {},
@@ -118,13 +119,13 @@ void Witness::judge(const Inputs& inputs, Image<std::uint16_t>& depth,
   for (std::size_t k = 0; k < cameras_.size(); ++k) {
     Camera& camera = cameras_[k];
     const auto& color_from_depth = inputs.poses.color_from_depth[k];
-    camera.is_asked = inputs.now[k].is_given && color_from_depth && !keyframe.sights[k].empty();
-    if (camera.is_asked) {
+    camera.looks = inputs.now[k].is_given && color_from_depth;
+    camera.is_asked = camera.looks && !keyframe.sights[k].empty();
+    if (camera.looks) {
       camera.from_keyframe =
           FloatTransform(color_from_depth->inverse() * inputs.color_from_keyframe);
-    } else {
-      camera.now.resize(0, 0);
     }
+    if (!camera.is_asked) camera.now.resize(0, 0);
   }
   find_parts(inputs);
   for_tasks(cameras_.size(), [&](std::size_t k) {
@@ -161,22 +162,23 @@ void Witness::judge_row(const Inputs& inputs, int y, Image<std::uint16_t>& depth
   std::int32_t places[KeyframeGrid::most_columns];
   for (std::size_t k = 0; k < cameras_.size(); ++k) {
     const Camera& camera = cameras_[k];
-    if (!camera.is_asked) continue;
-    const Sight* const sights = keyframe.sights[k].row(y) + part_.x;
+    if (!camera.looks) continue;
+    const Sight* const sights = camera.is_asked ? keyframe.sights[k].row(y) + part_.x : nullptr;
     bool any = false;
     for (int x = 0; x < part_.width; ++x) {
+      const Sight sight = sights ? sights[x] : Sight(Sight::aside, 0);
       looked_m[x] = 0;
-      if (kept[x] == 0 || sights[x].kind() == Sight::through) continue;
-      if (sights[x].kind() != Sight::aside) {
-        const Verdict verdict = camera.then.data()[sights[x].place()];
+      if (kept[x] == 0 || sight.kind() == Sight::through) continue;
+      if (sight.kind() != Sight::aside) {
+        const Verdict verdict = camera.then.data()[sight.place()];
         if (is_changed(verdict)) {
-          if (sights[x].kind() == Sight::same && verdict == Verdict::gone) {
+          if (sight.kind() == Sight::same && verdict == Verdict::gone) {
             gone.push_back(grid_.point_m(part_.x + x, y, kept[x]));
           }
           kept[x] = 0;
           continue;
         }
-        if (sights[x].kind() == Sight::same) continue;
+        if (sight.kind() == Sight::same) continue;
       }
       looked_m[x] = KeyframeGrid::depth_m(kept[x]);
       any = true;

@@ -78,6 +78,12 @@ struct Pipeline::Implementation {
 
   void set_options(const Options& wanted) {
     check(wanted, scene);
+    if (rig.rgbd.empty() && wanted.memory != "on") {
+      throw Error(
+          "memory: expected 'on', and a background (diminish scan): the rig has no RGB-D "
+          "camera (rgbd: []), got '" +
+          wanted.memory + "'");
+    }
     backend.choose(wanted.backend);
     occluders.draw_by(backend.mask_drawer());
     options = wanted;
@@ -197,6 +203,13 @@ void Pipeline::pass_turn() {
 }
 void Pipeline::forget() {
   implementation_->memory.forget();
+}
+
+void Pipeline::set_background(const Scan& scan) {
+  implementation_->memory.set_background(scan, implementation_->scene);
+}
+Scan Pipeline::scan() {
+  return implementation_->memory.scan(implementation_->scene);
 }
 
 void Pipeline::process(const FrameSet& frame, DiminishedFrame& result) {

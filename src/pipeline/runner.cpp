@@ -39,6 +39,10 @@ std::size_t run(FrameSource& source, const Rig& rig, const Scene& scene, const O
     free_slots.push(slots.back().get());
   }
 
+  if (runner_options.background) {
+    slots.front()->pipeline.set_background(*runner_options.background);
+  }
+
   // An exception from a filter would cancel the loops inside other frames in progress. So the error
   // waits for its turn: the frames before it are delivered, then it is thrown.
   std::size_t frames_done = 0;

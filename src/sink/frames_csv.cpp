@@ -49,7 +49,7 @@ std::string marker_ids(const std::vector<Marker>& markers) {
 }
 
 std::string ages(const FrameReport& report) {
-  if (report.remembered_pixels == 0) return ",,";
+  if (report.remembered_pixels <= report.memory.background_pixels) return ",,";
   return fmt::format(",{:.3f},{:.3f}", report.memory.median_age_s, report.memory.oldest_age_s);
 }
 
@@ -81,7 +81,7 @@ FramesCsv::FramesCsv(const std::filesystem::path& file, const Rig& rig)
     header += pose_columns("color_from_" + camera.name + "_depth");
   }
   header += ",occluders,mask_pixels,valid_pixels,missing_pixels,witnessed_pixels,remembered_pixels";
-  header += ",remembered_median_age_s,remembered_oldest_age_s,keyframes";
+  header += ",background_pixels,remembered_median_age_s,remembered_oldest_age_s,keyframes";
   for (const TimeRow& row : time_rows()) header += fmt::format(",{}_ms", row.key);
   header += ",messages,faults\n";
   stream_ << header << std::flush;
@@ -106,7 +106,8 @@ void FramesCsv::append(const DiminishedFrame& frame) {
                      known ? found_occluders(report.occluders, cameras_) : in_quotes(""),
                      report.mask_pixels, report.valid_pixels, report.missing_pixels,
                      report.witnessed_pixels, report.remembered_pixels);
-  row += ages(report) + fmt::format(",{}", report.memory.keyframes);
+  row += fmt::format(",{}", report.memory.background_pixels) + ages(report) +
+         fmt::format(",{}", report.memory.keyframes);
   for (const double ms : times_of(report)) row += fmt::format(",{:.3f}", ms);
   row += fmt::format(",{},{}\n", joined(report.messages), joined(report.faults));
   // One write per row, so that an interrupted run leaves whole rows.

@@ -137,7 +137,8 @@ void ResultWriter::Implementation::write_summary(bool interrupted,
                        {"valid", statistics.valid_pixels()},
                        {"missing", statistics.missing_pixels()},
                        {"witnessed", statistics.witnessed_pixels()},
-                       {"remembered", statistics.remembered_pixels()}};
+                       {"remembered", statistics.remembered_pixels()},
+                       {"background", statistics.background_pixels()}};
   summary["evidence"] = to_text(statistics.shares(), 1);
   if (const auto ages = statistics.remembered_ages()) {
     summary["remembered_age_s"] = {{"median", ages->median_s}, {"oldest", ages->oldest_s}};

@@ -27,7 +27,8 @@ void RunStatistics::add(const FrameReport& report) {
   missing_pixels_ += report.missing_pixels;
   witnessed_pixels_ += report.witnessed_pixels;
   remembered_pixels_ += report.remembered_pixels;
-  if (report.remembered_pixels > 0) {
+  background_pixels_ += report.memory.background_pixels;
+  if (report.remembered_pixels > report.memory.background_pixels) {
     median_ages_s_.push_back(report.memory.median_age_s);
     oldest_age_s_ = std::max(oldest_age_s_, report.memory.oldest_age_s);
   }
@@ -63,6 +64,11 @@ std::string RunStatistics::table() const {
     text +=
         fmt::format("Remembered pixels were seen {:.1f} s before (median), the oldest {:.1f} s\n",
                     ages->median_s, ages->oldest_s);
+  }
+  if (background_pixels_ > 0) {
+    text += fmt::format(
+        "Of the remembered pixels {:.1f} % come from the background's scan\n",
+        100 * static_cast<double>(background_pixels_) / static_cast<double>(remembered_pixels_));
   }
   if (skipped_ > 0) text += fmt::format("{} frames skipped: no colour image\n", skipped_);
   for (const auto& [message, count] : messages_) {

@@ -99,8 +99,7 @@ TEST(Rig, EachWrongValueIsNamed) {
       {"name: rgbd0", "name: ''", "rig.yaml:3: rgbd[0].name: "},
       {"name: rgbd0", "name: \"a\\nb\"", "rig.yaml:3: rgbd[0].name: "},
       {"name: rgbd0", "name: color", "rgbd[0].name: expected another name than 'color'"},
-      {"rgbd:\n", "rgbd: []\npose:\n  list:\n",
-       "rig.yaml:2: rgbd: expected at least one RGB-D camera"},
+      {"rgbd:\n", "others:\n", "rig.yaml:2: others: unknown key"},
       {"rgbd:\n", "pose: {source: []}\nrgbd:\n", "pose.source: expected a text, got a list"},
       {"rgbd:\n", "poses: {}\nrgbd:\n", "rig.yaml:2: poses: unknown key"},
   };

@@ -121,7 +121,6 @@ void check_rigid_transform(const RigidTransform& transform, const Config& place)
 void check_rig(const Rig& rig, const Config& place) {
   check_intrinsics(rig.color, place.find("color"));
   const Config cameras = place.find("rgbd");
-  if (rig.rgbd.empty()) cameras.fail("expected at least one RGB-D camera");
   if (rig.rgbd.size() > max_rgbd_cameras) {
     cameras.fail(fmt::format("expected at most {} RGB-D cameras", max_rgbd_cameras));
   }

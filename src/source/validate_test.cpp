@@ -93,7 +93,7 @@ TEST(Validate, SeesInARigWhatNoFileCanHold) {
   rig.rgbd[0].color_from_depth.rotation(0, 0) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT(error_of([&] { validate(rig); }), HasSubstr("rgbd[0].color_from_depth.rotation: "));
   rig.rgbd.clear();
-  EXPECT_EQ(error_of([&] { validate(rig); }), "rgbd: expected at least one RGB-D camera");
+  EXPECT_NO_THROW(validate(rig)) << "the memory may do without RGB-D cameras";
 }
 
 /// The settings of an occluder, to change them.

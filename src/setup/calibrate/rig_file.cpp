@@ -7,6 +7,7 @@
 #include "diminish/error.h"
 #include "setup/calibrate/yaml_edit.h"
 #include "sink/partial_file.h"
+#include "source/rig_yaml.h"
 
 namespace diminish {
 namespace {
@@ -16,35 +17,6 @@ std::pair<std::string, std::string> split_name(const std::string& camera) {
   const std::size_t bar = camera.rfind('_');
   if (bar == std::string::npos || bar == 0) return {"", ""};
   return {camera.substr(0, bar), camera.substr(bar + 1)};
-}
-
-/// The shortest text with the same nine digits.
-std::string number(double value) {
-  return fmt::format("{:.9g}", value);
-}
-
-std::string as_yaml(const Intrinsics& camera) {
-  std::string distortion;
-  for (std::size_t i = 0; i < coefficient_count(camera.lens_model); ++i) {
-    distortion += (i == 0 ? "" : ", ") + fmt::format("{:.6g}", camera.distortion[i]);
-  }
-  const bool is_usual = camera.lens_model == LensModel::plumb_bob;
-  const std::string model =
-      is_usual ? "" : fmt::format("distortion_model: {}, ", name_of(camera.lens_model));
-  return fmt::format(
-      "{{width: {}, height: {}, camera_matrix: [{:.3f}, {:.3f}, {:.3f}, {:.3f}], {}distortion: "
-      "[{}]}}",
-      camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy, model, distortion);
-}
-
-std::string as_yaml(const RigidTransform& transform) {
-  std::string rotation;
-  for (int i = 0; i < 9; ++i) {
-    rotation += (i == 0 ? "" : ", ") + number(transform.rotation(i / 3, i % 3));
-  }
-  const Eigen::Vector3d& t = transform.translation;
-  return fmt::format("{{rotation: [{}], translation: [{}, {}, {}]}}", rotation, number(t.x()),
-                     number(t.y()), number(t.z()));
 }
 
 }  // namespace

@@ -1,0 +1,136 @@
+#include "sink/recording_folder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <opencv2/imgcodecs.hpp>
+#include <set>
+#include <system_error>
+#include <type_traits>
+
+#include "core/mat.h"
+#include "diminish/error.h"
+#include "sink/partial_file.h"
+
+namespace diminish {
+namespace {
+
+constexpr int jpeg_quality = 95;
+
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  if (std::filesystem::exists(folder, error) && !std::filesystem::is_empty(folder, error)) {
+    throw Error(Error::io,
+                folder.string() + ": expected an empty folder for the recording, or none");
+  }
+  std::filesystem::create_directories(folder, error);
+  if (error) throw Error(Error::io, folder.string() + ": cannot be made: " + error.message());
+}
+
+bool are_equal(const ImageView<Bgr>& a, const ImageView<Bgr>& b) {
+  if (a.width() != b.width() || a.height() != b.height()) return false;
+  for (int y = 0; y < a.height(); ++y) {
+    if (!std::equal(a.row(y), a.row(y) + a.width(), b.row(y))) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+void copy_to(const std::filesystem::path& from, const std::filesystem::path& to) {
+  std::error_code error;
+  std::filesystem::create_directories(to.parent_path(), error);
+  std::filesystem::copy(from, to, std::filesystem::copy_options::recursive, error);
+  if (error) throw Error(Error::io, from.string() + ": cannot be copied: " + error.message());
+}
+
+RecordingFolder::RecordingFolder(std::filesystem::path folder, const Rig& rig,
+                                 const std::filesystem::path& scene_file, const Scene& scene,
+                                 Pictures pictures)
+    : folder_(std::move(folder)), scene_file_(scene_file), pictures_(pictures) {
+  make_folder(folder_);
+  copy_to(scene_file, folder_ / "scene.yaml");
+  std::set<std::filesystem::path> named;
+  for (const OccluderSpec& occluder : scene.occluders) {
+    if (!occluder.settings) continue;
+    for (const std::filesystem::path& path : occluder.settings->files()) named.insert(path);
+  }
+  for (const std::filesystem::path& path : named) copy_to(path, place_of(path));
+  color_ = make_stream("color", "color");
+  for (const RgbdCamera& camera : rig.rgbd) {
+    rgbd_color_.push_back(make_stream(camera.name + "_color", camera.name + "/color"));
+    rgbd_depth_.push_back(make_stream(camera.name + "_depth", camera.name + "/depth"));
+  }
+}
+
+std::filesystem::path RecordingFolder::place_of(const std::filesystem::path& named) const {
+  const std::filesystem::path relative =
+      named.lexically_normal().lexically_relative(scene_file_.parent_path().lexically_normal());
+  if (relative.empty() || *relative.begin() == "..") {
+    throw Error(scene_file_.string() + ": " + named.string() +
+                ": expected a path inside the file's folder, so that a recording can hold it");
+  }
+  return folder_ / relative;
+}
+
+RecordingFolder::Stream RecordingFolder::make_stream(const std::string& list,
+                                                     const std::string& folder) const {
+  std::error_code error;
+  std::filesystem::create_directories(folder_ / folder, error);
+  if (error)
+    throw Error(Error::io, (folder_ / folder).string() + ": cannot be made: " + error.message());
+  const std::filesystem::path file = folder_ / (list + ".txt");
+  Stream stream;
+  stream.folder = folder;
+  stream.list.open(file);
+  stream.list << "# timestamp filename\n" << std::flush;
+  if (!stream.list) throw Error(Error::io, file.string() + ": cannot be written");
+  return stream;
+}
+
+void RecordingFolder::write(const FrameSet& frame, const std::string& name) {
+  for (std::size_t k = 0; k < frame.rgbd.size(); ++k) {
+    const RgbdFrame& rgbd = frame.rgbd[k];
+    if (!rgbd.available()) continue;
+    if (are_equal(rgbd.color, frame.color)) {
+      add(rgbd_color_[k], rgbd.color_stamp_s, file_of(color_, name, true));
+    } else {
+      write_image(rgbd_color_[k], rgbd.color, rgbd.color_stamp_s, name);
+    }
+    write_image(rgbd_depth_[k], rgbd.depth, rgbd.depth_stamp_s, name);
+  }
+  write_image(color_, frame.color, frame.stamp_s, name);
+}
+
+std::string RecordingFolder::file_of(const Stream& stream, const std::string& name,
+                                     bool is_color) const {
+  return stream.folder + "/" + name + extension(is_color);
+}
+
+template <class Pixel>
+void RecordingFolder::write_image(Stream& stream, const InputImage<Pixel>& image, double stamp_s,
+                                  const std::string& name) {
+  // Two frames may share an RGB-D image, and the timestamps in a list must increase.
+  if (stamp_s <= stream.last_stamp_s) return;
+  constexpr bool is_color = std::is_same_v<Pixel, Bgr>;
+  const std::string file = file_of(stream, name, is_color);
+  const bool is_jpeg = is_color && pictures_ == Pictures::jpeg;
+  const std::vector<int> parameters = is_jpeg
+                                          ? std::vector<int>{cv::IMWRITE_JPEG_QUALITY, jpeg_quality}
+                                          : std::vector<int>{};  // without a level, as in write_png
+  if (!cv::imencode(extension(is_color), as_mat(image), bytes_, parameters)) {
+    throw Error(Error::io, (folder_ / file).string() + ": cannot be encoded");
+  }
+  write_file(folder_ / file, {reinterpret_cast<const char*>(bytes_.data()), bytes_.size()});
+  add(stream, stamp_s, file);
+}
+
+void RecordingFolder::add(Stream& stream, double stamp_s, const std::string& file) const {
+  stream.list << fmt::format("{:.6f} {}\n", stamp_s, file) << std::flush;
+  if (!stream.list) {
+    throw Error(Error::io, (folder_ / stream.folder).string() + ": its list cannot be written");
+  }
+  stream.last_stamp_s = stamp_s;
+}
+
+}  // namespace diminish

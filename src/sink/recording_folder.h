@@ -1,0 +1,60 @@
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "diminish/frame_set.h"
+#include "diminish/rig.h"
+#include "diminish/scene.h"
+
+namespace diminish {
+
+/// Writes a recording (docs/recording-format.md), without its rig.yaml. Depth is lossless. The
+/// folder holds complete images and lists at any moment.
+class RecordingFolder {
+ public:
+  enum class Pictures { jpeg, png };
+
+  /// Makes the folder and copies scene.yaml and the files that it names into it. Throws Error if
+  /// the folder is not empty or a file cannot be copied.
+  RecordingFolder(std::filesystem::path folder, const Rig& rig,
+                  const std::filesystem::path& scene_file, const Scene& scene, Pictures pictures);
+
+  const std::filesystem::path& path() const { return folder_; }
+  /// Where a file or folder belongs that scene.yaml names. Throws Error if it is not below
+  /// scene.yaml's folder.
+  std::filesystem::path place_of(const std::filesystem::path& named) const;
+  /// Adds a frame; its images are called `name`. An image with the timestamp of the one before is
+  /// that one, and one that is the colour camera's picture is not written again. Throws Error.
+  void write(const FrameSet& frame, const std::string& name);
+
+ private:
+  /// A sensor's folder and list.
+  struct Stream {
+    std::string folder;  ///< relative: "rgbd0/depth"
+    std::ofstream list;
+    double last_stamp_s = -1;
+  };
+  Stream make_stream(const std::string& list, const std::string& folder) const;
+  const char* extension(bool is_color) const {
+    return is_color && pictures_ == Pictures::jpeg ? ".jpg" : ".png";
+  }
+  std::string file_of(const Stream& stream, const std::string& name, bool is_color) const;
+  template <class Pixel>
+  void write_image(Stream& stream, const InputImage<Pixel>& image, double stamp_s,
+                   const std::string& name);
+  void add(Stream& stream, double stamp_s, const std::string& file) const;
+
+  std::filesystem::path folder_, scene_file_;
+  Pictures pictures_;
+  Stream color_;
+  std::vector<Stream> rgbd_color_, rgbd_depth_;
+  std::vector<std::uint8_t> bytes_;
+};
+
+/// Copies a file or folder; makes the folders that are missing. Throws Error.
+void copy_to(const std::filesystem::path& from, const std::filesystem::path& to);
+
+}  // namespace diminish
