@@ -88,9 +88,9 @@ bool KeyframeDepth::continues(const BackgroundPlane& plane, int x, int y, const 
   constexpr float on_plane = 0.03F;
   constexpr int reach = 2;
   constexpr int alike = 300;  // squared levels
+  if (!(end.inverse_z > 0)) return false;
   const Eigen::Vector2f ray = grid_.ray(end.x, end.y);
-  if (!(end.inverse_z > 0) ||
-      std::abs(plane.inverse_depth(ray.x(), ray.y()) - end.inverse_z) > on_plane * end.inverse_z) {
+  if (std::abs(plane.inverse_depth(ray.x(), ray.y()) - end.inverse_z) > on_plane * end.inverse_z) {
     return false;
   }
   const Rect around = intersect(grow({end.x, end.y, 1, 1}, reach), colors_.bounds());
