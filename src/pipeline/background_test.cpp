@@ -46,7 +46,8 @@ class Background : public ::testing::Test {
 
 TEST_F(Background, IsShownWithoutAnyRgbdCameraAndSaysSo) {
   const Scan room = scan_recording(recording, options, {});
-  for (const std::string& backend : Registry<Reconstructor>::names()) {
+  // Not what other tests have registered.
+  for (const std::string backend : {"cpu", "reference", "gl", "gl_geometry"}) {
     options.backend = backend;
     std::unique_ptr<Pipeline> with;
     try {
