@@ -68,7 +68,6 @@ class MemoryTest : public ::testing::Test {
     sampler.sample(now.frame, now.poses, masks, samples);
     OccluderReport report;
     if (moment.is_lost) report.message = "board: not found";
-    const MemoryStage::Turn turn(memory);
     memory.remember({now.frame, now.poses, masks, moment.object, region, maps, options}, samples,
                     {report}, result, memory_report = {});
     return result;

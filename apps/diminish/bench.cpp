@@ -150,7 +150,29 @@ void BenchCommand::measure_latency(const Recording& input, const std::vector<Fra
   figures.allocations = distribution_of(std::move(counts));
 }
 
-/// The chosen backend beside the CPU's, in turn: a machine whose speed drifts slows both.
+/// Two pipelines, frame by frame in turn: a machine whose speed drifts slows both.
+/// each(first_ms, second_ms, report): the second's report.
+template <class Each>
+void process_in_turn(Pipeline& first, Pipeline& second, const std::vector<FrameSet>& loaded,
+                     double seconds, const Each& each) {
+  constexpr std::size_t fewest_frames = 20;
+  constexpr std::size_t warm_up = fewest_frames / 2;  // lets memory grow to its size
+  DiminishedFrame result;
+  const auto ms_of = [&](Pipeline& pipeline, const FrameSet& frame) {
+    const Clock::time_point begun = Clock::now();
+    pipeline.process(frame, result);
+    return 1000 * seconds_since(begun);
+  };
+  const Clock::time_point start = Clock::now();
+  for (std::size_t i = 0; i < warm_up + fewest_frames || seconds_since(start) < seconds; ++i) {
+    const FrameSet& frame = loaded[i % loaded.size()];
+    const double first_ms = ms_of(first, frame);
+    const double second_ms = ms_of(second, frame);
+    if (i >= warm_up) each(first_ms, second_ms, result.report);
+  }
+}
+
+/// The chosen backend beside the CPU's.
 void BenchCommand::measure_backend(const Recording& input, const std::vector<FrameSet>& loaded,
                                    Figures& figures) const {
   Options by_cpu = options;
@@ -158,29 +180,21 @@ void BenchCommand::measure_backend(const Recording& input, const std::vector<Fra
   Pipeline chosen(input.rig, input.scene, options);
   Pipeline cpu(input.rig, input.scene, by_cpu);
   chosen.want_reconstruction(false);
-  DiminishedFrame result;
   std::vector<double> chosen_ms;
   std::vector<double> cpu_ms;
   std::vector<std::pair<std::string, std::vector<double>>> passes;
-  constexpr std::size_t fewest_frames = 20;
-  const Clock::time_point start = Clock::now();
-  for (std::size_t i = 0; i < fewest_frames || seconds_since(start) < seconds; ++i) {
-    const FrameSet& frame = loaded[i % loaded.size()];
-    const Clock::time_point cpu_start = Clock::now();
-    cpu.process(frame, result);
-    const Clock::time_point chosen_start = Clock::now();
-    chosen.process(frame, result);
-    const DrawingReport& drawing = result.report.drawing;
-    if (i == 0) continue;  // lets memory grow to its final size
-    chosen_ms.push_back(1000 * seconds_since(chosen_start));
-    cpu_ms.push_back(std::chrono::duration<double, std::milli>(chosen_start - cpu_start).count());
-    figures.device = drawing.device;
-    passes.resize(drawing.passes.size());
-    for (std::size_t k = 0; k < passes.size(); ++k) {
-      passes[k].first = drawing.passes[k].name;
-      passes[k].second.push_back(drawing.passes[k].milliseconds);
-    }
-  }
+  process_in_turn(cpu, chosen, loaded, seconds,
+                  [&](double of_cpu_ms, double of_chosen_ms, const FrameReport& report) {
+                    cpu_ms.push_back(of_cpu_ms);
+                    chosen_ms.push_back(of_chosen_ms);
+                    const DrawingReport& drawing = report.drawing;
+                    figures.device = drawing.device;
+                    passes.resize(drawing.passes.size());
+                    for (std::size_t k = 0; k < passes.size(); ++k) {
+                      passes[k].first = drawing.passes[k].name;
+                      passes[k].second.push_back(drawing.passes[k].milliseconds);
+                    }
+                  });
   figures.frame_ms = distribution_of(std::move(chosen_ms)).p50;
   figures.cpu_frame_ms = distribution_of(std::move(cpu_ms)).p50;
   for (auto& [name, times] : passes) {
@@ -188,7 +202,7 @@ void BenchCommand::measure_backend(const Recording& input, const std::vector<Fra
   }
 }
 
-/// Each frame with the memory beside the same without, in turn.
+/// Each frame with the memory beside the same without.
 void BenchCommand::measure_memory(const Recording& input, const std::vector<FrameSet>& loaded,
                                   Figures& figures) const {
   Options without = options;
@@ -196,24 +210,15 @@ void BenchCommand::measure_memory(const Recording& input, const std::vector<Fram
   Pipeline remembering(input.rig, input.scene, options);
   Pipeline forgetful(input.rig, input.scene, without);
   for (Pipeline* pipeline : {&remembering, &forgetful}) pipeline->want_reconstruction(false);
-  DiminishedFrame result;
   std::vector<double> remembering_ms;
   std::vector<double> forgetful_ms;
   std::vector<double> more_ms;
-  constexpr std::size_t fewest_frames = 20;
-  const Clock::time_point start = Clock::now();
-  for (std::size_t i = 0; i < fewest_frames || seconds_since(start) < seconds; ++i) {
-    const FrameSet& frame = loaded[i % loaded.size()];
-    const Clock::time_point forgetful_start = Clock::now();
-    forgetful.process(frame, result);
-    const Clock::time_point remembering_start = Clock::now();
-    remembering.process(frame, result);
-    if (i < loaded.size() && i < fewest_frames / 2) continue;  // lets memory grow to its size
-    remembering_ms.push_back(1000 * seconds_since(remembering_start));
-    forgetful_ms.push_back(
-        std::chrono::duration<double, std::milli>(remembering_start - forgetful_start).count());
-    more_ms.push_back(remembering_ms.back() - forgetful_ms.back());
-  }
+  process_in_turn(forgetful, remembering, loaded, seconds,
+                  [&](double without_ms, double with_ms, const FrameReport&) {
+                    forgetful_ms.push_back(without_ms);
+                    remembering_ms.push_back(with_ms);
+                    more_ms.push_back(with_ms - without_ms);
+                  });
   figures.remembering_frame_ms = distribution_of(std::move(remembering_ms)).p50;
   figures.forgetful_frame_ms = distribution_of(std::move(forgetful_ms)).p50;
   figures.memory_ms = distribution_of(std::move(more_ms));

@@ -31,8 +31,8 @@ inline constexpr std::uint8_t unknown = 255;  ///< part of the object, with noth
 struct MemoryReport {
   std::size_t keyframes = 0;  ///< pictures of the colour camera
   std::size_t bytes = 0;
-  std::size_t background_pixels =
-      0;  ///< of the remembered ones (provenance::remembered): of a scan
+  /// Of the remembered ones (provenance::remembered): of a scan.
+  std::size_t background_pixels = 0;
   /// How long ago the others were seen: half of them at most `median_age_s`. 0 if there are none.
   double median_age_s = 0, oldest_age_s = 0;
 };

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "composite/color_smoothing.h"
+#include "core/bilinear.h"
 
 namespace diminish {
 namespace {
@@ -17,19 +18,6 @@ using Window = std::array<std::array<Color, side>, side>;
 
 Color color_of(const Bgr& color) {
   return {static_cast<float>(color.b), static_cast<float>(color.g), static_cast<float>(color.r), 0};
-}
-
-/// Bilinear, as surfaces are drawn; the four pixels must be inside.
-Color look_up(ImageView<Bgr> image, float x, float y) {
-  const int column = static_cast<int>(x);
-  const int row = static_cast<int>(y);
-  const float right = x - static_cast<float>(column);
-  const float below = y - static_cast<float>(row);
-  const Bgr* const upper = image.row(row) + column;
-  const Bgr* const lower = image.row(row + 1) + column;
-  const Color top = color_of(upper[0]) + right * (color_of(upper[1]) - color_of(upper[0]));
-  const Color bottom = color_of(lower[0]) + right * (color_of(lower[1]) - color_of(lower[0]));
-  return top + below * (bottom - top);
 }
 
 Color mean_of_three(const Color& first, const Color& own, const Color& second) {
@@ -100,8 +88,9 @@ void add(ImageView<Bgr> camera, const Mask& occlusion, ImageView<Bgr> rgbd, floa
     for (int dx = -reach; dx <= reach; ++dx) {
       const auto column = static_cast<std::size_t>(reach + dx);
       const auto row = static_cast<std::size_t>(reach + dy);
-      drawn[row][column] = look_up(rgbd, texture.x() + step * static_cast<float>(dx),
-                                   texture.y() + step * static_cast<float>(dy));
+      drawn[row][column] = bilinear(texture.x() + step * static_cast<float>(dx),
+                                    texture.y() + step * static_cast<float>(dy),
+                                    [&](int u, int v) { return color_of(rgbd(u, v)); });
       seen[row][column] = color_of(camera(x + dx, y + dy));
     }
   }

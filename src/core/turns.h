@@ -37,4 +37,29 @@ class Turns {
   std::set<std::size_t> ended_;  ///< later ones that have
 };
 
+/// One participant's turn, while it has one. The Turns must outlive it.
+class Turn {
+ public:
+  /// Does nothing if it has one.
+  void take(Turns& turns) {
+    if (turns_) return;
+    number_ = turns.take();
+    turns_ = &turns;
+  }
+  /// Takes one first, if it has none.
+  void wait(Turns& turns) {
+    take(turns);
+    turns.wait(number_);
+  }
+  /// Does nothing if it has none.
+  void end() {
+    if (turns_) turns_->end(number_);
+    turns_ = nullptr;
+  }
+
+ private:
+  Turns* turns_ = nullptr;
+  std::size_t number_ = 0;
+};
+
 }  // namespace diminish

@@ -50,10 +50,7 @@ void OccluderStage::detect(const Observation& observation, std::vector<OccluderR
   reports.resize(detectors_.size());
   const std::vector<std::string> kept = kept_objects(observation.options);
   const bool remembers = observation.options.memory != "off";
-  if (remembers) {
-    take_turn();
-    shared_->turns.wait(*turn_);
-  }
+  if (remembers) turn_.wait(shared_->turns);
   for (std::size_t i = 0; i < detectors_.size(); ++i) {
     OccluderReport& report = reports[i];
     auto* const shape = dynamic_cast<ShapeDetector*>(detectors_[i].get());

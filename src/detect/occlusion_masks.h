@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,14 +27,9 @@ class OccluderStage {
   void draw_by(const std::string& drawer);
 
   void share(OccluderStage& other) { shared_ = other.shared_; }
-  void take_turn() {
-    if (!turn_) turn_ = shared_->turns.take();
-  }
+  void take_turn() { turn_.take(shared_->turns); }
   /// Does nothing if there is none.
-  void end_turn() {
-    if (turn_) shared_->turns.end(*turn_);
-    turn_.reset();
-  }
+  void end_turn() { turn_.end(); }
 
   /// With the option `memory`, waits for its turn. Ends it. Replaces the masks by the union of all
   /// objects' masks in this frame, grown by the options' margins, and `reports` by one report for
@@ -63,7 +57,7 @@ class OccluderStage {
   std::vector<std::unique_ptr<OccluderDetector>> detectors_;
   std::vector<std::string> names_;  ///< of the objects
   std::shared_ptr<Shared> shared_ = std::make_shared<Shared>();
-  std::optional<std::size_t> turn_;
+  Turn turn_;
   OcclusionOutlines outlines_;
   bool is_blank_ = true;               ///< no detector has set pixels in this frame yet
   std::vector<MaskDrawing> drawings_;  ///< color, and of each RGB-D camera color and depth

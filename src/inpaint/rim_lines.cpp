@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/bilinear.h"
 #include "core/channels.h"
 
 namespace diminish {
@@ -24,19 +25,6 @@ constexpr float straightness = 0.6F;  ///< largest deviation, pixels, root mean 
 constexpr int deepest = 14;           ///< the mask begins no further from the ring, along the line
 constexpr float scale = 256;          ///< of the blurred picture
 constexpr int profile_length = 16;    ///< pixels along the line
-
-/// Bilinear; the pixel and the ones to its right and below are in the image.
-float sample(const Image<std::uint16_t>& image, float x, float y) {
-  const int column = static_cast<int>(x);
-  const int row = static_cast<int>(y);
-  const float right = x - static_cast<float>(column);
-  const float down = y - static_cast<float>(row);
-  const std::uint16_t* const upper = image.row(row) + column;
-  const std::uint16_t* const lower = image.row(row + 1) + column;
-  const auto between = [](float from, float to, float share) { return from + share * (to - from); };
-  return between(between(upper[0], upper[1], right), between(lower[0], lower[1], right), down) /
-         scale;
-}
 
 Eigen::Vector2f across(const Eigen::Vector2f& direction) {
   return {-direction.y(), direction.x()};
@@ -149,7 +137,10 @@ Eigen::Vector2f RimLines::gradient(int x, int y) const {
 // All positions below are in the picture.
 
 float RimLines::level(const Eigen::Vector2f& at) const {
-  return sample(grey_, at.x() - static_cast<float>(part_.x), at.y() - static_cast<float>(part_.y));
+  const auto level = [&](int x, int y) { return static_cast<float>(grey_(x, y)); };
+  return bilinear(at.x() - static_cast<float>(part_.x), at.y() - static_cast<float>(part_.y),
+                  level) /
+         scale;
 }
 
 /// Whether all that is sampled around a position is known.

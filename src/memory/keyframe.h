@@ -15,6 +15,7 @@
 #include "diminish/scene_samples.h"
 #include "geometry/projection.h"
 #include "geometry/ray_table.h"
+#include "memory/point_rows.h"
 #include "memory/testimony.h"
 
 namespace diminish {
@@ -114,14 +115,13 @@ struct Pixel {
   int x, y;
 };
 inline std::optional<Pixel> project(const Projection& lens, const Eigen::Vector3f& point_m) {
-  constexpr float nearest_m = 0.05F;
   float u = 0;
   float v = 0;
-  if (!(point_m.z() > nearest_m) ||
+  if (!(point_m.z() > PointView::nearest_m) ||
       !lens.distort(point_m.x() / point_m.z(), point_m.y() / point_m.z(), u, v)) {
     return std::nullopt;
   }
-  constexpr float most = 1e6F;
+  constexpr float most = PointView::most_px;
   if (!(std::abs(u) < most && std::abs(v) < most)) return std::nullopt;
   return Pixel{static_cast<int>(std::lrint(u)), static_cast<int>(std::lrint(v))};
 }

@@ -7,11 +7,8 @@
 namespace diminish {
 
 KeyframePreparation::KeyframePreparation(const Rig& rig, const KeyframeGrid& grid)
-    : grid_(grid), sampler_(keyframe_rig(rig, grid)) {
+    : grid_(grid), sampler_(keyframe_rig(rig, grid)), masks_(keyframe_masks(rig, grid)) {
   for (const RgbdCamera& camera : rig.rgbd) testimony_grids_.emplace_back(camera.depth);
-  const Intrinsics& small = grid.intrinsics();
-  masks_.rgbd_color.emplace_back(rig.color.width, rig.color.height, std::uint8_t{0});
-  masks_.rgbd_depth.emplace_back(small.width, small.height, std::uint8_t{0});
 }
 
 void KeyframePreparation::prepare(Keyframe& keyframe) {
@@ -64,9 +61,7 @@ void KeyframePreparation::find_sights(Keyframe& keyframe, std::size_t camera) co
 
 void KeyframePreparation::find_samples(Keyframe& keyframe) {
   FrameSet frame;
-  frame.rgbd.resize(1);
-  frame.rgbd[0].color = ImageView<Bgr>(keyframe.picture);
-  frame.rgbd[0].depth = ImageView<std::uint16_t>(keyframe.depth);
+  show(keyframe, frame);
   Poses poses;
   poses.color_from_depth.emplace_back(RigidTransform());
   sampler_.sample(frame, poses, masks_, samples_);
@@ -78,6 +73,19 @@ Rig keyframe_rig(const Rig& rig, const KeyframeGrid& grid) {
   result.color = rig.color;
   result.rgbd.push_back(grid.camera());
   return result;
+}
+
+OcclusionMasks keyframe_masks(const Rig& rig, const KeyframeGrid& grid) {
+  OcclusionMasks masks;
+  masks.rgbd_color.emplace_back(rig.color.width, rig.color.height);
+  masks.rgbd_depth.emplace_back(grid.intrinsics().width, grid.intrinsics().height);
+  return masks;
+}
+
+void show(const Keyframe& keyframe, FrameSet& frame) {
+  frame.rgbd.resize(1);
+  frame.rgbd[0].color = ImageView<Bgr>(keyframe.picture);
+  frame.rgbd[0].depth = ImageView<std::uint16_t>(keyframe.depth);
 }
 
 }  // namespace diminish

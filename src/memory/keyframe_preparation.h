@@ -22,11 +22,14 @@ class KeyframePreparation {
   KeyframeGrid grid_;
   std::vector<TestimonyGrid> testimony_grids_;  ///< of each RGB-D camera
   SceneSampler sampler_;
-  OcclusionMasks masks_;  ///< all clear
+  OcclusionMasks masks_;
   SceneSamples samples_;
 };
 
-/// The keyframe as an RGB-D camera of a rig: its picture and its grid's depth.
+/// The keyframe as an RGB-D camera of a rig: its picture and its grid's depth, the masks of objects
+/// in them (none), and its images, which must outlive the frame's.
 Rig keyframe_rig(const Rig& rig, const KeyframeGrid& grid);
+OcclusionMasks keyframe_masks(const Rig& rig, const KeyframeGrid& grid);
+void show(const Keyframe& keyframe, FrameSet& frame);
 
 }  // namespace diminish

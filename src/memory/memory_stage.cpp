@@ -37,6 +37,16 @@ void report_ages(std::span<const Recollection> recollections, std::span<const st
 
 }  // namespace
 
+template <class Work>
+auto MemoryStage::in_turn(const Work& work) {
+  turn_.wait(shared_->turns);
+  const struct End {
+    Turn& turn;
+    ~End() { turn.end(); }
+  } end{turn_};
+  return work();
+}
+
 void MemoryStage::remember(const RecallInputs& inputs, const SceneSamples& samples,
                            const std::vector<OccluderReport>& objects,
                            Reconstruction& reconstruction, MemoryReport& report) {
@@ -45,14 +55,16 @@ void MemoryStage::remember(const RecallInputs& inputs, const SceneSamples& sampl
   const RecallInputs anchored_inputs{inputs.frame,   poses,         inputs.masks,
                                      inputs.objects, inputs.region, inputs.color_maps,
                                      inputs.options};
-  shared_->turns.wait(*turn_);
-  if (!shared_->memory) shared_->memory.emplace(shared_->rig);
-  const std::size_t count = shared_->memory->recall(
-      anchored_inputs, !inputs.poses.color_from_world.has_value(), recollections_);
-  shared_->memory->learn(anchored_inputs, samples, objects);
-  report.keyframes = shared_->memory->keyframes();
-  report.bytes = shared_->memory->bytes();
-  end_turn();
+  const std::size_t count = in_turn([&] {
+    if (!shared_->memory) shared_->memory.emplace(shared_->rig);
+    SceneMemory& memory = *shared_->memory;
+    const bool is_anchored = !inputs.poses.color_from_world;
+    const std::size_t recalled = memory.recall(anchored_inputs, is_anchored, recollections_);
+    memory.learn(anchored_inputs, samples, objects);
+    report.keyframes = memory.keyframes();
+    report.bytes = memory.bytes();
+    return recalled;
+  });
   if (count == 0) return;
   for_tasks(count, [&](std::size_t i) { recollections_[i].draw(anchored_inputs); });
   const auto recalled = std::span(recollections_).first(count);
@@ -62,23 +74,23 @@ void MemoryStage::remember(const RecallInputs& inputs, const SceneSamples& sampl
 }
 
 void MemoryStage::forget() {
-  const Turn turn(*this);
-  shared_->turns.wait(*turn_);
-  if (shared_->memory) shared_->memory->forget();
+  in_turn([&] {
+    if (shared_->memory) shared_->memory->forget();
+  });
 }
 
 void MemoryStage::set_background(const Scan& scan, const Scene& scene) {
-  const Turn turn(*this);
-  shared_->turns.wait(*turn_);
-  shared_->memory.emplace(shared_->rig);
-  shared_->memory->set_background(keyframes_of(scan, shared_->rig, scene));
+  in_turn([&] {
+    shared_->memory.emplace(shared_->rig);
+    shared_->memory->set_background(keyframes_of(scan, shared_->rig, scene));
+  });
 }
 
 Scan MemoryStage::scan(const Scene& scene) {
-  const Turn turn(*this);
-  shared_->turns.wait(*turn_);
-  if (!shared_->memory) return make_scan({}, shared_->rig, scene);
-  return make_scan(shared_->memory->all(), shared_->rig, scene);
+  return in_turn([&] {
+    if (!shared_->memory) return make_scan({}, shared_->rig, scene);
+    return make_scan(shared_->memory->all(), shared_->rig, scene);
+  });
 }
 
 }  // namespace diminish

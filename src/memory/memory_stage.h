@@ -19,25 +19,9 @@ class MemoryStage {
       : shared_(std::make_shared<Shared>(rig)), merge_(rig.color) {}
 
   void share(MemoryStage& other) { shared_ = other.shared_; }
-  void take_turn() {
-    if (!turn_) turn_ = shared_->turns.take();
-  }
+  void take_turn() { turn_.take(shared_->turns); }
   /// Does nothing if there is none.
-  void end_turn() {
-    if (turn_) shared_->turns.end(*turn_);
-    turn_.reset();
-  }
-  /// A frame's turn: taken, if it was not before, and ended.
-  class Turn {
-   public:
-    explicit Turn(MemoryStage& stage) : stage_(stage) { stage_.take_turn(); }
-    ~Turn() { stage_.end_turn(); }
-    Turn(const Turn&) = delete;
-    Turn& operator=(const Turn&) = delete;
-
-   private:
-    MemoryStage& stage_;
-  };
+  void end_turn() { turn_.end(); }
 
   /// Recalls and learns when it is this frame's turn, and ends it. Then draws, at the same time as
   /// other frames. samples, objects: of this frame, to learn from. report: comes empty.
@@ -59,8 +43,12 @@ class MemoryStage {
     Turns turns;
     std::optional<SceneMemory> memory;  ///< made when it is needed
   };
+  /// What `work` returns, done when it is this stage's turn, which then ends.
+  template <class Work>
+  auto in_turn(const Work& work);
+
   std::shared_ptr<Shared> shared_;
-  std::optional<std::size_t> turn_;
+  Turn turn_;
   std::vector<Recollection> recollections_;
   RecallMerge merge_;
 };

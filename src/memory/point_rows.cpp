@@ -1,13 +1,5 @@
 #include "memory/point_rows.h"
 
-#ifndef DIMINISH_MEMORY_POINT_ROWS_NEAREST_M
-#define DIMINISH_MEMORY_POINT_ROWS_NEAREST_M
-namespace diminish {
-constexpr float nearest_m = 0.05F;
-constexpr float most_px = 1e6F;  ///< from the image
-}  // namespace diminish
-#endif
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "memory/point_rows.cpp"
 #include <hwy/foreach_target.h>
@@ -47,9 +39,9 @@ HWY_INLINE void FindSome(D d, const PointRow& points, const PointView& view, int
       distorted_x, distorted_y);
   const auto u = hn::Add(hn::Mul(set(view.lens.fx), distorted_x), set(view.lens.cx));
   const auto v = hn::Add(hn::Mul(set(view.lens.fy), distorted_y), set(view.lens.cy));
-  const auto limit = set(most_px);
+  const auto limit = set(PointView::most_px);
   const auto valid =
-      hn::And(hn::And(hn::Gt(own_z, hn::Zero(d)), hn::Gt(z, set(nearest_m))),
+      hn::And(hn::And(hn::Gt(own_z, hn::Zero(d)), hn::Gt(z, set(PointView::nearest_m))),
               hn::And(hn::Lt(r2, set(view.lens.max_radius_squared)),
                       hn::And(hn::Lt(hn::Abs(u), limit), hn::Lt(hn::Abs(v), limit))));
   // Invalid values become 0, which can be converted safely.

@@ -28,20 +28,15 @@ Recollection::Recollection(const Rig& rig, const KeyframeGrid& grid)
       witness_(rig, grid),
       drawer_(Registry<Reconstructor>::get("cpu")(rig_)),
       depth_(1),
-      edges_(rig.color, grid) {
-  const Intrinsics& small = grid.intrinsics();
-  frame_.rgbd.resize(1);
-  masks_.rgbd_color.emplace_back(rig.color.width, rig.color.height, std::uint8_t{0});
-  masks_.rgbd_depth.emplace_back(small.width, small.height, std::uint8_t{0});
-}
+      masks_(keyframe_masks(rig, grid)),
+      edges_(rig.color, grid) {}
 
 void Recollection::prepare(std::shared_ptr<const Keyframe> kept, const RecallInputs& inputs,
                            const std::vector<Testimony>& now) {
   keyframe_ = std::move(kept);
   const Keyframe& keyframe = *keyframe_;
   frame_.color = inputs.frame.color.view();
-  frame_.rgbd[0].color = ImageView<Bgr>(keyframe.picture);
-  frame_.rgbd[0].depth = ImageView<std::uint16_t>(keyframe.depth);
+  show(keyframe, frame_);
   poses_.color_from_depth.assign(1, RigidTransform());
   samples_.surfaces.clear();
   for (const SceneSample& sample : keyframe.samples) {

@@ -20,9 +20,8 @@ class SceneMemory {
   explicit SceneMemory(const Rig& rig);
 
   /// Prepares what this frame is to be reminded of (at most `most_recalled`), and forgets what the
-  /// RGB-D cameras see to be gone. inputs.poses: anchored. recollections: as many as are used.
-  /// Returns their number.
-  /// is_anchored: the world is where the first RGB-D camera stands.
+  /// RGB-D cameras see to be gone. inputs.poses: anchored. is_anchored: the world is where the
+  /// first RGB-D camera stands. recollections: as many as are used. Returns their number.
   std::size_t recall(const RecallInputs& inputs, bool is_anchored,
                      std::vector<Recollection>& recollections);
 

@@ -46,11 +46,10 @@ float TornEdges::depth_beside(const Reconstruction& drawn, int x, int y, int dx,
 
 std::optional<Bgr> TornEdges::look(const View& view, const Eigen::Vector3f& x_in_color) const {
   constexpr float same_surface = 0.03F;
-  constexpr float nearest_m = 0.05F;
   const Eigen::Vector3f point = transform(view.keyframe_from_color, x_in_color);
   float u = 0;
   float v = 0;
-  if (!(point.z() > nearest_m) ||
+  if (!(point.z() > PointView::nearest_m) ||
       !grid_.lens().distort(point.x() / point.z(), point.y() / point.z(), u, v)) {
     return std::nullopt;
   }

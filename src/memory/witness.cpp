@@ -9,47 +9,18 @@
 namespace diminish {
 namespace {
 
-/// The box of places of an image that are counted row by row.
-class Box {
- public:
-  explicit Box(int width) : width_(width), first_x_(width) {}
-
-  void extend(int x, int y) {
-    first_x_ = std::min(first_x_, x);
-    last_x_ = std::max(last_x_, x);
-    first_y_ = first_y_ < 0 ? y : std::min(first_y_, y);
-    last_y_ = std::max(last_y_, y);
-  }
-  void extend(std::int32_t place) {
-    const int y = place / width_;
-    extend(place - y * width_, y);
-  }
-  Rect rect() const {
-    if (last_y_ < 0) return {};
-    return {first_x_, first_y_, last_x_ + 1 - first_x_, last_y_ + 1 - first_y_};
-  }
-
- private:
-  int width_;
-  int first_x_, last_x_ = -1;
-  int first_y_ = -1, last_y_ = -1;
-};
+/// place: of an image that is so wide, counted row by row.
+void extend_to(Rect& box, std::int32_t place, int width) {
+  const int y = place / width;
+  extend(box, place - y * width, y);
+}
 
 }  // namespace
 
 Witness::Witness(const Rig& rig, const KeyframeGrid& grid)
     : grid_(grid), color_(Lens(rig.color)), picture_(rig.color.bounds()) {
   for (const RgbdCamera& camera : rig.rgbd) {
-    const TestimonyGrid of_camera(camera.depth);
-    cameras_.push_back({of_camera,
-                        TestimonyComparison(of_camera),
-                        false,
-                        false,
-                        FloatTransform(RigidTransform()),
-                        {},
-                        {},
-                        {},
-                        {}});
+    cameras_.emplace_back(TestimonyGrid(camera.depth));
   }
 }
 
@@ -67,7 +38,7 @@ void Witness::find_parts(const Inputs& inputs) {
   const Rect near = intersect(grow(inputs.region, step * grid_.step()), picture_);
   const PointView to_color{FloatTransform(inputs.color_from_keyframe), color_, near,
                            picture_.width};
-  Box part(keyframe.depth.width());
+  Rect part;
   for (Camera& camera : cameras_) camera.then_part = camera.now_part = {};
   float depth_m[KeyframeGrid::most_columns];
   std::int32_t pixels[KeyframeGrid::most_columns];
@@ -82,7 +53,7 @@ void Witness::find_parts(const Inputs& inputs) {
       if (pixels[x] < 0) continue;
       any = true;
       depth_m[x] = row.depth_m[x];
-      part.extend(x * step, y * step);
+      extend(part, x * step, y * step);
     }
     if (!any) continue;
     row.depth_m = depth_m;
@@ -90,23 +61,19 @@ void Witness::find_parts(const Inputs& inputs) {
       Camera& camera = cameras_[k];
       if (!camera.is_asked) continue;
       const Rect& bounds = camera.grid.bounds();
-      Box then(bounds.width);
-      Box now(bounds.width);
       const Sight* const sights = keyframe.sights[k].row(y * step);
       find_pixels(row, {camera.from_keyframe, camera.grid.lens(), bounds, bounds.width}, places,
                   unused);
       for (int x = 0; x < row.count; ++x) {
-        if (places[x] >= 0) now.extend(places[x]);
+        if (places[x] >= 0) extend_to(camera.now_part, places[x], bounds.width);
         if (depth_m[x] > 0 && sights[x * step].kind() != Sight::aside) {
-          then.extend(sights[x * step].place());
+          extend_to(camera.then_part, sights[x * step].place(), bounds.width);
         }
       }
-      camera.then_part = join(camera.then_part, then.rect());
-      camera.now_part = join(camera.now_part, now.rect());
     }
   }
   constexpr int margin = 8;
-  part_ = intersect(grow(part.rect(), step), keyframe.depth.bounds());
+  part_ = intersect(grow(part, step), keyframe.depth.bounds());
   for (Camera& camera : cameras_) {
     camera.then_part = grow(camera.then_part, margin);
     camera.now_part = grow(camera.now_part, margin);

@@ -32,12 +32,14 @@ class Witness {
 
  private:
   struct Camera {
+    explicit Camera(const TestimonyGrid& grid_) : grid(grid_), comparison(grid) {}
+
     TestimonyGrid grid;
     TestimonyComparison comparison;
-    bool looks = false;            ///< now
-    bool is_asked = false;         ///< looks, and did so when the keyframe was taken
-    FloatTransform from_keyframe;  ///< to the depth sensor's frame of now
-    Rect then_part, now_part;      ///< of its testimonies: what they show of the region
+    bool looks = false;     ///< now
+    bool is_asked = false;  ///< looks, and did so when the keyframe was taken
+    FloatTransform from_keyframe{RigidTransform()};  ///< to the depth sensor's frame of now
+    Rect then_part, now_part;  ///< of its testimonies: what they show of the region
     /// What has become of what the camera saw then; whether what it sees now was there.
     Verdicts then, now;
   };

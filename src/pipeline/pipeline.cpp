@@ -124,7 +124,7 @@ struct Pipeline::Implementation {
   }
 
   void find_smoothing(const FrameSet& frame) {
-    if (!options.smooth_colors) return;
+    if (!options.smooth_colors || occluders.objects().empty()) return;
     smoothing = smoothing_share(rig, frame, occluders.masks().color, samples.surfaces,
                                 color_maps.by_source());
   }
@@ -214,10 +214,10 @@ Scan Pipeline::scan() {
 
 void Pipeline::process(const FrameSet& frame, DiminishedFrame& result) {
   take_turn();
-  const struct Turn {
+  const struct Pass {
     Pipeline& pipeline;
-    ~Turn() { pipeline.pass_turn(); }
-  } turn{*this};
+    ~Pass() { pipeline.pass_turn(); }
+  } pass{*this};
   // A thread that waits for another within this frame must not begin something else.
   oneapi::tbb::this_task_arena::isolate([&] { implementation_->process(frame, result); });
 }
