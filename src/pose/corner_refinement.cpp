@@ -5,32 +5,19 @@
 #include <cmath>
 #include <optional>
 
+#include "pose/profile.h"
+
 namespace diminish {
 namespace {
 
 using Eigen::Vector2d;
 
-constexpr int max_profile_samples = 64;
+constexpr int max_profile_samples = Profile::most - 1;
 constexpr std::size_t max_profiles = 64;
 constexpr float min_step_levels = 12;  ///< a weaker edge is not a marker's
 constexpr double min_support = 0.4;    ///< share of a side's profiles that must see its edge
 constexpr double min_reach_px = 2.5;
 constexpr double near_px = 1;  ///< points up to this far apart are on the same edge
-
-/// The green channel, bilinear; the four pixels must be inside.
-float sample(ImageView<Bgr> image, float x, float y) {
-  const int x0 = static_cast<int>(x);
-  const int y0 = static_cast<int>(y);
-  const float fx = x - static_cast<float>(x0);
-  const float fy = y - static_cast<float>(y0);
-  const Bgr* upper = image.row(y0) + x0;
-  const Bgr* lower = image.row(y0 + 1) + x0;
-  const float top =
-      static_cast<float>(upper[0].g) + fx * static_cast<float>(upper[1].g - upper[0].g);
-  const float bottom =
-      static_cast<float>(lower[0].g) + fx * static_cast<float>(lower[1].g - lower[0].g);
-  return top + fy * (bottom - top);
-}
 
 /// The place of the dark-to-light step on the profile through `center` along `outward`: the
 /// centroid of the rise in brightness around its steepest point.
@@ -51,15 +38,17 @@ std::optional<Vector2d> find_step(ImageView<Bgr> image, const Vector2d& center,
   const Vector2d first = center - half_length * outward;
   const Eigen::Vector2f start = first.cast<float>();
   const Eigen::Vector2f step = (step_px * outward).cast<float>();
-  std::array<float, max_profile_samples> rise;
-  float previous = sample(image, start.x(), start.y());
+  std::array<float, Profile::room> levels;
+  sample_profile(image, {start.x(), start.y(), step.x(), step.y(), count + 1}, levels.data());
+  const auto rise = [&](int i) {
+    return levels[static_cast<std::size_t>(i + 1)] - levels[static_cast<std::size_t>(i)];
+  };
   int steepest = 0;
-  for (int i = 0; i < count; ++i) {
-    const auto t = static_cast<float>(i + 1);
-    const float next = sample(image, start.x() + t * step.x(), start.y() + t * step.y());
-    rise[static_cast<std::size_t>(i)] = next - previous;
-    previous = next;
-    if (rise[static_cast<std::size_t>(i)] > rise[static_cast<std::size_t>(steepest)]) steepest = i;
+  float most = rise(0);
+  for (int i = 1; i < count; ++i) {
+    if (rise(i) <= most) continue;
+    most = rise(i);
+    steepest = i;
   }
   // The steepest point's neighbourhood must lie inside the profile. Otherwise the edge is somewhere
   // else.
@@ -68,7 +57,7 @@ std::optional<Vector2d> find_step(ImageView<Bgr> image, const Vector2d& center,
   float weight = 0;
   float moment = 0;
   for (int i = steepest - window; i <= steepest + window; ++i) {
-    const float positive = std::max(0.F, rise[static_cast<std::size_t>(i)]);
+    const float positive = std::max(0.F, rise(i));
     weight += positive;
     moment += positive * (static_cast<float>(i) + 0.5F);
   }
@@ -100,8 +89,9 @@ void keep_largest_line(Points& points, double near) {
   const Vector2d* best_a = nullptr;
   const Vector2d* best_b = nullptr;
   int most = 0;
-  for (const Vector2d* a = points.begin(); a != points.end(); ++a) {
-    for (const Vector2d* b = a + 1; b != points.end(); ++b) {
+  const auto all = static_cast<int>(points.size());
+  for (const Vector2d* a = points.begin(); a != points.end() && most < all; ++a) {
+    for (const Vector2d* b = a + 1; b != points.end() && most < all; ++b) {
       const Vector2d normal = Vector2d(b->y() - a->y(), a->x() - b->x()).normalized();
       int count = 0;
       for (const Vector2d& point : points) count += std::abs(normal.dot(point - *a)) < near ? 1 : 0;
