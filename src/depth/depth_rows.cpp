@@ -222,6 +222,37 @@ void KeepGaps(const std::uint16_t* depth, std::ptrdiff_t pitch, int count, const
   });
 }
 
+void LeaveOut(const std::uint16_t* depth, const std::uint8_t* mask, int count,
+              std::uint16_t* result) {
+  const auto leave_out = [&](auto d, int x) HWY_ATTR {
+    const hn::Rebind<std::uint8_t, decltype(d)> bytes;
+    const auto is_free = hn::Eq(hn::PromoteTo(d, hn::LoadU(bytes, mask + x)), hn::Zero(d));
+    hn::StoreU(hn::IfThenElseZero(is_free, hn::LoadU(d, depth + x)), d, result + x);
+  };
+  const hn::CappedTag<std::uint16_t, piece> d;
+  const auto lanes = static_cast<int>(hn::Lanes(d));
+  int x = 0;
+  for (; x + lanes <= count; x += lanes) leave_out(d, x);
+  for (; x < count; ++x) leave_out(hn::CappedTag<std::uint16_t, 1>(), x);
+}
+
+void Unite(const std::uint8_t* const* rows, std::size_t row_count, int count,
+           std::uint8_t* result) {
+  const auto unite = [&](auto d, int x) HWY_ATTR {
+    auto bits = hn::LoadU(d, rows[0] + x);
+    for (std::size_t k = 1; k < row_count; ++k) bits = hn::Or(bits, hn::LoadU(d, rows[k] + x));
+    hn::StoreU(bits, d, result + x);
+  };
+  const hn::ScalableTag<std::uint8_t> d;
+  const auto lanes = static_cast<int>(hn::Lanes(d));
+  if (count < lanes) {
+    for (int x = 0; x < count; ++x) unite(hn::CappedTag<std::uint8_t, 1>(), x);
+    return;
+  }
+  for (int x = 0; x + lanes <= count; x += lanes) unite(d, x);
+  if (count % lanes != 0) unite(d, count - lanes);
+}
+
 }  // namespace
 }  // namespace diminish::depth_rows::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -235,6 +266,8 @@ HWY_EXPORT(Smooth);
 HWY_EXPORT(RemoveHidden);
 HWY_EXPORT(FindJumps);
 HWY_EXPORT(KeepGaps);
+HWY_EXPORT(LeaveOut);
+HWY_EXPORT(Unite);
 
 }  // namespace
 
@@ -256,6 +289,14 @@ void find_jumps(const std::uint16_t* depth, int count, std::ptrdiff_t step, int 
 void keep_gaps(const std::uint16_t* depth, std::ptrdiff_t pitch, int count, const Gap& gap,
                std::uint8_t* flags) {
   HWY_DYNAMIC_DISPATCH(KeepGaps)(depth, pitch, count, gap, flags);
+}
+
+void leave_out(const std::uint16_t* depth, const std::uint8_t* mask, int count,
+               std::uint16_t* result) {
+  HWY_DYNAMIC_DISPATCH(LeaveOut)(depth, mask, count, result);
+}
+void unite(std::span<const std::uint8_t* const> rows, int count, std::uint8_t* result) {
+  HWY_DYNAMIC_DISPATCH(Unite)(rows.data(), rows.size(), count, result);
 }
 
 }  // namespace diminish::depth_rows

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <span>
 
 #include "depth/depth_noise.h"
 #include "geometry/projection.h"
@@ -68,5 +69,12 @@ struct Gap {
 /// `reach`. depth: `reach` rows, `pitch` pixels apart, and `reach` more columns on each side.
 void keep_gaps(const std::uint16_t* depth, std::ptrdiff_t pitch, int count, const Gap& gap,
                std::uint8_t* flags);
+
+/// Copies the depths of a row that are not masked; the others become 0.
+void leave_out(const std::uint16_t* depth, const std::uint8_t* mask, int count,
+               std::uint16_t* result);
+
+/// For each of `count` columns, the bits that are set in any of some rows (at least one).
+void unite(std::span<const std::uint8_t* const> rows, int count, std::uint8_t* result);
 
 }  // namespace diminish::depth_rows

@@ -226,5 +226,42 @@ TEST(DepthRows, GapsAreKeptAsByThePlainVersion) {
   EXPECT_LT(kept, flagged * 4 / 5);
 }
 
+TEST(DepthRows, WhatIsMaskedIsLeftOut) {
+  const Image<std::uint16_t> depth = room(151, 1);
+  std::vector<std::uint8_t> mask(151);
+  for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = i % 7 < 3 ? 255 : 0;
+  for (const int count : {1, 15, 16, 151}) {
+    std::vector<std::uint16_t> result(152, 9);
+    depth_rows::leave_out(depth.row(0), mask.data(), count, result.data());
+    for (int i = 0; i < count; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      ASSERT_EQ(result[k], mask[k] != 0 ? 0 : depth(i, 0)) << i;
+    }
+    EXPECT_EQ(result[static_cast<std::size_t>(count)], 9) << count;
+  }
+}
+
+TEST(DepthRows, FlagsOfSeveralRowsAreUnited) {
+  std::mt19937 random(5);
+  std::vector<std::vector<std::uint8_t>> rows(5, std::vector<std::uint8_t>(151));
+  for (auto& row : rows) {
+    for (std::uint8_t& bits : row) bits = static_cast<std::uint8_t>(1U << random() % 8);
+  }
+  for (std::size_t row_count = 1; row_count <= rows.size(); ++row_count) {
+    for (const int count : {1, 31, 32, 65, 151}) {
+      std::vector<const std::uint8_t*> united;
+      for (std::size_t k = 0; k < row_count; ++k) united.push_back(rows[k].data());
+      std::vector<std::uint8_t> result(152, 9);
+      depth_rows::unite(united, count, result.data());
+      for (int i = 0; i < count; ++i) {
+        std::uint8_t expected = 0;
+        for (const std::uint8_t* row : united) expected |= row[i];
+        ASSERT_EQ(result[static_cast<std::size_t>(i)], expected) << i;
+      }
+      EXPECT_EQ(result[static_cast<std::size_t>(count)], 9) << count;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace diminish

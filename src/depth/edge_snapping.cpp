@@ -1,6 +1,5 @@
 #include "depth/edge_snapping.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -26,10 +25,6 @@ constexpr float least_contrast = 20;
 /// Of a surface's slope, against its neighbours' number: there are few.
 constexpr float slope_ridge = 1;
 
-void add_flags(const std::uint8_t* flags, std::size_t count, std::uint8_t* sum) {
-  for (std::size_t i = 0; i < count; ++i) sum[i] |= flags[i];
-}
-
 float distance(const Bgr3& a, const Bgr3& b) {
   return std::sqrt((a.b - b.b) * (a.b - b.b) + (a.g - b.g) * (a.g - b.g) +
                    (a.r - b.r) * (a.r - b.r));
@@ -53,25 +48,62 @@ std::optional<Bgr3> mean_color(Iterator begin, Iterator end) {
 /// linear in the image.
 template <class Iterator>
 float depth_of_plane(Iterator begin, Iterator end) {
-  float weight_sum = 0;
+  // The normal equations' lower half; what is known of the slopes beforehand is that they are
+  // small.
+  float w = 0, wx = 0, wy = 0;
+  float wxx = slope_ridge, wxy = 0, wyy = slope_ridge;
   float mean = 0;
   for (auto n = begin; n != end; ++n) {
-    const float weight = n->offset->weight;
-    weight_sum += weight;
-    mean += weight / n->depth_m;
+    const auto& offset = *n->offset;
+    w += offset.weight;
+    wx += offset.weight_x;
+    wy += offset.weight_y;
+    wxx += offset.weight_xx;
+    wxy += offset.weight_xy;
+    wyy += offset.weight_yy;
+    mean += offset.weight * n->inverse_depth;
   }
-  mean /= weight_sum;
-  Eigen::Matrix3f normal = Eigen::Vector3f(0, slope_ridge, slope_ridge).asDiagonal();
-  Eigen::Vector3f right = Eigen::Vector3f::Zero();
+  mean /= w;
+  float right = 0, right_x = 0, right_y = 0;
   for (auto n = begin; n != end; ++n) {
-    const float weight = n->offset->weight;
-    const Eigen::Vector3f place(1, static_cast<float>(n->offset->x),
-                                static_cast<float>(n->offset->y));
-    normal += weight * place * place.transpose();
-    right += weight * (1 / n->depth_m - mean) * place;
+    const float above = n->inverse_depth - mean;
+    right += n->offset->weight * above;
+    right_x += n->offset->weight_x * above;
+    right_y += n->offset->weight_y * above;
   }
-  const float depth_m = 1 / (mean + normal.llt().solve(right)(0));
+  // Cramer's rule: all that is wanted is the first unknown.
+  const float of_w = wxx * wyy - wxy * wxy;
+  const float of_x = wx * wyy - wxy * wy;
+  const float of_y = wx * wxy - wxx * wy;
+  const float determinant = w * of_w - wx * of_x + wy * of_y;
+  const float own = (right * of_w - right_x * of_x + right_y * of_y) / determinant;
+  const float depth_m = 1 / (mean + own);
   return std::clamp(depth_m, begin->depth_m - least_gap_m, (end - 1)->depth_m + least_gap_m);
+}
+
+/// The mean of a pixel and the eight around it.
+Bgr3 mean_of_nine(ImageView<Bgr> image, int column, int line) {
+  // Every other byte of eight, in 16 bits each, from the first and from the second on; and the
+  // ninth.
+  constexpr std::uint64_t every_other = 0x00FF00FF00FF00FF;
+  std::uint64_t even = 0;
+  std::uint64_t odd = 0;
+  unsigned r = 0;
+  for (int row = line - 1; row <= line + 1; ++row) {
+    const auto* const bytes = reinterpret_cast<const std::uint8_t*>(image.row(row) + column - 1);
+    std::uint64_t eight = 0;
+    for (int i = 0; i < 8; ++i) eight |= std::uint64_t{bytes[i]} << (8 * i);
+    even += eight & every_other;
+    odd += eight >> 8 & every_other;
+    r += bytes[8];
+  }
+  const auto sum_at = [](std::uint64_t sums, int i) {
+    return static_cast<unsigned>(sums >> (16 * i) & 0xFFFF);
+  };
+  const unsigned b = sum_at(even, 0) + sum_at(odd, 1) + sum_at(even, 3);
+  const unsigned g = sum_at(odd, 0) + sum_at(even, 2) + sum_at(odd, 3);
+  r += sum_at(even, 1) + sum_at(odd, 2);
+  return Bgr3{static_cast<float>(b) / 9, static_cast<float>(g) / 9, static_cast<float>(r) / 9};
 }
 
 }  // namespace
@@ -84,7 +116,11 @@ const std::array<EdgeSnapping::Offset, 13> EdgeSnapping::offsets = [] {
     for (int x = -reach; x <= reach; ++x) {
       const int square = x * x + y * y;
       if (square > reach * reach) continue;
-      circle[count++] = {x, y, std::exp(-static_cast<float>(square) / (reach * reach))};
+      const float weight = std::exp(-static_cast<float>(square) / (reach * reach));
+      const auto u = static_cast<float>(x);
+      const auto v = static_cast<float>(y);
+      circle[count++] = {
+          x, y, weight, weight * u, weight * v, weight * u * u, weight * u * v, weight * v * v};
     }
   }
   return circle;
@@ -92,8 +128,7 @@ const std::array<EdgeSnapping::Offset, 13> EdgeSnapping::offsets = [] {
 
 EdgeSnapping::EdgeSnapping(const RgbdCamera& camera)
     : rays_(RayTable::of(camera.depth)),
-      to_color_(camera.color_from_depth),
-      color_(Lens(camera.color)),
+      places_(camera),
       unit_m_(static_cast<float>(camera.depth_unit_m)),
       gap_{least_gap_m / unit_m_, least_gap_noise * DepthNoise().constant_m / unit_m_,
            least_gap_noise * DepthNoise().by_square * unit_m_},
@@ -101,15 +136,20 @@ EdgeSnapping::EdgeSnapping(const RgbdCamera& camera)
       beside_edge_(camera.depth.width, camera.depth.height),
       is_read_(camera.depth.width, camera.depth.height),
       colors_(camera.depth.width, camera.depth.height),
-      closer_than_gap_(static_cast<std::uint16_t>(std::min(gap_.least, 65535.F))) {}
+      closer_than_gap_(static_cast<std::uint16_t>(std::min(gap_.least, 65535.F))) {
+  for (std::size_t i = 0; i < offsets.size(); ++i) {
+    steps_[i] = offsets[i].y * std::ptrdiff_t{camera.depth.width} + offsets[i].x;
+  }
+}
 
 void EdgeSnapping::snap(const Images& images, const DepthPart& part, Image<std::uint16_t>& depth) {
   if (part.bounds().empty()) return;
   depth_.resize(depth.width(), depth.height());
   const Rect& bounds = part.bounds();
-  std::copy(depth.row(bounds.y), depth.row(bounds.bottom() - 1) + depth.width(),
-            depth_.row(bounds.y));
-  find_edges(part);
+  for (int y = bounds.y; y < bounds.bottom(); ++y) {
+    std::copy_n(depth.row(y) + bounds.x, bounds.width, depth_.row(y) + bounds.x);
+  }
+  find_edges(part, images.depth_mask);
   read_colors(images, bounds);
   for_rows(bounds.height, [&](Rows rows) {
     for (int y = bounds.y + rows.first; y < bounds.y + rows.last; ++y) {
@@ -120,7 +160,7 @@ void EdgeSnapping::snap(const Images& images, const DepthPart& part, Image<std::
 }
 
 /// Marks the pixels around which there are two surfaces.
-void EdgeSnapping::find_edges(const DepthPart& part) {
+void EdgeSnapping::find_edges(const DepthPart& part, const Mask& mask) {
   const Rect& bounds = part.bounds();
   for_rows(bounds.height, [&](Rows rows) {
     for (int y = bounds.y + rows.first; y < bounds.y + rows.last; ++y) {
@@ -137,6 +177,13 @@ void EdgeSnapping::find_edges(const DepthPart& part) {
     }
   });
   widen(is_edge_, bounds, 1, beside_edge_);
+  free_.resize(depth_.width(), depth_.height());
+  for_rows(bounds.height, [&](Rows rows) {
+    for (int y = bounds.y + rows.first; y < bounds.y + rows.last; ++y) {
+      depth_rows::leave_out(depth_.row(y) + bounds.x, mask.row(y) + bounds.x, bounds.width,
+                            free_.row(y) + bounds.x);
+    }
+  });
   const Rect inner{bounds.x + reach, bounds.y + reach, bounds.width - 2 * reach,
                    bounds.height - 2 * reach};
   for_rows(bounds.height, [&](Rows rows) {
@@ -148,8 +195,7 @@ void EdgeSnapping::find_edges(const DepthPart& part) {
       const int last = is_inside ? std::max(first, std::min(columns.last, inner.right())) : first;
       std::fill(flags + bounds.x, flags + first, std::uint8_t{0});
       std::fill(flags + last, flags + bounds.right(), std::uint8_t{0});
-      depth_rows::keep_gaps(depth_.row(y) + first, depth_.width(), last - first, gap_,
-                            flags + first);
+      depth_rows::keep_gaps(free_.row(y) + first, free_.width(), last - first, gap_, flags + first);
     }
   });
   widen(beside_edge_, bounds, reach, is_read_);
@@ -195,15 +241,16 @@ void EdgeSnapping::widen(const Image<std::uint8_t>& flags, const Rect& part, int
   for_rows(part.height, [&](Rows rows) {
     std::vector<std::uint8_t>& line = scratch_[rows.band].line;
     line.assign(width + 2 * margin, 0);
+    std::array<const std::uint8_t*, 2 * reach + 1> united;
     for (int y = part.y + rows.first; y < part.y + rows.last; ++y) {
-      std::fill_n(line.data() + margin, width, std::uint8_t{0});
+      std::size_t count = 0;
       const int last = std::min(part.bottom() - 1, y + by);
       for (int row = std::max(part.y, y - by); row <= last; ++row) {
-        add_flags(flags.row(row) + part.x, width, line.data() + margin);
+        united[count++] = flags.row(row) + part.x;
       }
-      std::uint8_t* result = wider.row(y) + part.x;
-      std::copy_n(line.data(), width, result);
-      for (std::size_t k = 1; k <= 2 * margin; ++k) add_flags(line.data() + k, width, result);
+      depth_rows::unite({united.data(), count}, part.width, line.data() + margin);
+      for (std::size_t k = 0; k <= 2 * margin; ++k) united[k] = line.data() + k;
+      depth_rows::unite({united.data(), 2 * margin + 1}, part.width, wider.row(y) + part.x);
     }
   });
 }
@@ -211,16 +258,29 @@ void EdgeSnapping::widen(const Image<std::uint8_t>& flags, const Rect& part, int
 /// Reads the colours of the pixels that `is_read_` marks, and unmarks those that have none.
 void EdgeSnapping::read_colors(const Images& images, const Rect& part) {
   for_rows(part.height, [&](Rows rows) {
+    Sights& sights = sights_[rows.band];
+    sights.resize(static_cast<std::size_t>(part.width));
     for (int y = part.y + rows.first; y < part.y + rows.last; ++y) {
-      for_each_set(is_read_.row(y) + part.x, part.width, [&](int i) {
+      std::uint8_t* const is_read = is_read_.row(y);
+      const std::uint16_t* const depth = free_.row(y);
+      std::size_t count = 0;
+      for_each_set(is_read + part.x, part.width, [&](int i) {
         const int x = part.x + i;
-        const std::uint16_t value = depth_(x, y);
-        const bool is_free = value != 0 && images.depth_mask(x, y) == 0;
-        const auto color =
-            is_free ? color_at(images, x, y, static_cast<float>(value) * unit_m_) : std::nullopt;
-        is_read_(x, y) = color ? 1 : 0;
-        if (color) colors_(x, y) = *color;
+        is_read[x] = 0;
+        if (depth[x] == 0) return;
+        sights.x[count] = x;
+        sights.ray_x[count] = rays_->x(y)[x];
+        sights.ray_y[count] = rays_->y(y)[x];
+        sights.depth_m[count++] = static_cast<float>(depth[x]) * unit_m_;
       });
+      places_.find(sights.ray_x.data(), sights.ray_y.data(), sights.depth_m.data(),
+                   static_cast<int>(count), sights.columns.data(), sights.lines.data());
+      for (std::size_t i = 0; i < count; ++i) {
+        const ColorPlaces::Place place{sights.columns[i], sights.lines[i]};
+        if (!place.exists() || images.color_mask(place.column, place.line) != 0) continue;
+        is_read[sights.x[i]] = 1;
+        colors_(sights.x[i], y) = mean_of_nine(images.color, place.column, place.line);
+      }
     }
   });
 }
@@ -228,95 +288,94 @@ void EdgeSnapping::read_colors(const Images& images, const Rect& part) {
 /// The mean of nine pixels where a depth pixel of this depth lies in the colour image.
 std::optional<Bgr3> EdgeSnapping::color_at(const Images& images, int x, int y,
                                            float depth_m) const {
-  const float side = rays_->x(y)[x] * depth_m;
-  const float down = rays_->y(y)[x] * depth_m;
-  const float ahead = to_color_.apply(2, side, down, depth_m);
-  float u = 0;
-  float v = 0;
-  if (!(ahead > sdct::near_plane_m) ||
-      !color_.distort(to_color_.apply(0, side, down, depth_m) / ahead,
-                      to_color_.apply(1, side, down, depth_m) / ahead, u, v)) {
-    return std::nullopt;
-  }
-  const ImageView<Bgr>& image = images.color;
-  if (!(u >= 1 && v >= 1 && u < static_cast<float>(image.width() - 2) &&
-        v < static_cast<float>(image.height() - 2))) {
-    return std::nullopt;
-  }
-  const auto column = static_cast<int>(std::lrint(u));
-  const auto line = static_cast<int>(std::lrint(v));
-  if (images.color_mask(column, line) != 0) return std::nullopt;
-  int b = 0;
-  int g = 0;
-  int r = 0;
-  for (int row = line - 1; row <= line + 1; ++row) {
-    const Bgr* pixels = image.row(row) + column - 1;
-    for (int i = 0; i < 3; ++i) {
-      b += pixels[i].b;
-      g += pixels[i].g;
-      r += pixels[i].r;
-    }
-  }
-  return Bgr3{static_cast<float>(b) / 9, static_cast<float>(g) / 9, static_cast<float>(r) / 9};
+  const ColorPlaces::Place place = places_.at(rays_->x(y)[x], rays_->y(y)[x], depth_m);
+  if (!place.exists() || images.color_mask(place.column, place.line) != 0) return std::nullopt;
+  return mean_of_nine(images.color, place.column, place.line);
 }
 
 void EdgeSnapping::snap_pixel(const Images& images, int x, int y,
                               Image<std::uint16_t>& depth) const {
   if (images.depth_mask(x, y) != 0) return;
-  Neighbours neighbours;
+  // Numbers of neighbours below their depths, so that they can be put in the order of these.
+  constexpr int number_bits = 4;
+  static_assert(offsets.size() < 1U << number_bits);
+  const std::uint16_t* const own = free_.row(y) + x;
+  std::array<std::uint32_t, offsets.size()> keys;
   std::size_t count = 0;
-  for (const Offset& offset : offsets) {
-    const int column = x + offset.x;
-    const int row = y + offset.y;
-    const std::uint16_t value = depth_(column, row);
-    if (value == 0 || images.depth_mask(column, row) != 0) continue;
-    const float depth_m = static_cast<float>(value) * unit_m_;
-    // In their order of depth.
-    std::size_t place = count++;
-    for (; place > 0 && neighbours[place - 1].depth_m > depth_m; --place) {
-      neighbours[place] = neighbours[place - 1];
-    }
-    neighbours[place] = {&offset, depth_m,
-                         is_read_(column, row) != 0 ? &colors_(column, row) : nullptr};
+  for (std::size_t i = 0; i < offsets.size(); ++i) {
+    const std::uint32_t value = own[steps_[i]];
+    keys[count] = value << number_bits | static_cast<std::uint32_t>(i);
+    count += value != 0 ? 1 : 0;
   }
-  const auto chosen_m = choose(images, x, y, neighbours, count);
+  for (std::size_t i = 1; i < count; ++i) {
+    const std::uint32_t key = keys[i];
+    std::size_t place = i;
+    for (; place > 0 && keys[place - 1] > key; --place) keys[place] = keys[place - 1];
+    keys[place] = key;
+  }
+  const auto depth_of = [&](std::size_t i) {
+    return static_cast<float>(keys[i] >> number_bits) * unit_m_;
+  };
+  std::size_t cut = 0;
+  if (count > 0) {
+    float widest_m = std::max(least_gap_m, least_gap_noise * DepthNoise().at(depth_of(0)));
+    for (std::size_t i = 1; i < count; ++i) {
+      const float gap_m = depth_of(i) - depth_of(i - 1);
+      if (gap_m <= widest_m) continue;
+      widest_m = gap_m;
+      cut = i;
+    }
+  }
+  if (cut == 0) return;
+  Neighbours neighbours;
+  const std::uint8_t* const is_read = is_read_.row(y) + x;
+  const Bgr3* const colors = colors_.row(y) + x;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t number = keys[i] & ((1U << number_bits) - 1);
+    const std::ptrdiff_t step = steps_[number];
+    const float depth_m = depth_of(i);
+    neighbours[i] = {&offsets[number], depth_m, 1 / depth_m,
+                     is_read[step] != 0 ? colors + step : nullptr};
+  }
+  const auto chosen_m = choose(images, x, y, neighbours, cut, count);
   if (!chosen_m) return;
   depth(x, y) = static_cast<std::uint16_t>(std::clamp(std::lrint(*chosen_m / unit_m_), 1L, 65535L));
 }
 
-/// The pixel's depth on the surface that it belongs to; nothing if there are not two of them, or
-/// they cannot be told apart.
+/// The pixel's depth on the surface that it belongs to, of those before and from `cut` on; nothing
+/// if they cannot be told apart.
 std::optional<float> EdgeSnapping::choose(const Images& images, int x, int y,
-                                          const Neighbours& neighbours, std::size_t count) const {
+                                          const Neighbours& neighbours, std::size_t cut,
+                                          std::size_t count) const {
   const auto begin = neighbours.begin();
+  const auto middle = begin + static_cast<std::ptrdiff_t>(cut);
   const auto end = begin + static_cast<std::ptrdiff_t>(count);
-  auto cut = begin;
-  if (count > 0) {
-    float widest_m = std::max(least_gap_m, least_gap_noise * DepthNoise().at(begin->depth_m));
-    for (auto n = begin + 1; n < end; ++n) {
-      const float gap_m = n->depth_m - (n - 1)->depth_m;
-      if (gap_m <= widest_m) continue;
-      widest_m = gap_m;
-      cut = n;
-    }
-  }
-  if (cut == begin) return std::nullopt;
-
-  const auto front = mean_color(begin, cut);
-  const auto back = mean_color(cut, end);
+  const auto front = mean_color(begin, middle);
+  const auto back = mean_color(middle, end);
   if (!front || !back || distance(*front, *back) < least_contrast) return std::nullopt;
+  struct Sight {
+    float depth_m, misfit;
+  };
   // The colour sensor stands beside the depth sensor: what it sees there depends on the depth.
-  const float front_m = depth_of_plane(begin, cut);
-  const float back_m = depth_of_plane(cut, end);
-  const auto front_sight = color_at(images, x, y, front_m);
-  const auto back_sight = color_at(images, x, y, back_m);
-  if (!front_sight || !back_sight) return std::nullopt;
-  const float front_misfit = distance(*front_sight, *front);
-  const float back_misfit = distance(*back_sight, *back);
+  const auto look = [&](auto first, auto last, const Bgr3& mean) -> std::optional<Sight> {
+    const float depth_m = depth_of_plane(first, last);
+    const auto color = color_at(images, x, y, depth_m);
+    if (!color) return std::nullopt;
+    return Sight{depth_m, distance(*color, mean)};
+  };
+  const auto look_front = [&] { return look(begin, middle, *front); };
+  const auto look_back = [&] { return look(middle, end, *back); };
   const auto is_own = [](const Neighbour& n) { return n.offset->x == 0 && n.offset->y == 0; };
-  if (std::any_of(begin, cut, is_own) && front_misfit < least_contrast) return front_m;
-  if (std::any_of(cut, end, is_own) && back_misfit < least_contrast) return back_m;
-  return front_misfit < back_misfit ? front_m : back_m;
+  // Most pixels stay on their surface: then nobody needs to look at the other.
+  const bool is_measured = free_(x, y) != 0;
+  const bool is_in_front = is_measured && std::any_of(begin, middle, is_own);
+  const auto own = is_in_front ? look_front() : look_back();
+  if (!own) return std::nullopt;
+  if (is_measured && own->misfit < least_contrast) return own->depth_m;
+  const auto other = is_in_front ? look_back() : look_front();
+  if (!other) return std::nullopt;
+  if (own->misfit == other->misfit) return is_in_front ? other->depth_m : own->depth_m;
+  return own->misfit < other->misfit ? own->depth_m : other->depth_m;
 }
 
 }  // namespace diminish

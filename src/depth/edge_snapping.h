@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "core/rows.h"
+#include "depth/color_places.h"
 #include "depth/depth_part.h"
 #include "depth/depth_rows.h"
 #include "diminish/image.h"
 #include "diminish/rig.h"
-#include "geometry/projection.h"
 #include "geometry/ray_table.h"
 
 namespace diminish {
@@ -41,23 +41,36 @@ class EdgeSnapping {
   void snap(const Images& images, const DepthPart& part, Image<std::uint16_t>& depth);
 
  private:
-  /// A neighbour's place from a pixel, and its weight.
+  /// A neighbour's place from a pixel, its weight, and the weight's products with the place.
   struct Offset {
     int x, y;
-    float weight;
+    float weight, weight_x, weight_y, weight_xx, weight_xy, weight_yy;
   };
   static const std::array<Offset, 13> offsets;
   struct Neighbour {
     const Offset* offset;
-    float depth_m;
+    float depth_m, inverse_depth;
     const Bgr3* color;  ///< null: not known
   };
   using Neighbours = std::array<Neighbour, 13>;
   struct Scratch {
     std::vector<std::uint8_t> has_jump, line;
   };
+  /// Some depth pixels of a row, and where they lie in the colour image.
+  struct Sights {
+    std::vector<int> x;
+    std::vector<float> ray_x, ray_y, depth_m;
+    std::vector<std::int32_t> columns, lines;
 
-  void find_edges(const DepthPart& part);
+    void resize(std::size_t most) {
+      constexpr std::size_t vector = 16;
+      x.resize(most);
+      for (auto* values : {&ray_x, &ray_y, &depth_m}) values->resize(most + vector);
+      for (auto* values : {&columns, &lines}) values->resize(most + vector);
+    }
+  };
+
+  void find_edges(const DepthPart& part, const Mask& mask);
   void mark_gaps(const DepthPart& part, const Rect& within, int y, bool downwards,
                  Scratch& scratch);
   void widen(const Image<std::uint8_t>& flags, const Rect& part, int by,
@@ -65,22 +78,24 @@ class EdgeSnapping {
   void read_colors(const Images& images, const Rect& part);
   void snap_pixel(const Images& images, int x, int y, Image<std::uint16_t>& depth) const;
   std::optional<float> choose(const Images& images, int x, int y, const Neighbours& neighbours,
-                              std::size_t count) const;
+                              std::size_t cut, std::size_t count) const;
   std::optional<Bgr3> color_at(const Images& images, int x, int y, float depth_m) const;
 
   std::shared_ptr<const RayTable> rays_;
-  FloatTransform to_color_;
-  Projection color_;
+  ColorPlaces places_;
   float unit_m_;
   depth_rows::Gap gap_;
+  std::array<std::ptrdiff_t, 13> steps_;  ///< to the neighbours, in pixels of a row by row image
 
   Image<std::uint16_t> depth_;       ///< as it comes
+  Image<std::uint16_t> free_;        ///< without what is masked
   Image<std::uint8_t> is_edge_;      ///< 1: at a depth edge
   Image<std::uint8_t> beside_edge_;  ///< 1: two surfaces may be within reach
   Image<std::uint8_t> is_read_;      ///< 1: `colors_` holds a depth pixel's colour
   Image<Bgr3> colors_;
   std::uint16_t closer_than_gap_;  ///< depths this close have no gap between them
   Scratch scratch_[most_bands];
+  Sights sights_[most_bands];
 };
 
 }  // namespace diminish
