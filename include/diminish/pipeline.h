@@ -34,8 +34,9 @@ class DIMINISH_EXPORT Pipeline {
   void set_options(const Options& options);
   const Options& options() const;
 
-  /// Whether the caller needs `result.reconstruction`; by default it does. If not, and a GPU makes
-  /// the whole frame, its images stay there and are empty in the result.
+  /// Whether the caller needs `result.reconstruction`; by default it does. If not, only those of
+  /// its colours are filled that the frame needs; and where a GPU makes the whole frame, its images
+  /// stay there and are empty in the result.
   void want_reconstruction(bool wanted);
 
   /// From the next frame on, puts each picture into a texture that the application shares; nullopt:

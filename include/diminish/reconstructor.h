@@ -60,6 +60,17 @@ class DIMINISH_EXPORT Reconstructor {
                            const OcclusionMasks& masks, const TiledRegion& region,
                            const Options& options, Reconstruction& reconstruction) = 0;
 
+  /// Whose colours are wanted. Depths and sources are always filled.
+  enum class Colors {
+    all,
+    /// Pixels of the objects to remove, and every `sparse_step`-th column of every `sparse_step`-th
+    /// row of the region, from its first on. The others' may be filled or empty.
+    sparse
+  };
+  static constexpr int sparse_step = 4;
+  /// From the next frame on; by default all.
+  virtual void want_colors(Colors /*wanted*/) {}
+
   /// The name of the MaskDrawer that goes with it.
   virtual std::string mask_drawer() const { return "cpu"; }
 

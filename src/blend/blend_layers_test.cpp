@@ -74,7 +74,7 @@ Reconstruction blend_in_vectors(const Scene& scene) {
   std::vector<CameraBlender::Surface> surfaces(scene.layers.size());
   for (std::size_t k = 0; k < scene.layers.size(); ++k) {
     SurfaceBuffer& buffer = buffers[k];
-    buffer.clear(region);
+    buffer.clear(region, region);
     for (int y = region.y; y < region.bottom(); ++y) {
       for (int x = region.x; x < region.right(); ++x) {
         const float z = scene.layers[k].depth_m(x, y);

@@ -7,6 +7,7 @@
 #include "core/rows.h"
 #include "core/runs.h"
 #include "diminish/color_corrector.h"
+#include "diminish/reconstructor.h"
 #include "membrane/soft_membrane.h"
 
 namespace diminish {
@@ -51,6 +52,7 @@ class MappedCorrection : public ColorCorrector {
     const auto& [camera, occlusion, reconstruction, maps] = inputs;
     const Rect& region = reconstruction.region;
     constexpr int step = SoftMembrane::step;
+    static_assert(step % Reconstructor::sparse_step == 0, "other colours may be missing");
     for (int y = region.y; y < region.bottom(); y += step) {
       for (int x = region.x; x < region.right(); x += step) {
         const std::uint8_t source = reconstruction.source(x, y);

@@ -24,6 +24,14 @@ std::string best_suited(Suited most) {
   return best;
 }
 
+/// What the stages after the drawing look at, if nobody else does.
+Reconstructor::Colors wanted_colors(const FrameInputs& inputs) {
+  const bool only_maps = inputs.methods.color.rule != ColorCorrector::Declaration::Rule::own;
+  return inputs.wants_reconstruction || inputs.methods.remembers || !only_maps
+             ? Reconstructor::Colors::all
+             : Reconstructor::Colors::sparse;
+}
+
 /// The last stage that a backend takes over.
 Stage last_stage(const ComposingReconstructor& backend, const FrameMethods& methods) {
   auto last = static_cast<std::size_t>(Stage::drawing);
@@ -82,6 +90,7 @@ void Backend::reconstruct(Reconstructor& reconstructor, const FrameInputs& input
     resize_second(false, rig_.color, result.reconstruction.second);
     return;
   }
+  reconstructor.want_colors(wanted_colors(inputs));
   reconstructor.reconstruct(inputs.frame, inputs.depths, inputs.poses, inputs.masks, inputs.region,
                             inputs.options, result.reconstruction);
   result.report.drawing.passes = reconstructor.gpu_passes();

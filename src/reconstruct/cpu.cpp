@@ -4,6 +4,7 @@
 #include "blend/camera_blender.h"
 #include "blend/layers.h"
 #include "core/rows.h"
+#include "core/runs.h"
 #include "core/tasks.h"
 #include "diminish/error.h"
 #include "diminish/reconstructor.h"
@@ -60,9 +61,9 @@ class CameraMesh {
         VertexRow& row = vertices_[static_cast<std::size_t>(i)];
         row.resize(blocks.width * VertexRow::block);
         rows_.project(frame, first_row_ + i, row);
-        Rect& all = row_bounds_[static_cast<std::size_t>(i)];
+        VertexBounds& all = row_bounds_[static_cast<std::size_t>(i)];
         all = {};
-        for (const Rect& bounds : row.bounds) all = join(all, bounds);
+        for (const VertexBounds& bounds : row.bounds) all = join(all, bounds);
       }
     });
   }
@@ -71,10 +72,10 @@ class CameraMesh {
   void draw(const Input& input, Rows rows) {
     SurfaceBuffer& surface = surfaces_[rows.band];
     const Rect part{region_.x, region_.y + rows.first, region_.width, rows.last - rows.first};
-    surface.clear(part);
+    surface.clear(part, input.region);
     for (int i = 0; i + 1 < row_count_; ++i) {
       const auto upper = static_cast<std::size_t>(i);
-      if (!intersect(join(row_bounds_[upper], row_bounds_[upper + 1]), part).empty()) {
+      if (join(row_bounds_[upper], row_bounds_[upper + 1]).overlaps(part)) {
         draw_cells_between(vertices_[upper], vertices_[upper + 1], input, part, surface);
       }
     }
@@ -100,13 +101,13 @@ class CameraMesh {
                                  const Rect& part, SurfaceBuffer& surface) {
     const auto blocks = static_cast<int>(upper.bounds.size()) - 1;
     // A block's cells reach into the next block.
-    Rect next = join(upper.bounds[0], lower.bounds[0]);
+    VertexBounds next = join(upper.bounds[0], lower.bounds[0]);
     for (int block = 0; block < blocks; ++block) {
-      const Rect own = next;
+      const VertexBounds own = next;
       const auto beside = static_cast<std::size_t>(block + 1);
       next = join(upper.bounds[beside], lower.bounds[beside]);
-      const Rect touched = intersect(join(own, next), part);
-      if (touched.empty() || !input.region.touches(touched)) continue;
+      const VertexBounds both = join(own, next);
+      if (!both.overlaps(part) || !input.region.touches(intersect(both.rect(), part))) continue;
       draw_cells(upper, lower, block, input.threshold, surface);
     }
   }
@@ -114,9 +115,9 @@ class CameraMesh {
   VertexRows rows_;
   VisibleBlocks visible_;
   Rect region_;
-  int first_row_ = 0, row_count_ = 0;  ///< of the depth image: those that may be visible
-  std::vector<VertexRow> vertices_;    ///< of these rows
-  std::vector<Rect> row_bounds_;       ///< likewise: where in the picture they lie
+  int first_row_ = 0, row_count_ = 0;     ///< of the depth image: those that may be visible
+  std::vector<VertexRow> vertices_;       ///< of these rows
+  std::vector<VertexBounds> row_bounds_;  ///< likewise: where in the picture they lie
   SurfaceBuffer surfaces_[most_bands];
 };
 
@@ -132,9 +133,12 @@ class VectorizedReconstructor : public Reconstructor {
     }
   }
 
+  void want_colors(Colors wanted) override { wanted_colors_ = wanted; }
+
   void reconstruct(const FrameSet& frame, const DepthImages& depths, const Poses& poses,
                    const OcclusionMasks& masks, const TiledRegion& region, const Options& options,
                    Reconstruction& reconstruction) override {
+    objects_ = &masks.color;
     clear_outside(color_, region, reconstruction);
     drawn_.clear();
     for (std::size_t k = 0; k < meshes_.size(); ++k) {
@@ -255,8 +259,8 @@ class VectorizedReconstructor : public Reconstructor {
     std::fill_n(second_colors, region.width, Bgra{});
     for (const BlendedRow& row : blender_.choose(y, chosen, scratch.blending)) {
       const ImageView<Bgr> texture = frame.rgbd[row.source - 1U].color;
-      look_up_colors(row, texture, region.width, chosen.source, chosen.depth_m, colors);
-      look_up_colors(row, texture, region.width, chosen.second_source, chosen.second_depth_m,
+      look_up_wanted(row, texture, y, region, chosen.source, chosen.depth_m, colors);
+      look_up_wanted(row, texture, y, region, chosen.second_source, chosen.second_depth_m,
                      second_colors);
     }
   }
@@ -283,11 +287,39 @@ class VectorizedReconstructor : public Reconstructor {
     choose_source(surfaces, agreement_m, region.width, source, depth_m);
     std::fill_n(colors, region.width, Bgra{});
     for (const SurfaceRow& row : surfaces) {
-      look_up_colors(row, frame.rgbd[row.source - 1U].color, region.width, source, depth_m, colors);
+      look_up_wanted(row, frame.rgbd[row.source - 1U].color, y, region, source, depth_m, colors);
     }
   }
 
+  /// Looks up a row's colours, as far as they are wanted.
+  void look_up_wanted(const SurfaceRow& row, ImageView<Bgr> texture, int y, const Rect& region,
+                      const std::uint8_t* source, const float* depth_m, Bgra* colors) const {
+    if (wanted_colors_ == Colors::all || (y - region.y) % sparse_step == 0) {
+      look_up_colors(row, texture, region.width, source, depth_m, colors);
+      return;
+    }
+    const auto look_up = [&](int first, int last) {
+      look_up_colors(row.from(first), texture, last - first, source + first, depth_m + first,
+                     colors + first);
+    };
+    // Runs that are this close are looked up together.
+    constexpr int least_gap = 16;
+    int begin = 0;
+    int end = -1;
+    for_each_run(objects_->row(y) + region.x, 0, region.width, Pixels::set,
+                 [&](int first, int last) {
+                   if (end < 0 || first - end >= least_gap) {
+                     if (end >= 0) look_up(begin, end);
+                     begin = first;
+                   }
+                   end = last;
+                 });
+    if (end >= 0) look_up(begin, end);
+  }
+
   Intrinsics color_;
+  Colors wanted_colors_ = Colors::all;
+  const Mask* objects_ = nullptr;  ///< of this frame
   std::vector<CameraMesh> meshes_;
   std::vector<Drawn> drawn_;
   std::vector<CameraBlender::Surface> blended_;

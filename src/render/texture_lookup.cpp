@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "core/runs.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/texture_lookup.cpp"
 #include <hwy/foreach_target.h>
@@ -43,9 +45,9 @@ void ChooseSource(const std::vector<SurfaceRow>& rows, float agreement_m, int wi
 /// gather instructions are slower.)
 struct alignas(64) Places {
   static constexpr int most = 128;
-  float fx[most], fy[most];      ///< the place between four pixels of the texture
-  std::int32_t place[most];      ///< of the upper left one, in bytes
-  std::int32_t pixels[4][most];  ///< upper left, upper right, lower left, lower right
+  float fx[most], fy[most];                ///< the place between four pixels of the texture
+  std::int32_t place[most];                ///< of the upper left one, in bytes
+  std::uint64_t upper[most], lower[most];  ///< two neighbouring pixels with three bytes each
 };
 
 HWY_INLINE void FindPlaces(const SurfaceRow& row, ImageView<Bgr> texture, int first, int count,
@@ -70,7 +72,6 @@ HWY_INLINE void FindPlaces(const SurfaceRow& row, ImageView<Bgr> texture, int fi
   });
 }
 
-/// Two neighbouring pixels with three bytes each.
 HWY_INLINE std::uint64_t PixelPair(const std::uint8_t* texture, std::int32_t place) {
   std::uint64_t pair;
   std::memcpy(&pair, texture + place, sizeof(pair));
@@ -82,43 +83,72 @@ HWY_INLINE void ReadPixels(ImageView<Bgr> texture, int count, Places& places) {
   const auto row_bytes = static_cast<std::int32_t>(texture.stride());
   // The last place from which eight bytes can be read.
   const auto last = (texture.height() - 1) * row_bytes + 3 * texture.width() - 8;
+  std::int32_t greatest = 0;
+  for (int i = 0; i < count; ++i) greatest = std::max(greatest, places.place[i]);
+  if (greatest + row_bytes <= last) {
+    for (int i = 0; i < count; ++i) {
+      places.upper[i] = PixelPair(bytes, places.place[i]);
+      places.lower[i] = PixelPair(bytes + row_bytes, places.place[i]);
+    }
+    return;
+  }
   for (int i = 0; i < count; ++i) {
-    const std::int32_t upper = places.place[i];
-    const std::int32_t lower = upper + row_bytes;
+    const std::int32_t lower = places.place[i] + row_bytes;
     const std::int32_t from = std::min(lower, last);
-    const std::uint64_t upper_pair = PixelPair(bytes, upper);
-    const std::uint64_t lower_pair = PixelPair(bytes, from) >> (8 * (lower - from));
-    places.pixels[0][i] = static_cast<std::int32_t>(upper_pair);
-    places.pixels[1][i] = static_cast<std::int32_t>(upper_pair >> 24);
-    places.pixels[2][i] = static_cast<std::int32_t>(lower_pair);
-    places.pixels[3][i] = static_cast<std::int32_t>(lower_pair >> 24);
+    places.upper[i] = PixelPair(bytes, places.place[i]);
+    places.lower[i] = PixelPair(bytes, from) >> (8 * (lower - from));
   }
 }
 
-template <int shift, class D>
-HWY_INLINE hn::Vec<hn::RebindToSigned<D>> BlendChannel(D d, const Places& places, int i) {
-  const hn::RebindToSigned<D> di;
-  const auto value = [&](int pixel) HWY_ATTR {
-    const auto bits = hn::ShiftRight<shift>(hn::LoadU(di, places.pixels[pixel] + i));
-    return hn::ConvertTo(d, hn::And(bits, hn::Set(di, 255)));
-  };
-  const auto fx = hn::LoadU(d, places.fx + i);
-  const auto fy = hn::LoadU(d, places.fy + i);
-  const auto left = value(0);
-  const auto lower_left = value(2);
-  const auto top = hn::MulAdd(fx, hn::Sub(value(1), left), left);
-  const auto bottom = hn::MulAdd(fx, hn::Sub(value(3), lower_left), lower_left);
-  return hn::NearestInt(hn::MulAdd(fy, hn::Sub(bottom, top), top));
-}
+/// A vector of left and one of right pixels; their highest bytes are of no use.
+template <class D>
+struct PixelPairs {
+  using Ints = hn::RebindToSigned<D>;
+  hn::Vec<Ints> left, right;
+
+  HWY_INLINE PixelPairs(D /*d*/, const std::uint64_t* pairs) {
+    const Ints ints;
+#if HWY_TARGET != HWY_SCALAR
+    if constexpr (hn::MaxLanes(D()) > 1) {
+      const hn::Repartition<std::uint64_t, Ints> d64;
+      const auto first = hn::LoadU(d64, pairs);
+      const auto second = hn::LoadU(d64, pairs + hn::Lanes(d64));
+      const auto low = [&](auto low_half, auto high_half) HWY_ATTR {
+        return hn::ConcatEven(ints, hn::BitCast(ints, high_half), hn::BitCast(ints, low_half));
+      };
+      left = low(first, second);
+      right = low(hn::ShiftRight<24>(first), hn::ShiftRight<24>(second));
+      return;
+    }
+#endif
+    left = hn::Set(ints, static_cast<std::int32_t>(*pairs));
+    right = hn::Set(ints, static_cast<std::int32_t>(*pairs >> 24));
+  }
+  template <int shift>
+  HWY_INLINE static hn::Vec<D> Channel(hn::Vec<Ints> pixels) {
+    const auto bits = hn::ShiftRight<shift>(pixels);
+    return hn::ConvertTo(D(), hn::And(bits, hn::Set(Ints(), 255)));
+  }
+  template <int shift>
+  HWY_INLINE hn::Vec<D> Between(hn::Vec<D> fx) const {
+    const auto from = Channel<shift>(left);
+    return hn::MulAdd(fx, hn::Sub(Channel<shift>(right), from), from);
+  }
+};
 
 void LookUpColors(const SurfaceRow& row, ImageView<Bgr> texture, int width,
                   const std::uint8_t* source, const float* depth_m, Bgra* colors) {
   Places places;
-  for (int first = 0; first < width; first += Places::most) {
-    const int count = std::min(Places::most, width - first);
-    if (std::find(source + first, source + first + count, row.source) == source + first + count) {
-      continue;
+  // Pixels of other cameras between the row's own are looked up, too, if they are few.
+  constexpr int most_between = 16;
+  for (int first = 0; (first = find_equal(source, first, width, row.source)) < width;) {
+    const int room = std::min(first + Places::most, width);
+    int end = find_other(source, first, room, row.source);
+    for (int next; end < room; end = find_other(source, next, room, row.source)) {
+      next = find_equal(source, end, room, row.source);
+      if (next == room || next - end > most_between) break;
     }
+    const int count = end - first;
     FindPlaces(row, texture, first, count, depth_m, places);
     ReadPixels(texture, count, places);
     ForEachOverlappingVector(count, [&](auto d, int i) HWY_ATTR {
@@ -127,14 +157,24 @@ void LookUpColors(const SurfaceRow& row, ImageView<Bgr> texture, int width,
       const auto sources = hn::PromoteTo(di, hn::LoadU(d8, source + first + i));
       const auto mine = hn::Eq(sources, hn::Set(di, row.source));
       if (hn::AllFalse(di, mine)) return;
-      const auto blue = BlendChannel<0>(d, places, i);
-      const auto green = hn::ShiftLeft<8>(BlendChannel<8>(d, places, i));
-      const auto red = hn::ShiftLeft<16>(BlendChannel<16>(d, places, i));
+      const PixelPairs<decltype(d)> upper(d, places.upper + i);
+      const PixelPairs<decltype(d)> lower(d, places.lower + i);
+      const auto fx = hn::LoadU(d, places.fx + i);
+      const auto fy = hn::LoadU(d, places.fy + i);
+      const auto mix = [&](auto top, auto bottom) HWY_ATTR {
+        return hn::NearestInt(hn::MulAdd(fy, hn::Sub(bottom, top), top));
+      };
+      const auto blue = mix(upper.template Between<0>(fx), lower.template Between<0>(fx));
+      const auto green =
+          hn::ShiftLeft<8>(mix(upper.template Between<8>(fx), lower.template Between<8>(fx)));
+      const auto red =
+          hn::ShiftLeft<16>(mix(upper.template Between<16>(fx), lower.template Between<16>(fx)));
       const auto alpha = hn::Set(di, static_cast<std::int32_t>(0xFF000000U));
       const auto color = hn::Or(hn::Or(blue, green), hn::Or(red, alpha));
       auto* to = reinterpret_cast<std::int32_t*>(colors + first + i);
       hn::StoreU(hn::IfThenElse(mine, color, hn::LoadU(di, to)), di, to);
     });
+    first = end;
   }
 }
 

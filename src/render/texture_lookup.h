@@ -18,6 +18,15 @@ struct SurfaceRow {
         u_over_z(surface.u_over_z.data() + surface.row(y)),
         v_over_z(surface.v_over_z.data() + surface.row(y)),
         source(source_) {}
+
+  /// The row from a column on.
+  SurfaceRow from(int column) const {
+    SurfaceRow rest = *this;
+    rest.inverse_z += column;
+    rest.u_over_z += column;
+    rest.v_over_z += column;
+    return rest;
+  }
 };
 
 /// Which camera each of `width` pixels is taken from, and z there, by the rule of merge_layers. 0

@@ -119,15 +119,13 @@ void ProjectRowBy(const VertexRows::Constants& constants, const FloatTransform& 
       row.bounds[index] = {};
       continue;
     }
-    const auto least = [&](Vector values) HWY_ATTR {
+    const auto first = [&](Vector values) HWY_ATTR {
       return static_cast<int>(hn::GetLane(hn::MinOfLanes(d, values))) - 1;
     };
-    const auto size = [&](Vector values, int first) HWY_ATTR {
-      return static_cast<int>(hn::GetLane(hn::MaxOfLanes(d, values))) + 2 - first;
+    const auto end = [&](Vector values) HWY_ATTR {
+      return static_cast<int>(hn::GetLane(hn::MaxOfLanes(d, values))) + 2;
     };
-    const int first_x = least(least_x);
-    const int first_y = least(least_y);
-    row.bounds[index] = {first_x, first_y, size(greatest_x, first_x), size(greatest_y, first_y)};
+    row.bounds[index] = {first(least_x), first(least_y), end(greatest_x), end(greatest_y)};
   }
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -13,6 +15,23 @@
 
 namespace diminish {
 
+/// Where in the picture some vertices lie; right and bottom are beyond it. Joining two is four
+/// comparisons, without branches.
+struct VertexBounds {
+  int left = std::numeric_limits<int>::max(), top = left;
+  int right = std::numeric_limits<int>::min(), bottom = right;
+
+  bool empty() const { return left >= right; }
+  Rect rect() const { return empty() ? Rect{} : Rect{left, top, right - left, bottom - top}; }
+  bool overlaps(const Rect& part) const {
+    return left < part.right() && right > part.x && top < part.bottom() && bottom > part.y;
+  }
+  friend VertexBounds join(const VertexBounds& a, const VertexBounds& b) {
+    return {std::min(a.left, b.left), std::min(a.top, b.top), std::max(a.right, b.right),
+            std::max(a.bottom, b.bottom)};
+  }
+};
+
 /// The vertices of one row of a depth image (see MeshVertex), with one array for each value.
 /// Vertices are processed in blocks. There is one more block than the row needs, of invalid
 /// vertices.
@@ -23,7 +42,7 @@ struct VertexRow {
   std::vector<float> depth_m;             ///< z in the depth sensor's frame
   std::vector<float> inverse_z;           ///< 1 / z in the colour camera's frame; 0: not a vertex
   std::vector<float> u_over_z, v_over_z;  ///< place in the RGB-D camera's colour image, over z
-  std::vector<Rect> bounds;  ///< of a block's valid vertices, in pixels; empty if there are none
+  std::vector<VertexBounds> bounds;       ///< of each block's valid vertices
 
   void resize(int width);
 };
