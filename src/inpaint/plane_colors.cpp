@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/runs.h"
+
 namespace diminish {
 
 void PlaneColors::collect(const Mask& occlusion, const Surfaces& surfaces,
@@ -30,10 +32,17 @@ void PlaneColors::find_objects(const Mask& occlusion) {
   has_object_.resize(columns_, rows_, 0);
   near_object_.resize(columns_, rows_, 0);
   const int columns = columns_;
+  const int whole_cells = region_.width / cell;
   for (int y = 0; y < region_.height; y += step) {
     const std::uint8_t* mask = occlusion.row(region_.y + y) + region_.x;
     std::uint8_t* has = has_object_.row(y / cell);
-    for (int x = 0; x < region_.width; x += step) has[x / cell] |= mask[x];
+    static_assert(cell == 2 * step);
+    for (int column = 0; column < whole_cells; ++column, mask += cell) {
+      has[column] |= mask[0] | mask[step];
+    }
+    for (int x = whole_cells * cell; x < region_.width; x += step, mask += step) {
+      has[whole_cells] |= mask[0];
+    }
   }
   // First along columns, then along rows.
   const auto add = [columns](const std::uint8_t* from, std::uint8_t* to) {
@@ -58,14 +67,20 @@ void PlaneColors::find_objects(const Mask& occlusion) {
 
 /// The colours of a row of cells, each in the entry to its lower right.
 void PlaneColors::add_row(int row, const Image<std::uint8_t>& labels, const Image<Bgr>& picture) {
-  const std::uint8_t* near = near_object_.row(row);
+  for_each_run(near_object_.row(row), 0, columns_, Pixels::clear,
+               [&](int first, int last) { add_cells(row, first, last, labels, picture); });
+}
+
+/// Of columns [first, last).
+void PlaneColors::add_cells(int row, int first, int last, const Image<std::uint8_t>& labels,
+                            const Image<Bgr>& picture) {
   const int end = std::min((row + 1) * cell, region_.height);
   for (int y = row * cell; y < end; y += step) {
     const std::uint8_t* label = labels.row(region_.y + y) + region_.x;
     const Bgr* colors = picture.row(region_.y + y) + region_.x;
-    for (int x = 0; x < region_.width; x += step) {
+    for (int x = first * cell; x < std::min(last * cell, region_.width); x += step) {
       const int plane = label[x] - surface_label::first_plane;
-      if (plane < 0 || plane >= planes || near[x / cell] != 0) continue;
+      if (plane < 0 || plane >= planes) continue;
       Table& table = tables_[static_cast<std::size_t>(plane)];
       if (!table.is_used) {
         table.is_used = true;

@@ -37,6 +37,8 @@ class PlaneColors {
   };
   void find_objects(const Mask& occlusion);
   void add_row(int row, const Image<std::uint8_t>& labels, const Image<Bgr>& picture);
+  void add_cells(int row, int first, int last, const Image<std::uint8_t>& labels,
+                 const Image<Bgr>& picture);
 
   Rect region_;
   int columns_ = 0, rows_ = 0;

@@ -5,6 +5,7 @@
 #include "core/channels.h"
 #include "core/connected_regions.h"
 #include "core/rows.h"
+#include "core/runs.h"
 #include "core/tasks.h"
 #include "diminish/inpainter.h"
 #include "inpaint/plane_colors.h"
@@ -24,6 +25,19 @@ constexpr Code foreground = surface_label::foreground & label_bits;
 /// Beyond the picture: never filled, and nothing to fill from.
 constexpr Code outside = open | label_bits;
 }  // namespace state
+
+/// The bytes [first, last) that are `value`.
+int count_of(const std::uint8_t* bytes, int first, int last, std::uint8_t value) {
+  int count = 0;
+  while (first < last) {
+    // As many as a byte can count, so that the compiler takes many at a time.
+    const int end = std::min(first + 255, last);
+    std::uint8_t some = 0;
+    for (; first < end; ++first) some = static_cast<std::uint8_t>(some + (bytes[first] == value));
+    count += some;
+  }
+  return count;
+}
 
 /// Fills each plane of the background from its own pixels alone, as smoothly as can be: what stands
 /// in front of a wall does not bleed onto it, and where table and wall meet there is an edge. What
@@ -59,6 +73,7 @@ class SurfaceInpainting : public Inpainter {
 
   void collect_states(const Holes& holes) {
     states_.resize(window_.width, window_.height);
+    for (auto& runs : open_runs_) runs.clear();
     const Surfaces& surfaces = holes.surfaces;
     const Rect seen = intersect(window_, holes.missing.bounds());
     const Rect drawn = intersect(intersect(surfaces.region, surfaces.label.bounds()), seen);
@@ -68,13 +83,21 @@ class SurfaceInpainting : public Inpainter {
       if (y < seen.y || y >= seen.bottom()) continue;
       const std::uint8_t* const missing = holes.missing.row(y);
       for (int x = seen.x; x < seen.right(); ++x) states[x] = missing[x] & state::open;
-      if (y < drawn.y || y >= drawn.bottom()) continue;
-      const std::uint8_t* const labels = surfaces.label.row(y);
-      for (int x = drawn.x; x < drawn.right(); ++x) {
-        const bool is_filled_alone = labels[x] < label_count;
-        const state::Code label = labels[x] & state::label_bits;
-        states[x] |= states[x] == 0 || is_filled_alone ? label : surface_label::unknown;
+      if (y >= drawn.y && y < drawn.bottom()) {
+        const std::uint8_t* const labels = surfaces.label.row(y);
+        for (int x = drawn.x; x < drawn.right(); ++x) {
+          const bool is_filled_alone = labels[x] < label_count;
+          const state::Code label = labels[x] & state::label_bits;
+          states[x] |= states[x] == 0 || is_filled_alone ? label : surface_label::unknown;
+        }
       }
+      for_each_run(missing, seen.x, seen.right(), Pixels::set, [&](int first, int last) {
+        for (int end; first < last; first = end) {
+          end = find_other(states, first, last, states[first]);
+          open_runs_[states[first] & state::label_bits].push_back(
+              {y - window_.y, first - window_.x, end - window_.x});
+        }
+      });
     }
   }
 
@@ -82,20 +105,12 @@ class SurfaceInpainting : public Inpainter {
   /// what is in front of their plane.
   void find_holes() {
     boxes_.fill({});
-    open_.resize(window_.width, window_.height);
     for (std::size_t k = 0; k < label_count; ++k) {
       const auto label = static_cast<Label>(k);
-      const state::Code code = state::open | label;
-      std::uint8_t* const open = open_.data();
-      const state::Code* const states = states_.data();
-      const std::size_t pixels = states_.size();
-      std::uint8_t any = 0;
-      for (std::size_t i = 0; i < pixels; ++i) {
-        open[i] = states[i] == code ? 255 : 0;
-        any |= open[i];
-      }
-      if (any == 0) continue;
-      regions_.find(open_, Pixels::set, Connectivity::four);
+      if (open_runs_[k].empty()) continue;
+      regions_.begin();
+      for (const OpenRun& run : open_runs_[k]) regions_.add(run.y, run.first, run.last);
+      regions_.connect(Connectivity::four);
       if (label != surface_label::unknown) count_rims(label);
       for (std::size_t i = 0; i < regions_.regions().size(); ++i) {
         const bool is_kept = label == surface_label::unknown || is_on_plane(rims_[i]);
@@ -130,18 +145,15 @@ class SurfaceInpainting : public Inpainter {
       Rim& rim = rims_[static_cast<std::size_t>(run.region)];
       const auto count = [&](int y, int first, int last) {
         const state::Code* const row = states_.row(y);
-        int plane = 0;
-        int foreground = 0;
-        for (int x = first; x < last; ++x) {
-          plane += row[x] == label ? 1 : 0;
-          foreground += row[x] == state::foreground ? 1 : 0;
-        }
-        rim.plane += plane;
-        rim.foreground += foreground;
+        rim.plane += count_of(row, first, last, label);
+        rim.foreground += count_of(row, first, last, state::foreground);
       };
       // The window holds a pixel more on each side.
-      count(run.y, run.first - 1, run.first);
-      count(run.y, run.last, run.last + 1);
+      const state::Code* const own = states_.row(run.y);
+      for (const state::Code beside : {own[run.first - 1], own[run.last]}) {
+        rim.plane += beside == label ? 1 : 0;
+        rim.foreground += beside == state::foreground ? 1 : 0;
+      }
       count(run.y - 1, run.first, run.last);
       count(run.y + 1, run.first, run.last);
     }
@@ -220,7 +232,11 @@ class SurfaceInpainting : public Inpainter {
   Image<state::Code> states_;
   std::array<Rect, label_count> boxes_;              ///< of the holes of each label, in the picture
   std::array<SmoothFilling, label_count> fillings_;  ///< by label
-  Mask open_;
+  /// Of open pixels with one label; in the window.
+  struct OpenRun {
+    int y, first, last;
+  };
+  std::array<std::vector<OpenRun>, label_count> open_runs_;  ///< by label
   ConnectedRegions regions_;
   std::vector<Rim> rims_;
 };

@@ -1,6 +1,7 @@
 #include "membrane/filling_rows.h"
 
 #include <cstdint>
+#include <cstring>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "membrane/filling_rows.cpp"
@@ -113,15 +114,21 @@ void Relax(std::span<const Run> runs, int y, int parity, float factor, const Col
 }
 
 void Round(const Color* colors, int count, Bgr* pixels) {
-  const hn::FixedTag<std::int32_t, 4> ints;
-  const hn::FixedTag<std::uint8_t, 4> bytes;
+  const hn::CappedTag<float, 8> d;
+  const hn::RebindToSigned<decltype(d)> ints;
+  const hn::Rebind<std::uint8_t, decltype(d)> bytes;
+  constexpr int at_once = static_cast<int>(hn::MaxLanes(d)) / 4;
+  int x = 0;
   // Each writes a byte of the next pixel, too.
-  for (int x = 0; x < count - 1; ++x) {
-    const auto color = hn::Add(hn::LoadU(One(), colors[x].data()), hn::Set(One(), 0.5F));
-    hn::StoreU(hn::DemoteTo(bytes, hn::ConvertTo(ints, color)), bytes,
-               reinterpret_cast<std::uint8_t*>(pixels + x));
+  for (; x + at_once < count; x += at_once) {
+    const auto color = hn::Add(hn::LoadU(d, colors[x].data()), hn::Set(d, 0.5F));
+    std::uint8_t levels[4 * at_once];
+    hn::StoreU(hn::DemoteTo(bytes, hn::ConvertTo(ints, color)), bytes, levels);
+    for (int i = 0; i < at_once; ++i) {
+      std::memcpy(reinterpret_cast<std::uint8_t*>(pixels + x + i), levels + 4 * i, 4);
+    }
   }
-  if (count > 0) plain::round(colors + count - 1, 1, pixels + count - 1);
+  if (x < count) plain::round(colors + x, count - x, pixels + x);
 }
 
 #endif
