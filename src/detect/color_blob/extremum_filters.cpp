@@ -1,84 +1,136 @@
 #include "detect/color_blob/extremum_filters.h"
 
+#include <algorithm>
+#include <array>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "detect/color_blob/extremum_filters.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace diminish::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+struct Largest {
+  template <class V>
+  HWY_INLINE V operator()(V a, V b) const {
+    return hn::Max(a, b);
+  }
+};
+struct Smallest {
+  template <class V>
+  HWY_INLINE V operator()(V a, V b) const {
+    return hn::Min(a, b);
+  }
+};
+
+/// result[i] = the extremum of taps[0][i], taps[1][i] and so on.
+template <class Choose>
+HWY_INLINE void Combine(const std::uint8_t* const* taps, int tap_count, int count,
+                        std::uint8_t* result) {
+  const Choose choose;
+  const auto combine = [&](auto d, int i) HWY_ATTR {
+    auto value = hn::LoadU(d, taps[0] + i);
+    for (int k = 1; k < tap_count; ++k) value = choose(value, hn::LoadU(d, taps[k] + i));
+    hn::StoreU(value, d, result + i);
+  };
+  const hn::ScalableTag<std::uint8_t> d;
+  const auto lanes = static_cast<int>(hn::Lanes(d));
+  if (count < lanes) {
+    for (int i = 0; i < count; ++i) combine(hn::CappedTag<std::uint8_t, 1>(), i);
+    return;
+  }
+  for (int i = 0; i + lanes <= count; i += lanes) combine(d, i);
+  if (count % lanes != 0) combine(d, count - lanes);
+}
+
+void FindLargest(const std::uint8_t* const* taps, int tap_count, int count, std::uint8_t* result) {
+  Combine<Largest>(taps, tap_count, count, result);
+}
+void FindSmallest(const std::uint8_t* const* taps, int tap_count, int count, std::uint8_t* result) {
+  Combine<Smallest>(taps, tap_count, count, result);
+}
+
+}  // namespace
+}  // namespace diminish::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
 namespace diminish {
 namespace {
 
-constexpr auto larger = [](std::uint8_t a, std::uint8_t b) { return a > b ? a : b; };
-constexpr auto smaller = [](std::uint8_t a, std::uint8_t b) { return a < b ? a : b; };
+HWY_EXPORT(FindLargest);
+HWY_EXPORT(FindSmallest);
 
-/// result[i] = choose(result[i], other[i]); the two must not overlap.
-template <class Choose>
-void combine(const std::uint8_t* __restrict other, std::ptrdiff_t count, const Choose& choose,
-             std::uint8_t* __restrict result) {
-  for (std::ptrdiff_t i = 0; i < count; ++i) result[i] = choose(result[i], other[i]);
+/// The rows, or the places in a row, whose extremum is wanted; a reach of 7 at most.
+class Taps {
+ public:
+  void clear() { count_ = 0; }
+  void push_back(const std::uint8_t* tap) { taps_.at(count_++) = tap; }
+  const std::uint8_t* const* data() const { return taps_.data(); }
+  int size() const { return static_cast<int>(count_); }
+
+ private:
+  std::array<const std::uint8_t*, 15> taps_;
+  std::size_t count_ = 0;
+};
+
+void find_largest(const Taps& taps, int count, std::uint8_t* result) {
+  HWY_DYNAMIC_DISPATCH(FindLargest)(taps.data(), taps.size(), count, result);
+}
+void find_smallest(const Taps& taps, int count, std::uint8_t* result) {
+  HWY_DYNAMIC_DISPATCH(FindSmallest)(taps.data(), taps.size(), count, result);
 }
 
-/// Combines `result` with `values` shifted by up to `reach` times `step` bytes to both sides.
-template <class Choose>
-void combine_moved(const std::uint8_t* values, std::ptrdiff_t count, std::ptrdiff_t step, int reach,
-                   const Choose& choose, std::uint8_t* result) {
-  for (int i = 1; i <= reach && i * step < count; ++i) {
-    combine(values + i * step, count - i * step, choose, result);
-    combine(values, count - i * step, choose, result + i * step);
-  }
-}
-
-/// Columns [first, last) of a row, one value at a time.
-template <class Choose>
-void filter_columns(const std::uint8_t* row, int width, int channels, int reach, int first,
-                    int last, const Choose& choose, std::uint8_t* result) {
-  for (int x = first; x < last; ++x) {
-    for (int channel = 0; channel < channels; ++channel) {
-      std::uint8_t value = row[x * channels + channel];
-      for (int other = std::max(x - reach, 0); other <= std::min(x + reach, width - 1); ++other) {
-        value = choose(value, row[other * channels + channel]);
-      }
-      result[x * channels + channel] = value;
-    }
-  }
-}
-
-template <class Pixel, class Choose>
-void filter(const Image<Pixel>& image, const Reach& reach, const Choose& choose,
-            Image<Pixel>& scratch, Image<Pixel>& result) {
+/// First along columns, then along rows. Beyond a row's ends its outermost pixels are repeated,
+/// which changes no extremum.
+template <class Pixel, class Find>
+void filter(const Image<Pixel>& image, const Reach& reach, const Find& find, Image<Pixel>& scratch,
+            Image<Pixel>& result) {
   constexpr int channels = sizeof(Pixel);
+  const auto bytes = [](auto* pixels) { return reinterpret_cast<std::uint8_t*>(pixels); };
   const int width = image.width();
-  const std::ptrdiff_t pitch = std::ptrdiff_t{channels} * width;
-  const std::ptrdiff_t count = pitch * image.height();
-  scratch.resize(width, image.height());
   result.resize(width, image.height());
-  const auto* const values = reinterpret_cast<const std::uint8_t*>(image.data());
-  auto* const columns = reinterpret_cast<std::uint8_t*>(scratch.data());
-  auto* const both = reinterpret_cast<std::uint8_t*>(result.data());
-  // The whole image at once, because rows may be short.
-  std::copy_n(values, count, columns);
-  combine_moved(values, count, pitch, reach.y, choose, columns);
-  std::copy_n(columns, count, both);
-  if (reach.x == 0) return;
-  combine_moved(columns, count, channels, reach.x, choose, both);
-  // That ran on from each row's end into the next row.
+  scratch.resize(width + 2 * reach.x, 1);
+  if (width == 0) return;
+  Pixel* const line = scratch.row(0) + reach.x;
+  Taps taps;
   for (int y = 0; y < image.height(); ++y) {
-    const std::uint8_t* const row = columns + y * pitch;
-    const int left_end = std::min(reach.x, width);
-    const int right = std::max(width - reach.x, left_end);
-    filter_columns(row, width, channels, reach.x, 0, left_end, choose, both + y * pitch);
-    filter_columns(row, width, channels, reach.x, right, width, choose, both + y * pitch);
+    taps.clear();
+    const int last = std::min(y + reach.y, image.height() - 1);
+    for (int row = std::max(y - reach.y, 0); row <= last; ++row) {
+      taps.push_back(reinterpret_cast<const std::uint8_t*>(image.row(row)));
+    }
+    if (reach.x == 0) {
+      find(taps, channels * width, bytes(result.row(y)));
+      continue;
+    }
+    find(taps, channels * width, bytes(line));
+    std::fill_n(line - reach.x, reach.x, line[0]);
+    std::fill_n(line + width, reach.x, line[width - 1]);
+    taps.clear();
+    for (int shift = -reach.x; shift <= reach.x; ++shift) taps.push_back(bytes(line + shift));
+    find(taps, channels * width, bytes(result.row(y)));
   }
 }
 
 }  // namespace
 
 void dilate(const Mask& image, const Reach& reach, Mask& scratch, Mask& result) {
-  filter(image, reach, larger, scratch, result);
+  filter(image, reach, find_largest, scratch, result);
 }
 void erode(const Mask& image, const Reach& reach, Mask& scratch, Mask& result) {
-  filter(image, reach, smaller, scratch, result);
+  filter(image, reach, find_smallest, scratch, result);
 }
 void dilate(const Image<Bgr>& image, const Reach& reach, Image<Bgr>& scratch, Image<Bgr>& result) {
-  filter(image, reach, larger, scratch, result);
+  filter(image, reach, find_largest, scratch, result);
 }
 void erode(const Image<Bgr>& image, const Reach& reach, Image<Bgr>& scratch, Image<Bgr>& result) {
-  filter(image, reach, smaller, scratch, result);
+  filter(image, reach, find_smallest, scratch, result);
 }
 
 }  // namespace diminish
+#endif
