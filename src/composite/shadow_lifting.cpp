@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/rows.h"
+#include "core/runs.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "composite/shadow_lifting.cpp"
@@ -73,9 +74,9 @@ void for_each_shaded(const Bgr* row, int width, const Visit& visit) {
   const int count = 3 * width;
   for (int first = 0; first < count; first += step) {
     const int last = std::min(first + step, count);
-    std::uint8_t least = 255;
-    for (int i = first; i < last; ++i) least = std::min(least, light[i]);
-    if (least != 255) visit(first, last);
+    const bool is_lit = first + step <= count ? all_equal<step>(light + first, 255)
+                                              : find_other(light, first, last, 255) == last;
+    if (!is_lit) visit(first, last);
   }
 }
 
@@ -85,9 +86,7 @@ void for_each_within(const std::uint8_t* distances, int begin, int end, const Vi
   constexpr int step = 16;
   for (int first = begin; first < end; first += step) {
     const int last = std::min(first + step, end);
-    std::uint8_t least = fading_px;
-    for (int x = first; x < last; ++x) least = std::min(least, distances[x]);
-    if (least == fading_px) continue;
+    if (first + step <= end && all_equal<step>(distances + first, fading_px)) continue;
     for (int x = first; x < last; ++x) {
       if (distances[x] < fading_px) visit(x);
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/rows.h"
+#include "core/runs.h"
 
 namespace diminish {
 namespace {
@@ -38,18 +39,16 @@ std::uint8_t mix(int from, int to, int part, int whole) {
 
 /// Calls visit(x) for each distance that is neither 0 nor `whole`.
 template <class Visit>
-void for_each_between(const std::uint8_t* distances, int width, int whole, const Visit& visit) {
-  // Most pixels are far from the rim. Without a branch for each, the compiler vectorises this.
+void for_each_between(const std::uint8_t* distances, int width, std::uint8_t whole,
+                      const Visit& visit) {
+  // Most pixels are far from the rim.
   constexpr int step = 32;
   for (int first = 0; first < width; first += step) {
     const int end = std::min(first + step, width);
-    std::uint8_t least = 255;
-    std::uint8_t most = 0;
-    for (int x = first; x < end; ++x) {
-      least = std::min(least, distances[x]);
-      most = std::max(most, distances[x]);
+    if (first + step <= width &&
+        (all_equal<step>(distances + first, 0) || all_equal<step>(distances + first, whole))) {
+      continue;
     }
-    if (most == 0 || least == whole) continue;
     for (int x = first; x < end; ++x) {
       if (distances[x] != 0 && distances[x] != whole) visit(x);
     }
@@ -95,7 +94,7 @@ void SoftRim::blend(ImageView<Bgr> camera, const Mask& mask, const Rect& box, in
                     Image<Bgr>& picture) {
   if (width_px <= 0 || box.empty()) return;
   find_distances(mask, box, width_px);
-  const int whole = width_px + 1;
+  const auto whole = static_cast<std::uint8_t>(width_px + 1);
   for_rows(box.height, [&](Rows rows) {
     for (int y = rows.first; y < rows.last; ++y) {
       const std::uint8_t* distance = distance_.row(y + 1) + 1;

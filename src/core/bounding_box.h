@@ -12,15 +12,22 @@ namespace diminish {
 /// Whether any of `count` pixels of a mask is set.
 inline bool any_set(const std::uint8_t* row, int count) {
   // Without a branch, so that the compiler vectorises it.
-  std::uint64_t any = 0;
+  constexpr int words = 8;
+  std::uint64_t any[words] = {};
   int x = 0;
+  for (; x + 8 * words <= count; x += 8 * words) {
+    std::uint64_t pixels[words];
+    std::memcpy(pixels, row + x, sizeof(pixels));
+    for (int i = 0; i < words; ++i) any[i] |= pixels[i];
+  }
   for (; x + 8 <= count; x += 8) {
     std::uint64_t pixels;
     std::memcpy(&pixels, row + x, sizeof(pixels));
-    any |= pixels;
+    any[0] |= pixels;
   }
-  for (; x < count; ++x) any |= row[x];
-  return any != 0;
+  for (; x < count; ++x) any[0] |= row[x];
+  for (int i = 1; i < words; ++i) any[0] |= any[i];
+  return any[0] != 0;
 }
 
 /// The last non-zero of `count` pixels; -1 if there is none.

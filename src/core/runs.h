@@ -45,6 +45,17 @@ inline int find_equal(const std::uint8_t* bytes, int x, int end, std::uint8_t va
   return runs_detail::find_equal_far(bytes, x, end, value);
 }
 
+/// Whether `count` bytes are all `value`; for counts known to the compiler.
+template <int count>
+bool all_equal(const std::uint8_t* bytes, std::uint8_t value) {
+  static_assert(count % runs_detail::word_bytes == 0);
+  std::uint64_t any = 0;
+  for (int i = 0; i < count; i += runs_detail::word_bytes) {
+    any |= runs_detail::differences(bytes + i, value);
+  }
+  return any == 0;
+}
+
 /// Calls visit(x) for each of the `count` bytes that is not 0, in order.
 template <class Visit>
 void for_each_set(const std::uint8_t* bytes, int count, const Visit& visit) {

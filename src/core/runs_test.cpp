@@ -96,5 +96,16 @@ TEST(Runs, OfBitsAreThoseFoundBitByBit) {
   }
 }
 
+TEST(Runs, AllEqualLooksAtEachByte) {
+  std::vector<std::uint8_t> bytes(50, 7);
+  EXPECT_TRUE(all_equal<48>(bytes.data() + 1, 7));
+  EXPECT_FALSE(all_equal<48>(bytes.data() + 1, 6));
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    bytes[i] = 71;
+    EXPECT_EQ(all_equal<48>(bytes.data() + 1, 7), i == 0 || i == 49) << i;
+    bytes[i] = 7;
+  }
+}
+
 }  // namespace
 }  // namespace diminish

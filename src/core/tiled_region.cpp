@@ -1,8 +1,31 @@
 #include "diminish/tiled_region.h"
 
 #include <algorithm>
+#include <cstring>
 
 namespace diminish {
+namespace {
+
+/// Of a tile's pixels, or some of them.
+bool is_any_set(const Mask& mask, const Rect& part) {
+  std::uint64_t any = 0;
+  if (part.width == TiledRegion::tile) {
+    std::uint64_t pixels[2];
+    static_assert(sizeof(pixels) == TiledRegion::tile);
+    for (int y = part.y; y < part.bottom(); ++y) {
+      std::memcpy(pixels, mask.row(y) + part.x, sizeof(pixels));
+      any |= pixels[0] | pixels[1];
+    }
+    return any != 0;
+  }
+  for (int y = part.y; y < part.bottom(); ++y) {
+    const std::uint8_t* const row = mask.row(y);
+    for (int x = part.x; x < part.right(); ++x) any |= row[x];
+  }
+  return any != 0;
+}
+
+}  // namespace
 
 void TiledRegion::keep_near(const Mask& objects, int distance_px) {
   if (empty()) return;
@@ -18,12 +41,8 @@ void TiledRegion::keep_near(const Mask& objects, int distance_px) {
     for (int column = 0; column < columns_; ++column) {
       const int left = std::max(x, (first_column_ + column) * tile);
       const int end = std::min(right(), (first_column_ + column + 1) * tile);
-      std::uint8_t any = 0;
-      for (int pixel_row = std::max(y, (first_row_ + row) * tile); pixel_row < last; ++pixel_row) {
-        const std::uint8_t* mask = objects.row(pixel_row);
-        for (int pixel = left; pixel < end; ++pixel) any |= mask[pixel];
-      }
-      if (any == 0) continue;
+      const int top = std::max(y, (first_row_ + row) * tile);
+      if (!is_any_set(objects, {left, top, end - left, last - top})) continue;
       const Rect near = intersect(grow({column, row, 1, 1}, reach), tiles);
       for (int k = near.y; k < near.bottom(); ++k) {
         std::fill_n(kept_.begin() + static_cast<std::ptrdiff_t>(index(near.x, k)), near.width,

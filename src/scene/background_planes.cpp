@@ -58,12 +58,18 @@ BackgroundPlane fit(const BackgroundPlane& plane, const PlanePoints& points) {
   return facing_camera(solver.eigenvectors().col(0).cast<float>(), mean.cast<float>());
 }
 
-/// The points that are no further from the plane than their error bounds.
-int count_on(const BackgroundPlane& plane, const PlanePoints& points) {
+/// The points that are no further from the plane than their error bounds; counts only on while they
+/// may become more than `most`.
+int count_on(const BackgroundPlane& plane, const PlanePoints& points, int most) {
+  constexpr std::size_t some = 64;
   int count = 0;
   const std::size_t size = points.size();
-  for (std::size_t i = 0; i < size; ++i) {
-    count += std::abs(points.height_m(plane, i)) <= points.tolerance_m[i] ? 1 : 0;
+  for (std::size_t first = 0; first < size; first += some) {
+    const std::size_t end = std::min(first + some, size);
+    for (std::size_t i = first; i < end; ++i) {
+      count += std::abs(points.height_m(plane, i)) <= points.tolerance_m[i] ? 1 : 0;
+    }
+    if (count + static_cast<int>(size - end) <= most) break;
   }
   return count;
 }
@@ -137,7 +143,7 @@ bool BackgroundPlanes::next_plane(BackgroundPlane& plane) {
     const float length = normal.norm();
     if (!(length > 1e-4F)) continue;
     const BackgroundPlane candidate = facing_camera(normal / length, a);
-    const int on = count_on(candidate, some_of_rest_);
+    const int on = count_on(candidate, some_of_rest_, most);
     if (on <= most) continue;
     const int behind = count_behind(candidate, some_);
     if (behind > most_behind * static_cast<double>(some_.size())) continue;

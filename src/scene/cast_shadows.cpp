@@ -171,9 +171,14 @@ void CastShadows::Search::find_hidden(const ByDirection& slopes_u, const ByDirec
     using Cells = Eigen::Array<int, directions, 1>;
     const Cells x = (at.x() - blocker.height_m * along_u).max(0.F).min(last).cast<int>();
     const Cells y = (at.y() - blocker.height_m * along_v).max(0.F).min(last).cast<int>();
-    std::uint64_t bit = 1;
-    for (int d = 0; d < int{directions}; ++d, bit = std::rotl(bit, 1)) {
-      struck_(words * x[d] + d / int{bits_a_word}, y[d]) |= bit;
+    const Cells place = words * (width * y + x);
+    for (std::size_t word = 0, first = 0; first < directions; ++word, first += bits_a_word) {
+      std::uint64_t* const struck = struck_.data() + word;
+      const std::size_t end = std::min<std::size_t>(first + bits_a_word, directions);
+      std::uint64_t bit = 1;
+      for (std::size_t d = first; d < end; ++d, bit <<= 1) {
+        struck[place[static_cast<Eigen::Index>(d)]] |= bit;
+      }
     }
   }
   hidden_.resize(words * grid_cells, grid_cells);

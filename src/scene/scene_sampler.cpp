@@ -80,7 +80,8 @@ void SceneSampler::sample_rows(const View& view, Rows rows, Band& band) {
   for (int row = reach + step / 2; row < std::min(depth.height() - reach, rows.last); row += step) {
     if (row < rows.first) continue;
     for (int column = reach + step / 2; column < depth.width() - reach; column += step) {
-      if (view.frame.depth_mask(column, row) != 0 && on_surface(depth, column, row)) {
+      if (!on_surface(depth, column, row)) continue;
+      if (view.frame.depth_mask(column, row) != 0) {
         band.object_points_m.push_back(view.mesh.point_m(view.frame, column, row));
         continue;
       }
@@ -89,7 +90,6 @@ void SceneSampler::sample_rows(const View& view, Rows rows, Band& band) {
       SceneSample sample;
       sample.pixel = Eigen::Vector2f(static_cast<float>(vertex.x), static_cast<float>(vertex.y)) /
                      sdct::subpixels;
-      if (!on_surface(depth, column, row)) continue;
       const int u = static_cast<int>(std::lrint(vertex.u));
       const int v = static_cast<int>(std::lrint(vertex.v));
       if (u < rim || u >= image.width() - rim || v < rim || v >= image.height() - rim) {
