@@ -164,14 +164,24 @@ const float* ShadowFit::column(std::size_t direction) {
 void ShadowFit::fit_shares(int channel) {
   const Eigen::Index count = shares_.rows();
   squares_.resize(count, count);
-  diagonal_.setConstant(count, ridge);
-  gradient_.setZero(count);
+  weights_.clear();
+  darker_.clear();
   for (const Point& point : points_) {
-    const float darker = point.weight * (1 - point.levels[channel] / point.field);
-    for (std::uint32_t i = point.first_hidden; i < point.last_hidden; ++i) {
-      diagonal_[hidden_[i]] += point.weight;
-      gradient_[hidden_[i]] += darker;
+    weights_.push_back(point.weight);
+    darker_.push_back(point.weight * (1 - point.levels[channel] / point.field));
+  }
+  diagonal_.resize(count);
+  gradient_.resize(count);
+  for (Eigen::Index d = 0; d < count; ++d) {
+    const auto direction = static_cast<std::size_t>(d);
+    float weight = ridge;
+    float darker = 0;
+    for (std::uint32_t k = first_point_[direction]; k < first_point_[direction + 1]; ++k) {
+      weight += weights_[hidden_points_[k]];
+      darker += darker_[hidden_points_[k]];
     }
+    diagonal_[d] = weight;
+    gradient_[d] = darker;
   }
   auto shares = shares_.col(channel);
   if (channel != brightness) shares = shares_.col(brightness);

@@ -65,7 +65,8 @@ class ShadowFit {
   Eigen::MatrixXf squares_;
   std::vector<std::uint8_t> has_column_;
   Eigen::ArrayXf diagonal_, gradient_;
-  Eigen::MatrixXf shares_;  ///< directions by channels
+  std::vector<float> weights_, darker_;  ///< of each point, and times how much darker it is
+  Eigen::MatrixXf shares_;               ///< directions by channels
   std::vector<float> residuals_;
 };
 
