@@ -1,5 +1,7 @@
 #include "core/shrink.h"
 
+#include "core/rows.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/shrink.cpp"
 #include <hwy/foreach_target.h>
@@ -158,13 +160,15 @@ void shrink(ImageView<Bgr> image, int scale, const Rect& part, std::vector<std::
 
 void shrink_green(ImageView<Bgr> image, Image<std::uint8_t>& small) {
   small.resize(image.width() / green_shrinkage, image.height() / green_shrinkage);
-  for (int y = 0; y < small.height(); ++y) {
-    // Two of the four rows: half the memory, and noise does no harm here.
-    HWY_DYNAMIC_DISPATCH(ShrinkGreenRow)
-    (reinterpret_cast<const std::uint8_t*>(image.row(green_shrinkage * y + 1)),
-     reinterpret_cast<const std::uint8_t*>(image.row(green_shrinkage * y + 2)), small.width(),
-     small.row(y));
-  }
+  for_rows(small.height(), [&](Rows rows) {
+    for (int y = rows.first; y < rows.last; ++y) {
+      // Two of the four rows: half the memory, and noise does no harm here.
+      HWY_DYNAMIC_DISPATCH(ShrinkGreenRow)
+      (reinterpret_cast<const std::uint8_t*>(image.row(green_shrinkage * y + 1)),
+       reinterpret_cast<const std::uint8_t*>(image.row(green_shrinkage * y + 2)), small.width(),
+       small.row(y));
+    }
+  });
 }
 
 }  // namespace diminish

@@ -1,5 +1,7 @@
 #include "pose/dark_regions.h"
 
+#include <algorithm>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "pose/dark_regions.cpp"
 #include <hwy/foreach_target.h>
@@ -67,15 +69,25 @@ const ConnectedRegions& DarkRegions::find(const Image<std::uint8_t>& small) {
   using namespace dark_regions;
   const int width = small.width();
   const int height = small.height();
+  for_rows(height, [&](Rows part) {
+    Band& band = bands_[part.band];
+    band.runs.clear();
+    band.column_sums.resize(static_cast<std::size_t>(width));
+    band.dark.assign(static_cast<std::size_t>(width), 0);
+    if (width <= 2 * radius) return;
+    for (int y = std::max(part.first, radius); y < std::min(part.last, height - radius); ++y) {
+      const std::uint8_t* rows[side];
+      for (int i = 0; i < side; ++i) rows[i] = small.row(y - radius + i);
+      find_dark(rows, width, band.column_sums.data(), band.dark.data());
+      for_each_run(band.dark.data(), 0, width, Pixels::set, [&](int first, int last) {
+        band.runs.push_back({y, first, last});
+      });
+    }
+  });
   regions_.begin();
-  column_sums_.resize(static_cast<std::size_t>(width));
-  dark_.assign(static_cast<std::size_t>(width), 0);
-  for (int y = radius; y + radius < height && width > 2 * radius; ++y) {
-    const std::uint8_t* rows[side];
-    for (int i = 0; i < side; ++i) rows[i] = small.row(y - radius + i);
-    find_dark(rows, width, column_sums_.data(), dark_.data());
-    for_each_run(dark_.data(), 0, width, Pixels::set,
-                 [&](int first, int last) { regions_.add(y, first, last); });
+  const int band_count = (height + band_height(height) - 1) / band_height(height);
+  for (int i = 0; i < band_count; ++i) {
+    for (const Run& run : bands_[i].runs) regions_.add(run.y, run.first, run.last);
   }
   regions_.connect(Connectivity::four);
   return regions_;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/connected_regions.h"
+#include "core/rows.h"
 #include "diminish/image.h"
 
 namespace diminish {
@@ -16,8 +17,15 @@ class DarkRegions {
   const ConnectedRegions& find(const Image<std::uint8_t>& small);
 
  private:
-  std::vector<std::uint16_t> column_sums_;
-  std::vector<std::uint8_t> dark_;  ///< of a row
+  struct Run {
+    int y, first, last;
+  };
+  struct Band {
+    std::vector<std::uint16_t> column_sums;
+    std::vector<std::uint8_t> dark;  ///< of a row
+    std::vector<Run> runs;           ///< of dark pixels
+  };
+  Band bands_[most_bands];
   ConnectedRegions regions_;
 };
 
