@@ -34,11 +34,12 @@ struct FrameInputs {
   const TiledRegion& region;
   const Options& options;
   const FrameMethods& methods;
-  const std::vector<BackgroundPlane>* planes;  ///< null: not looked for
-  std::span<const CastShadows::Shadow> shadows;
-  ColorMapsBySource color_maps;
-  int smoothing_share;               ///< of ColorSmoothing's change
-  bool wants_reconstruction;         ///< in the result
+  // What a backend that only draws is not told: it may be learnt at the same time.
+  const std::vector<BackgroundPlane>* planes = nullptr;  ///< null: not looked for
+  std::span<const CastShadows::Shadow> shadows = {};
+  ColorMapsBySource color_maps = {};
+  int smoothing_share = 0;           ///< of ColorSmoothing's change
+  bool wants_reconstruction = true;  ///< in the result
   TextureOutput* texture = nullptr;  ///< where the picture goes; null: to the result
 };
 

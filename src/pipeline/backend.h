@@ -23,6 +23,11 @@ class Backend {
     message_.clear();
     last_ = Stage::drawing;
   }
+  /// Whether it does no more than Stage::drawing, for which it need not know what was learnt of the
+  /// scene: planes, shadows, colours.
+  bool only_draws() const {
+    return chosen_ && !dynamic_cast<const ComposingReconstructor*>(chosen_.get());
+  }
   /// Does Stage::drawing and the stages after it that the backend takes over. Also fills
   /// `result.report.drawing`.
   void draw(const FrameInputs& inputs, DiminishedFrame& result);

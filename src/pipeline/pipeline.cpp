@@ -253,7 +253,32 @@ void Pipeline::Implementation::process(const FrameSet& frame, DiminishedFrame& r
   // 3.3 Reconstruction of what is behind them, for which the scene has to be known
   report.poses = measured_poses;
   background.clear();
-  if (looks_at_scene()) {
+  const auto learn = [&] {
+    do_both(
+        [&] {
+          stage(Stage::background, [&] { background.find(objects, samples, wanted_background()); });
+        },
+        [&] {
+          stage(Stage::color_maps, [&] {
+            color_maps.fit(frame.color, masks.color, samples.surfaces, methods.color.maps);
+            find_smoothing(frame);
+          });
+        });
+  };
+  FrameInputs drawing{frame,   depth.depths(), report.poses, masks,
+                      objects, region,         options,      methods};
+  drawing.wants_reconstruction = wants_reconstruction;
+  drawing.texture = texture.output();
+  const auto draw = [&] {
+    stage(Stage::drawing, [&] {
+      choose_region();
+      backend.draw(drawing, result);
+    });
+  };
+  const bool looks = looks_at_scene();
+  // What is learnt of the scene may be needed only after the drawing: then both are done together.
+  const bool learns_while_drawing = looks && backend.only_draws() && !options.remove_shadows;
+  if (looks) {
     do_both(
         [&] {
           stage(Stage::depth, [&] {
@@ -264,26 +289,18 @@ void Pipeline::Implementation::process(const FrameSet& frame, DiminishedFrame& r
         [&] {
           stage(Stage::samples, [&] { sampler.sample(frame, measured_poses, masks, samples); });
           stage(Stage::refinement, [&] { refine_poses(frame, report.poses); });
-          do_both(
-              [&] {
-                stage(Stage::background,
-                      [&] { background.find(objects, samples, wanted_background()); });
-              },
-              [&] {
-                stage(Stage::color_maps, [&] {
-                  color_maps.fit(frame.color, masks.color, samples.surfaces, methods.color.maps);
-                  find_smoothing(frame);
-                });
-              });
+          if (!learns_while_drawing) learn();
         });
   }
-  stage(Stage::drawing, [&] {
-    choose_region();
-    backend.draw({frame, depth.depths(), report.poses, masks, objects, region, options, methods,
-                  background.planes(), background.shadows(), color_maps.by_source(), smoothing,
-                  wants_reconstruction, texture.output()},
-                 result);
-  });
+  if (learns_while_drawing) {
+    do_both(draw, learn);
+  } else {
+    drawing.planes = background.planes();
+    drawing.shadows = background.shadows();
+    drawing.color_maps = color_maps.by_source();
+    drawing.smoothing_share = smoothing;
+    draw();
+  }
 
   // Not in the paper: what the colour camera saw earlier
   stage(Stage::memory, [&] {
