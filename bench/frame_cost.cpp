@@ -1,6 +1,6 @@
 // What each stage of a frame costs in instructions, for callgrind to count; times on shared
-// machines say less.   diminish_frame_cost RECORDING    (by scripts/check-baselines, under
-// valgrind)
+// machines say less.   diminish_frame_cost RECORDING [MEMORY]    (by scripts/check-baselines, under
+// valgrind; MEMORY: as --memory)
 //
 // Callgrind writes what it counted at each reading of the clock. Stages read it when they begin and
 // end. The clock here is no clock: its n-th reading in a frame is 2^n ns, so that a stage's time
@@ -60,8 +60,7 @@ const char* stage_of(int stretch, const StageTimes& milliseconds) {
 
 /// Prints the vector instructions and the number of frames, then the stage of each of callgrind's
 /// dumps.
-void count(const Recording& recording) {
-  const Options options;
+void count(const Recording& recording, const Options& options) {
   const auto source = open_recording(recording, options);
   std::vector<FrameSet> frames;
   for (FrameSet frame; source->next(frame);) frames.push_back(frame);
@@ -90,14 +89,16 @@ void count(const Recording& recording) {
 }  // namespace diminish
 
 int main(int argc, char** argv) try {
-  if (argc != 2) {
-    std::fprintf(stderr, "usage: diminish_frame_cost RECORDING\n");
+  if (argc < 2 || argc > 3) {
+    std::fprintf(stderr, "usage: diminish_frame_cost RECORDING [MEMORY]\n");
     return 2;
   }
+  diminish::Options options;
+  if (argc > 2) options.memory = argv[2];
   const oneapi::tbb::global_control one_thread(oneapi::tbb::global_control::max_allowed_parallelism,
                                                1);
   cv::setNumThreads(1);
-  diminish::count(diminish::load_recording(argv[1]));
+  diminish::count(diminish::load_recording(argv[1]), options);
   return 0;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "%s\n", error.what());

@@ -31,6 +31,21 @@ class DIMINISH_EXPORT TiledRegion : public Rect {
   /// with a part of an object.
   void keep_near(const Mask& objects, int distance_px);
 
+  /// Removes tiles for which `keeps` is false. keeps: of a tile's pixels, those outside the
+  /// rectangle too.
+  template <class Keeps>
+  void keep_if(const Keeps& keeps) {
+    if (empty()) return;
+    begin_tiles();
+    for (int row = 0; row < rows_; ++row) {
+      for (int column = 0; column < columns_; ++column) {
+        const Rect pixels{(first_column_ + column) * tile, (first_row_ + row) * tile, tile, tile};
+        kept_[index(column, row)] = keeps(pixels) ? 1 : 0;
+      }
+    }
+    add_up();
+  }
+
   /// The tiles that overlap the rectangle, counted from the picture's first tile; and row by row
   /// whether each is kept, empty if all are.
   Rect tiles() const { return {first_column_, first_row_, columns_, rows_}; }
@@ -57,8 +72,21 @@ class DIMINISH_EXPORT TiledRegion : public Rect {
       first = last;
     }
   }
+  /// The same for those that do.
+  template <class Visit>
+  void for_each_run(int row, const Visit& visit) const {
+    int begin = x;
+    for_each_gap(row, [&](int first, int last) {
+      if (first > begin) visit(begin, first);
+      begin = last;
+    });
+    if (begin < right()) visit(begin, right());
+  }
 
  private:
+  /// Keeps none.
+  void begin_tiles();
+  void add_up();
   std::size_t index(int column, int row) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
            static_cast<std::size_t>(column);

@@ -27,15 +27,19 @@ bool is_any_set(const Mask& mask, const Rect& part) {
 
 }  // namespace
 
-void TiledRegion::keep_near(const Mask& objects, int distance_px) {
-  if (empty()) return;
+void TiledRegion::begin_tiles() {
   first_column_ = x / tile;
   first_row_ = y / tile;
   columns_ = (right() - 1) / tile - first_column_ + 1;
   rows_ = (bottom() - 1) / tile - first_row_ + 1;
+  kept_.assign(index(0, rows_), 0);
+}
+
+void TiledRegion::keep_near(const Mask& objects, int distance_px) {
+  if (empty()) return;
+  begin_tiles();
   const Rect tiles{0, 0, columns_, rows_};
   const int reach = (distance_px + tile - 1) / tile;
-  kept_.assign(index(0, rows_), 0);
   for (int row = 0; row < rows_; ++row) {
     const int last = std::min(bottom(), (first_row_ + row + 1) * tile);
     for (int column = 0; column < columns_; ++column) {
@@ -50,6 +54,10 @@ void TiledRegion::keep_near(const Mask& objects, int distance_px) {
       }
     }
   }
+  add_up();
+}
+
+void TiledRegion::add_up() {
   sums_.assign(static_cast<std::size_t>(columns_ + 1) * static_cast<std::size_t>(rows_ + 1), 0);
   for (int row = 0; row < rows_; ++row) {
     for (int column = 0; column < columns_; ++column) {

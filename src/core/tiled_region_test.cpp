@@ -83,5 +83,29 @@ TEST(TiledRegion, TouchesAndGapsFollowFromItsPixels) {
   }
 }
 
+TEST(TiledRegion, KeepsChosenTilesAndVisitsTheirRuns) {
+  TiledRegion region(Rect{13, 21, 100, 60});
+  const auto wanted = [](int x, int y) { return (x / 16 + 2 * (y / 16)) % 3 != 0; };
+  region.keep_if([&](const Rect& tile) {
+    EXPECT_EQ(tile.width, TiledRegion::tile);
+    return wanted(tile.x, tile.y);
+  });
+  for (int y = region.y; y < region.bottom(); ++y) {
+    std::vector<int> visits(200, 0);
+    region.for_each_run(y, [&](int first, int last) {
+      EXPECT_LT(first, last);
+      for (int x = first; x < last; ++x) ++visits[static_cast<std::size_t>(x)];
+    });
+    for (int x = 0; x < 200; ++x) {
+      const bool is_kept = region.contains(x, y) && wanted(x, y);
+      ASSERT_EQ(visits[static_cast<std::size_t>(x)], is_kept ? 1 : 0) << x << ' ' << y;
+      if (region.contains(x, y)) {
+        ASSERT_EQ(region.keeps(x, y), is_kept);
+        ASSERT_EQ(region.touches({x, y, 1, 1}), is_kept);
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace diminish

@@ -13,25 +13,15 @@ namespace {
 constexpr float guess_doubt = 0.2F;
 constexpr float plane_doubt = 0.05F;
 
-Rig with_picture(Rig rig, const Intrinsics& color) {
-  rig.color = color;
-  return rig;
-}
-
 }  // namespace
 
 KeyframeDepth::KeyframeDepth(const Rig& rig, const KeyframeGrid& grid)
-    : grid_(grid),
-      depth_(with_picture(rig, grid.intrinsics())),
-      drawer_(Registry<Reconstructor>::get("cpu")(with_picture(rig, grid.intrinsics()))),
-      planes_(grid.intrinsics()),
-      carried_(grid) {}
+    : grid_(grid), measured_(rig, grid), planes_(grid.intrinsics()), carried_(grid) {}
 
 void KeyframeDepth::draw(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks,
                          const SceneSamples& samples, const Options& options) {
-  const Rect whole = grid_.intrinsics().bounds();
-  depth_.clean(frame, poses, masks, whole, options);
-  drawer_->reconstruct(frame, depth_.depths(), poses, masks, TiledRegion(whole), options, drawn_);
+  drawn_.region = TiledRegion(grid_.intrinsics().bounds());
+  measured_.draw(frame, poses, masks, options, drawn_.depth_m);
   label(samples);
 }
 
@@ -58,18 +48,30 @@ void KeyframeDepth::label(const SceneSamples& samples) {
 void KeyframeDepth::find_columns() {
   const int width = seen_.width();
   const int height = seen_.height();
-  columns_.resize(width, height);
-  const auto follow = [&](int y, int previous, float Ends::*end, int Ends::*distance) {
+  for (Image<float>* ends : {&above_, &below_}) ends->resize(width, height);
+  for (Image<std::int32_t>* distances : {&to_above_, &to_below_}) {
+    distances->resize(width, height);
+  }
+  const auto follow = [&](int y, int previous, Image<float>& ends, Image<std::int32_t>& distances) {
+    const float* const seen = seen_.row(y);
+    float* const end = ends.row(y);
+    std::int32_t* const distance = distances.row(y);
+    if (previous < 0 || previous >= height) {
+      std::copy_n(seen, width, end);
+      std::fill_n(distance, width, 0);
+      return;
+    }
+    const float* const end_before = ends.row(previous);
+    const std::int32_t* const distance_before = distances.row(previous);
     for (int x = 0; x < width; ++x) {
-      Ends& ends = columns_(x, y);
-      const bool is_seen = seen_(x, y) > 0;
-      const bool has_previous = previous >= 0 && previous < height;
-      ends.*end = is_seen ? seen_(x, y) : has_previous ? columns_(x, previous).*end : 0;
-      ends.*distance = is_seen || !has_previous ? 0 : columns_(x, previous).*distance + 1;
+      const float before = end_before[x];
+      const std::int32_t further = distance_before[x] + 1;
+      end[x] = seen[x] > 0 ? seen[x] : before;
+      distance[x] = seen[x] > 0 ? 0 : further;
     }
   };
-  for (int y = 0; y < height; ++y) follow(y, y - 1, &Ends::first, &Ends::to_first);
-  for (int y = height - 1; y >= 0; --y) follow(y, y + 1, &Ends::last, &Ends::to_last);
+  for (int y = 0; y < height; ++y) follow(y, y - 1, above_, to_above_);
+  for (int y = height - 1; y >= 0; --y) follow(y, y + 1, below_, to_below_);
 }
 
 KeyframeDepth::Guess KeyframeDepth::between(const Ends& ends) {
@@ -93,11 +95,11 @@ bool KeyframeDepth::continues(const BackgroundPlane& plane, int x, int y, const 
   if (std::abs(plane.inverse_depth(ray.x(), ray.y()) - end.inverse_z) > on_plane * end.inverse_z) {
     return false;
   }
+  const Bgr& own = colors_(x, y);
   const Rect around = intersect(grow({end.x, end.y, 1, 1}, reach), colors_.bounds());
   for (int row = around.y; row < around.bottom(); ++row) {
     for (int column = around.x; column < around.right(); ++column) {
-      if (seen_(column, row) > 0 &&
-          squared_difference(colors_(column, row), colors_(x, y)) < alike) {
+      if (seen_(column, row) > 0 && squared_difference(colors_(column, row), own) < alike) {
         return true;
       }
     }
@@ -105,8 +107,8 @@ bool KeyframeDepth::continues(const BackgroundPlane& plane, int x, int y, const 
   return false;
 }
 
-KeyframeDepth::Guess KeyframeDepth::guess(int x, int y, const Ends& row) const {
-  const Ends& column = columns_(x, y);
+KeyframeDepth::Guess KeyframeDepth::guess(int x, int y, const Ends& row, LastPlace& last) const {
+  const Ends column = column_ends(x, y);
   const Guess across = between(row);
   const Guess along = between(column);
   const auto is_better = [](const Guess& a, const Guess& b) {
@@ -124,11 +126,16 @@ KeyframeDepth::Guess KeyframeDepth::guess(int x, int y, const Ends& row) const {
   const float nearest = std::max({row.first, row.last, column.first, column.last});
   constexpr float margin = 1.1F;
   if (!(on_plane > 0 && on_plane < margin * nearest)) return better;
-  const bool looks_so = continues(plane, x, y, {row.first, x - row.to_first, y}) ||
-                        continues(plane, x, y, {row.last, x + row.to_last, y}) ||
-                        continues(plane, x, y, {column.first, x, y - column.to_first}) ||
-                        continues(plane, x, y, {column.last, x, y + column.to_last});
-  return {on_plane, 0, false, looks_so ? plane_doubt : guess_doubt};
+  // Neighbours look alike: one of two is asked.
+  if (x % 2 == 0 || last.label != label || last.x != x - 1) {
+    last.continues = continues(plane, x, y, {row.first, x - row.to_first, y}) ||
+                     continues(plane, x, y, {row.last, x + row.to_last, y}) ||
+                     continues(plane, x, y, {column.first, x, y - column.to_first}) ||
+                     continues(plane, x, y, {column.last, x, y + column.to_last});
+  }
+  last.label = label;
+  last.x = x;
+  return {on_plane, 0, false, last.continues ? plane_doubt : guess_doubt};
 }
 
 void KeyframeDepth::fill_gaps(const Keyframe& keyframe, const Mask& objects) {
@@ -146,12 +153,15 @@ void KeyframeDepth::fill_gaps(const Keyframe& keyframe, const Mask& objects) {
     for (int y = rows.first; y < rows.last; ++y) {
       for (int x = 0; x < width; ++x) {
         if (seen_(x, y) > 0) continue;
+        LastPlace last;
         int end = x;
         while (end < width && !(seen_(end, y) > 0)) ++end;
         const float before = x > 0 ? seen_(x - 1, y) : 0;
         const float after = end < width ? seen_(end, y) : 0;
         for (int i = x; i < end; ++i) {
-          const Guess found = guess(i, y, {before, after, i - x + 1, end - i});
+          // What is under an object is left out anyway.
+          if (objects(i * grid_.step(), y * grid_.step()) != 0) continue;
+          const Guess found = guess(i, y, {before, after, i - x + 1, end - i}, last);
           completed_(i, y) = found.inverse_z;
           doubt_(i, y) = static_cast<std::uint8_t>(std::lrint(found.doubt / doubt_unit));
         }

@@ -5,6 +5,12 @@
 #include "memory/point_rows.h"
 
 namespace diminish {
+namespace {
+
+/// Of a keyframe: as many as are used.
+constexpr std::size_t most_samples = 2400;
+
+}  // namespace
 
 KeyframePreparation::KeyframePreparation(const Rig& rig, const KeyframeGrid& grid)
     : grid_(grid), sampler_(keyframe_rig(rig, grid)), masks_(keyframe_masks(rig, grid)) {
@@ -65,7 +71,11 @@ void KeyframePreparation::find_samples(Keyframe& keyframe) {
   Poses poses;
   poses.color_from_depth.emplace_back(RigidTransform());
   sampler_.sample(frame, poses, masks_, samples_);
-  keyframe.samples = samples_.surfaces;
+  keyframe.samples.clear();
+  const std::size_t step = samples_.surfaces.size() / most_samples + 1;
+  for (std::size_t i = 0; i < samples_.surfaces.size(); i += step) {
+    keyframe.samples.push_back(samples_.surfaces[i]);
+  }
 }
 
 Rig keyframe_rig(const Rig& rig, const KeyframeGrid& grid) {

@@ -1,6 +1,7 @@
 #include "memory/keyframe_store.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numeric>
 
@@ -55,15 +56,38 @@ std::size_t KeyframeStore::count_unique(std::size_t index) const {
   return count;
 }
 
-void KeyframeStore::add(Keyframe keyframe) {
-  preparation_.prepare(keyframe);
-  keyframes_.push_back(std::make_shared<Keyframe>(std::move(keyframe)));
+void KeyframeStore::let_go(std::shared_ptr<Keyframe> keyframe) {
+  constexpr std::size_t most = 4;
+  if (gone_.size() < most) gone_.push_back(std::move(keyframe));
+}
+
+void KeyframeStore::clear() {
+  keyframes_.clear();
+  gone_.clear();
+}
+
+std::shared_ptr<Keyframe> KeyframeStore::take() {
+  const auto unused = std::find_if(gone_.begin(), gone_.end(),
+                                   [](const auto& keyframe) { return keyframe.use_count() == 1; });
+  if (unused == gone_.end()) return std::make_shared<Keyframe>();
+  // After whoever looked at it last.
+  std::atomic_thread_fence(std::memory_order_acquire);
+  std::shared_ptr<Keyframe> keyframe = std::move(*unused);
+  gone_.erase(unused);
+  return keyframe;
+}
+
+void KeyframeStore::add(std::shared_ptr<Keyframe> keyframe) {
+  preparation_.prepare(*keyframe);
+  keyframes_.push_back(std::move(keyframe));
   const std::size_t affordable = most_bytes / std::max<std::size_t>(1, newest().bytes());
   if (size() <= std::clamp<std::size_t>(affordable, 2, most_keyframes)) return;
   std::vector<std::size_t> unique(size());
   for_tasks(size() - 1, [&](std::size_t i) { unique[i] = count_unique(i); });
-  keyframes_.erase(keyframes_.begin() +
-                   (std::min_element(unique.begin(), unique.end() - 1) - unique.begin()));
+  const auto least =
+      keyframes_.begin() + (std::min_element(unique.begin(), unique.end() - 1) - unique.begin());
+  let_go(std::move(*least));
+  keyframes_.erase(least);
 }
 
 std::size_t KeyframeStore::bytes() const {
@@ -73,9 +97,13 @@ std::size_t KeyframeStore::bytes() const {
 }
 
 void KeyframeStore::drop_older_than(double stamp_s) {
-  std::erase_if(keyframes_, [&](const auto& keyframe) {
+  const auto is_old = [&](const auto& keyframe) {
     return !keyframe->is_background && keyframe->stamp_s < stamp_s;
-  });
+  };
+  for (const auto& keyframe : keyframes_) {
+    if (is_old(keyframe)) let_go(keyframe);
+  }
+  std::erase_if(keyframes_, is_old);
 }
 
 void KeyframeStore::find_shown(const Keyframe& keyframe, const RigidTransform& color_from_keyframe,
@@ -100,28 +128,61 @@ void KeyframeStore::find_shown(const Keyframe& keyframe, const RigidTransform& c
   }
 }
 
-void KeyframeStore::choose(std::size_t most, const Mask& objects, const TiledRegion& region,
-                           const RigidTransform& color_from_world,
-                           std::vector<std::shared_ptr<const Keyframe>>& chosen) {
+void KeyframeStore::find_part(const std::vector<std::uint8_t>& shown, const Rect& region,
+                              TiledRegion& part) const {
+  const int cell = cell_px(grid_);
+  const Rect cells = cells_of(region, cell);
+  const auto cells_in = [&](const Rect& pixels) {
+    const int left = std::max(0, pixels.x - region.x) / cell;
+    const int top = std::max(0, pixels.y - region.y) / cell;
+    return intersect({left, top, (pixels.right() - region.x - 1) / cell + 1 - left,
+                      (pixels.bottom() - region.y - 1) / cell + 1 - top},
+                     cells);
+  };
+  const auto shows = [&](const Rect& among) {
+    for (int y = among.y; y < among.bottom(); ++y) {
+      for (int x = among.x; x < among.right(); ++x) {
+        const auto i = static_cast<std::size_t>(y * cells.width + x);
+        if (shown[i] != 0 && hidden_[i] != 0) return true;
+      }
+    }
+    return false;
+  };
+  Rect box;
+  for (int y = 0; y < cells.height; ++y) {
+    for (int x = 0; x < cells.width; ++x) {
+      if (!shows({x, y, 1, 1})) continue;
+      box = join(box, {region.x + x * cell, region.y + y * cell, cell, cell});
+    }
+  }
+  // A cell more, as poses are not aligned yet.
+  part.set(intersect(grow(box, cell), region));
+  part.keep_if([&](const Rect& tile) { return shows(cells_in(grow(tile, cell))); });
+}
+
+std::size_t KeyframeStore::choose(std::size_t most, const Mask& objects, const TiledRegion& region,
+                                  const RigidTransform& color_from_world,
+                                  std::vector<Choice>& chosen) {
   constexpr int least_pixels = 256;
   constexpr int least_share = 64;  // of the objects: 1 / 64
   constexpr int sampled_rows = 2;
   constexpr double near_m = 0.05;
   const int cell = cell_px(grid_);
   const Rect cells = cells_of(region, cell);
-  wanted_.assign(static_cast<std::size_t>(cells.width) * static_cast<std::size_t>(cells.height), 0);
+  hidden_.assign(static_cast<std::size_t>(cells.width) * static_cast<std::size_t>(cells.height), 0);
   int all = 0;
   for (int y = region.y; y < region.bottom(); y += sampled_rows) {
-    int* const wanted = wanted_.data() + (y - region.y) / cell * cells.width;
+    int* const hidden = hidden_.data() + (y - region.y) / cell * cells.width;
     const std::uint8_t* const masked = objects.row(y) + region.x;
     for (int i = 0; i < cells.width; ++i) {
       const int last = std::min(region.width, (i + 1) * cell);
       int pixels = 0;
       for (int x = i * cell; x < last; ++x) pixels += masked[x] != 0 ? sampled_rows : 0;
-      wanted[i] += pixels;
+      hidden[i] += pixels;
       all += pixels;
     }
   }
+  wanted_ = hidden_;
   const int fewest = std::max(least_pixels, all / least_share);
   shown_.resize(size());
   weights_.resize(size());
@@ -130,8 +191,8 @@ void KeyframeStore::choose(std::size_t most, const Mask& objects, const TiledReg
     weights_[k] = 1 / (1 + motion.translation.norm() / near_m);
     find_shown(*keyframes_[k], motion, region, shown_[k]);
   });
-  chosen.clear();
-  while (chosen.size() < most) {
+  std::size_t count_chosen = 0;
+  while (count_chosen < most) {
     std::size_t best = size();
     double best_value = 0;
     for (std::size_t k = size(); k-- > 0;) {
@@ -143,11 +204,14 @@ void KeyframeStore::choose(std::size_t most, const Mask& objects, const TiledReg
       best = k;
     }
     if (best == size()) break;
-    chosen.push_back(keyframes_[best]);
+    if (chosen.size() == count_chosen) chosen.emplace_back();
+    chosen[count_chosen].keyframe = keyframes_[best];
+    find_part(shown_[best], region, chosen[count_chosen++].part);
     for (std::size_t i = 0; i < wanted_.size(); ++i) {
       if (shown_[best][i] != 0) wanted_[i] = 0;
     }
   }
+  return count_chosen;
 }
 
 void KeyframeStore::remove(const std::vector<Eigen::Vector3f>& points_m,

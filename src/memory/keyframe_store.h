@@ -24,22 +24,34 @@ class KeyframeStore {
   const Keyframe& newest() const { return *keyframes_.back(); }
   const std::vector<std::shared_ptr<Keyframe>>& all() const { return keyframes_; }
 
+  /// A keyframe to fill and to add: one that went and that nobody looks at any more, so that its
+  /// memory is used again.
+  std::shared_ptr<Keyframe> take();
   /// If there are too many, the one goes that shows least of what the others do not.
-  void add(Keyframe keyframe);
+  void add(std::shared_ptr<Keyframe> keyframe);
   /// The background stays.
   void drop_older_than(double stamp_s);
-  void clear() { keyframes_.clear(); }
+  void clear();
 
+  /// A keyframe, and the part of the picture in which it shows what the objects hide.
+  struct Choice {
+    std::shared_ptr<const Keyframe> keyframe;
+    TiledRegion part;
+  };
   /// Those that together show most of the objects' mask, the best first. Nearer ones are better:
-  /// errors in depth show less. Cost: 10 us a keyframe, and reading the mask.
-  void choose(std::size_t most, const Mask& objects, const TiledRegion& region,
-              const RigidTransform& color_from_world,
-              std::vector<std::shared_ptr<const Keyframe>>& chosen);
+  /// errors in depth show less. Returns how many; `chosen` may hold more. Cost: 10 us a keyframe,
+  /// and reading the mask.
+  std::size_t choose(std::size_t most, const Mask& objects, const TiledRegion& region,
+                     const RigidTransform& color_from_world, std::vector<Choice>& chosen);
 
   /// Removes points from all keyframes. points_m: in the frame of one of them, whose pose is given.
   void remove(const std::vector<Eigen::Vector3f>& points_m, const RigidTransform& color_from_world);
 
  private:
+  /// Around the cells with objects that a keyframe shows.
+  void find_part(const std::vector<std::uint8_t>& shown, const Rect& region,
+                 TiledRegion& part) const;
+  void let_go(std::shared_ptr<Keyframe> keyframe);
   std::size_t count_unique(std::size_t index) const;
   /// Which cells of the region a keyframe shows.
   void find_shown(const Keyframe& keyframe, const RigidTransform& color_from_keyframe,
@@ -50,8 +62,11 @@ class KeyframeStore {
   Projection color_;  ///< of the picture
   int picture_width_;
   std::vector<std::shared_ptr<Keyframe>> keyframes_;
-  // By cell of the region: pixels of the objects that no chosen keyframe shows; what each shows.
-  std::vector<int> wanted_;
+  /// That went. A few: others may still draw them.
+  std::vector<std::shared_ptr<Keyframe>> gone_;
+  // By cell of the region: pixels of the objects; those that no chosen keyframe shows; what each
+  // shows.
+  std::vector<int> hidden_, wanted_;
   std::vector<std::vector<std::uint8_t>> shown_;
   std::vector<double> weights_;
 };

@@ -5,13 +5,15 @@
 namespace diminish {
 namespace {
 
-Keyframe keyframe_of(const KeyframeGrid& grid, const Intrinsics& color, double x_m) {
-  Keyframe keyframe;
+std::shared_ptr<Keyframe> keyframe_of(const KeyframeGrid& grid, const Intrinsics& color,
+                                      double x_m) {
+  auto made = std::make_shared<Keyframe>();
+  Keyframe& keyframe = *made;
   keyframe.color_from_world.translation.x() = -x_m;
   keyframe.picture.resize(color.width, color.height);
   keyframe.doubt.resize(grid.intrinsics().width, grid.intrinsics().height, 0);
   keyframe.depth.resize(grid.intrinsics().width, grid.intrinsics().height, 4000);  // 2 m
-  return keyframe;
+  return made;
 }
 
 Rig rig_of(const Intrinsics& color) {
@@ -39,7 +41,7 @@ TEST(KeyframeStore, HoldsFewerOfLargePictures) {
   const Intrinsics color{8000, 6000, 5000, 5000, 3999.5, 2999.5, {}};
   const KeyframeGrid grid(color);
   KeyframeStore store(rig_of(color), grid);
-  const std::size_t one = keyframe_of(grid, color, 0).bytes();
+  const std::size_t one = keyframe_of(grid, color, 0)->bytes();
   ASSERT_GT(one, KeyframeStore::most_bytes / 2);
   for (int i = 0; i < 4; ++i) store.add(keyframe_of(grid, color, i));
   EXPECT_LE(store.size(), 2U) << "two at least: one to compare with";

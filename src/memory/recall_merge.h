@@ -35,12 +35,27 @@ class RecallMerge {
                                             const Reconstruction& reconstruction) const;
 
  private:
-  bool explains_surroundings(const RecallInputs& inputs, const Recollection& recollection,
-                             const Reconstruction& live) const;
-  void layer_rows(std::span<const Recollection> recollections, Rows rows);
-  void merge_row(const RecallInputs& inputs, std::span<const Recollection> recollections,
-                 bool witnessed_only, int y, Reconstruction& reconstruction) const;
-  /// Of all that show the same surface.
+  static bool explains_surroundings(const RecallInputs& inputs, const Recollection& recollection,
+                                    const Reconstruction& live);
+  /// Pixels [first, last) of a row of the picture.
+  struct Run {
+    int first, last, y;
+  };
+  /// Of the pixels of a run.
+  struct Scratch {
+    std::vector<float> looked_m;
+    std::vector<std::int32_t> places;
+    std::vector<Verdict> verdicts;  ///< on what is seen now
+  };
+  void layer_row(std::span<const Recollection> recollections, int y);
+  void find_verdicts(const Run& run, const RecallInputs& inputs,
+                     std::span<const Recollection> recollections, const Reconstruction& live,
+                     Scratch& scratch) const;
+  /// Returns whether anything in it is remembered.
+  bool merge_run(const Run& run, const RecallInputs& inputs,
+                 std::span<const Recollection> recollections, bool witnessed_only, Scratch& scratch,
+                 Reconstruction& reconstruction) const;
+  /// Of all that show the same surface. x, y: in the picture.
   Bgr mean_color(std::span<const Recollection> recollections, int x, int y) const;
   void drop_specks(const RecallInputs& inputs, Reconstruction& reconstruction);
   bool is_nearer(float z_m, int x, int y, float tolerance_m) const;
@@ -50,12 +65,15 @@ class RecallMerge {
   std::vector<FloatTransform> depth_from_color_;
   std::vector<double> depth_from_color_m_;
   std::vector<std::uint8_t> usable_;  ///< of each recollection
-  // Of the region: what is remembered. 0: nothing, else 1 + the recollection's index.
-  Rect region_;
+  std::vector<double> baselines_m_;   ///< likewise
+  TiledRegion part_;                  ///< where any of them is drawn
+  // Of its box: what is remembered. 0: nothing, else 1 + the recollection's index.
   Image<std::uint8_t> layer_;
-  Image<float> depth_m_;
-  Mask known_;  ///< 1: seen or remembered, or no object
+  Image<float> depth_m_;  ///< where there is something
+  Mask known_;            ///< and around it; 1: seen or remembered, or no object
   std::vector<std::uint8_t> column_sums_[most_bands];
+  TiledRegion specks_part_;
+  Scratch scratch_[most_bands];
 };
 
 }  // namespace diminish

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "memory/keyframe_preparation.h"
+#include "memory/point_rows.h"
 
 namespace diminish {
 namespace {
@@ -22,18 +23,19 @@ void join_narrow_gaps(double focal_px, double baseline_m, Options& options) {
 
 Recollection::Recollection(const Rig& rig, const KeyframeGrid& grid)
     : rig_(keyframe_rig(rig, grid)),
-      grid_step_(grid.step()),
-      coarse_(rig.color),
-      fine_(rig.color, 2 * PoseRefinement::usual_width),
+      grid_(grid),
+      color_(Lens(rig.color)),
+      coarse_(rig.color, PoseRefinement::usual_width, 5 * PoseRefinement::usual_last_step, true),
+      fine_(rig.color, 2 * PoseRefinement::usual_width, 2 * PoseRefinement::usual_last_step, true),
       witness_(rig, grid),
       drawer_(Registry<Reconstructor>::get("cpu")(rig_)),
       depth_(1),
       masks_(keyframe_masks(rig, grid)),
       edges_(rig.color, grid) {}
 
-void Recollection::prepare(std::shared_ptr<const Keyframe> kept, const RecallInputs& inputs,
-                           const std::vector<Testimony>& now) {
-  keyframe_ = std::move(kept);
+void Recollection::begin(const KeyframeStore::Choice& choice, const RecallInputs& inputs) {
+  keyframe_ = choice.keyframe;
+  part_ = choice.part;
   const Keyframe& keyframe = *keyframe_;
   frame_.color = inputs.frame.color.view();
   show(keyframe, frame_);
@@ -41,29 +43,88 @@ void Recollection::prepare(std::shared_ptr<const Keyframe> kept, const RecallInp
   samples_.surfaces.clear();
   for (const SceneSample& sample : keyframe.samples) {
     // It may have been removed since.
-    const int x = static_cast<int>(sample.texture.x()) / grid_step_;
-    const int y = static_cast<int>(sample.texture.y()) / grid_step_;
+    const int x = static_cast<int>(sample.texture.x()) / grid_.step();
+    const int y = static_cast<int>(sample.texture.y()) / grid_.step();
     if (keyframe.depth(x, y) != 0) samples_.surfaces.push_back(sample);
   }
-  coarse_.apply(*inputs.poses.color_from_world * keyframe.color_from_world.inverse(), poses_,
-                samples_);
-  for (PoseRefinement* refinement : {&coarse_, &fine_}) {
-    if (const auto correction = refinement->refine(frame_, inputs.masks.color, samples_)) {
-      refinement->apply(*correction, poses_, samples_);
+  move(*inputs.poses.color_from_world * keyframe.color_from_world.inverse());
+}
+
+void Recollection::move(const std::optional<RigidTransform>& motion) {
+  if (motion) coarse_.apply(*motion, poses_, samples_);
+}
+
+std::optional<RigidTransform> Recollection::find_motion(const RecallInputs& inputs) {
+  return coarse_.refine(frame_, inputs.masks.color, samples_);
+}
+
+void Recollection::prepare(const std::optional<RigidTransform>& motion, const RecallInputs& inputs,
+                           const std::vector<Testimony>& now) {
+  const Keyframe& keyframe = *keyframe_;
+  move(motion);
+  move(fine_.refine(frame_, inputs.masks.color, samples_));
+  // A gain and an offset do not need all.
+  constexpr std::size_t samples_apart = 3;
+  some_.clear();
+  for (std::size_t i = 0; i < samples_.surfaces.size(); i += samples_apart) {
+    some_.push_back(samples_.surfaces[i]);
+  }
+  color_maps_.fit(inputs.frame.color, inputs.masks.color, some_, ColorMapModel::affine);
+  find_levels(color_maps_.by_source()[1]);
+  witness_.judge({keyframe, *poses_.color_from_depth[0], now, inputs.poses, part_}, depth_[0],
+                 gone_);
+  find_beside(inputs);
+}
+
+/// The map is affine: a gain and an offset for each channel.
+void Recollection::find_levels(const ColorMap& map) {
+  for (std::size_t c = 0; c < levels_.size(); ++c) {
+    const auto channel = static_cast<Eigen::Index>(c);
+    for (std::size_t level = 0; level < levels_[c].size(); ++level) {
+      levels_[c][level] =
+          map.matrix(channel, channel) * static_cast<float>(level) + map.offset[channel];
     }
   }
-  color_maps_.fit(inputs.frame.color, inputs.masks.color, samples_.surfaces, ColorMapModel::affine);
-  witness_.judge({keyframe, *poses_.color_from_depth[0], now, inputs.poses, inputs.region},
-                 depth_[0], gone_);
+}
+
+void Recollection::find_beside(const RecallInputs& inputs) {
+  beside_.clear();
+  add_beside(inputs, witness_.part(), 1, intersect(grow(part_, TiledRegion::tile), inputs.region));
+  if (beside_.size() >= fewest_beside) return;
+  beside_.clear();
+  constexpr int rows_apart = 4;
+  add_beside(inputs, depth_[0].bounds(), rows_apart, inputs.region);
+}
+
+void Recollection::add_beside(const RecallInputs& inputs, const Rect& places, int rows_apart,
+                              const Rect& part) {
+  const RayTable& rays = grid_.rays();
+  const PointView view{FloatTransform(*poses_.color_from_depth[0]), color_, part, rig_.color.width};
+  float depth_m[KeyframeGrid::most_columns];
+  std::int32_t pixels[KeyframeGrid::most_columns];
+  for (int y = places.y; y < places.bottom(); y += rows_apart) {
+    const std::uint16_t* const depth = depth_[0].row(y) + places.x;
+    for (int i = 0; i < places.width; ++i) depth_m[i] = KeyframeGrid::depth_m(depth[i]);
+    find_pixels({rays.x(y) + places.x, rays.y(y) + places.x, depth_m, places.width}, view, pixels,
+                depth_m);
+    for (int i = 0; i < places.width; ++i) {
+      if (pixels[i] < 0 || inputs.masks.color.data()[pixels[i]] != 0) continue;
+      const int row = pixels[i] / rig_.color.width;
+      const int column = pixels[i] - row * rig_.color.width;
+      if (!inputs.region.keeps(column, row)) continue;
+      beside_.push_back(
+          {column, row, keyframe_->picture((places.x + i) * grid_.step(), y * grid_.step())});
+    }
+  }
 }
 
 void Recollection::draw(const RecallInputs& inputs) {
   Options options = inputs.options;
   join_narrow_gaps(rig_.color.fx, baseline_m(), options);
-  drawer_->reconstruct(frame_, depth_, poses_, masks_, inputs.region, options, drawn_);
+  drawer_->reconstruct(frame_, depth_, poses_, masks_, part_, options, drawn_);
   edges_.close(
       {keyframe_->picture, depth_[0], FloatTransform(poses_.color_from_depth[0]->inverse())},
-      inputs.masks.color, inputs.region, drawn_);
+      inputs.masks.color, part_, drawn_);
 }
 
 }  // namespace diminish

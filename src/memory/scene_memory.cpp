@@ -36,7 +36,9 @@ void SceneMemory::begin_anew() {
 
 void SceneMemory::set_background(std::vector<Keyframe> keyframes) {
   forget();
-  for (Keyframe& keyframe : keyframes) store_.add(std::move(keyframe));
+  for (Keyframe& keyframe : keyframes) {
+    store_.add(std::make_shared<Keyframe>(std::move(keyframe)));
+  }
 }
 
 void SceneMemory::look(const RecallInputs& inputs) {
@@ -66,7 +68,7 @@ bool SceneMemory::has_lost_its_world(const RecallInputs& inputs) {
     return !keyframe.testimonies[0].is_given ||
            stands_still(keyframe.testimonies[0], testimonies_[0]);
   };
-  return testimonies_[0].is_given && !(pending_.steps > 0 && stood(pending_.keyframe)) &&
+  return testimonies_[0].is_given && !(pending_.steps > 0 && stood(*pending_.keyframe)) &&
          std::none_of(store_.all().begin(), store_.all().end(),
                       [&](const auto& keyframe) { return stood(*keyframe); });
 }
@@ -85,20 +87,22 @@ std::size_t SceneMemory::recall(const RecallInputs& inputs, bool is_anchored,
   constexpr double moment_s = 0.1;
   do {
     take_step();
-  } while (now_s >= pending_.keyframe.stamp_s + moment_s && pending_.steps > 0);
+  } while (pending_.steps > 0 && now_s >= pending_.keyframe->stamp_s + moment_s);
   store_.drop_older_than(now_s - inputs.options.memory_max_age_s);
   if (is_anchored && keyframes() > 0 && has_lost_its_world(inputs)) begin_anew();
   if (store_.empty() || inputs.region.empty()) return 0;
-  store_.choose(most_recalled, inputs.masks.color, inputs.region, color_from_world, chosen_);
-  if (chosen_.empty()) return 0;
+  const std::size_t count =
+      store_.choose(most_recalled, inputs.masks.color, inputs.region, color_from_world, chosen_);
+  if (count == 0) return 0;
   look(inputs);
-  while (recollections.size() < chosen_.size()) recollections.emplace_back(rig_, grid_);
-  for_tasks(chosen_.size(),
-            [&](std::size_t i) { recollections[i].prepare(chosen_[i], inputs, testimonies_); });
-  for (std::size_t i = 0; i < chosen_.size(); ++i) {
-    store_.remove(recollections[i].gone(), chosen_[i]->color_from_world);
+  while (recollections.size() < count) recollections.emplace_back(rig_, grid_);
+  for_tasks(count, [&](std::size_t i) { recollections[i].begin(chosen_[i], inputs); });
+  const std::optional<RigidTransform> motion = recollections[0].find_motion(inputs);
+  for_tasks(count, [&](std::size_t i) { recollections[i].prepare(motion, inputs, testimonies_); });
+  for (std::size_t i = 0; i < count; ++i) {
+    store_.remove(recollections[i].gone(), chosen_[i].keyframe->color_from_world);
   }
-  return chosen_.size();
+  return count;
 }
 
 bool SceneMemory::is_worth_a_keyframe(const RecallInputs& inputs) const {
@@ -106,9 +110,9 @@ bool SceneMemory::is_worth_a_keyframe(const RecallInputs& inputs) const {
   if (!last_keyframe_from_world_) return true;
   constexpr double shortest_s = 0.2;
   constexpr double longest_s = 2;
-  constexpr int moved_px = 8;
-  constexpr double moved_m = 0.01;
-  constexpr double turned_deg = 0.5;
+  constexpr int moved_share = 16;  // of the objects' size: 1 / 16
+  constexpr double moved_m = 0.04;
+  constexpr double turned_deg = 2;
   const double since_s = inputs.frame.stamp_s - last_keyframe_s_;
   if (since_s < shortest_s) return false;
   if (since_s >= longest_s) return true;
@@ -119,7 +123,8 @@ bool SceneMemory::is_worth_a_keyframe(const RecallInputs& inputs) const {
       std::max({std::abs(objects.x - last_objects_.x), std::abs(objects.y - last_objects_.y),
                 std::abs(objects.right() - last_objects_.right()),
                 std::abs(objects.bottom() - last_objects_.bottom())});
-  return objects_moved > moved_px || motion.translation.norm() > moved_m ||
+  const int size = std::max(objects.width, objects.height);
+  return moved_share * objects_moved > size || motion.translation.norm() > moved_m ||
          rotation_difference_deg(motion.rotation, Eigen::Matrix3d::Identity()) > turned_deg;
 }
 
@@ -173,8 +178,9 @@ void SceneMemory::learn(const RecallInputs& inputs, const SceneSamples& samples,
   last_keyframe_s_ = frame.stamp_s;
   last_keyframe_from_world_ = inputs.poses.color_from_world;
   last_objects_ = inputs.objects;
-  Keyframe& keyframe = pending_.keyframe;
-  keyframe = {};
+  pending_.keyframe = store_.take();
+  Keyframe& keyframe = *pending_.keyframe;
+  keyframe.is_background = false;
   keyframe.stamp_s = frame.stamp_s;
   keyframe.color_from_world = *inputs.poses.color_from_world;
   keyframe.color_from_depth = inputs.poses.color_from_depth;
@@ -194,11 +200,11 @@ const std::vector<std::shared_ptr<Keyframe>>& SceneMemory::all() {
 
 void SceneMemory::take_step() {
   if (pending_.steps == 0) return;
-  Keyframe& keyframe = pending_.keyframe;
+  Keyframe& keyframe = *pending_.keyframe;
   if (--pending_.steps > 0) return depth_.complete(pending_.objects, keyframe);
   leave_out_objects(keyframe);
   novelty_.filter(pending_.is_uncertain, keyframe);
-  store_.add(std::move(keyframe));
+  store_.add(std::move(pending_.keyframe));
 }
 
 Poses anchored(const Poses& poses) {

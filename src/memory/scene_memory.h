@@ -43,7 +43,7 @@ class SceneMemory {
   /// With the one that is pending.
   std::size_t keyframes() const { return store_.size() + (pending_.steps > 0 ? 1 : 0); }
   std::size_t bytes() const {
-    return store_.bytes() + (pending_.steps > 0 ? pending_.keyframe.bytes() : 0);
+    return store_.bytes() + (pending_.steps > 0 ? pending_.keyframe->bytes() : 0);
   }
 
  private:
@@ -66,13 +66,13 @@ class SceneMemory {
   KeyframeDepth depth_;
   Novelty novelty_;
   KeyframeStore store_;
-  std::vector<std::shared_ptr<const Keyframe>> chosen_;
+  std::vector<KeyframeStore::Choice> chosen_;
   std::vector<TestimonyTaker> takers_;
   std::vector<Testimony> testimonies_;
   /// A keyframe that is not ready yet, of the frame that gave it.
   struct Pending {
     int steps = 0;  ///< that are left
-    Keyframe keyframe;
+    std::shared_ptr<Keyframe> keyframe;
     Mask objects;
     bool is_uncertain = false;
   };

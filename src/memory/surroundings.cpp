@@ -18,19 +18,16 @@ void Surroundings::find(const Image<float>& depth_m, const Image<Bgr>& color, in
     const float* const measured_m = depth_m.row(y) + known.x;
     const Bgr* const colors = color.row(y) + known.x;
     std::copy_n(measured_m, known.width, own_greatest_m_.at(known.x, y));
-    float* const least_m = own_least_m_.at(known.x, y);
-    std::uint8_t* low = own_low_.at(known.x, y);
-    std::uint8_t* high = own_high_.at(known.x, y);
-    for (int i = 0; i < known.width; ++i, low += 3, high += 3) {
-      const bool is_measured = measured_m[i] > 0;
-      least_m[i] = is_measured ? measured_m[i] : nothing_m;
-      const int lowest = is_measured ? 0 : 255;
-      const int highest = is_measured ? 255 : 0;
-      const int levels[3] = {colors[i].b, colors[i].g, colors[i].r};
-      for (int c = 0; c < 3; ++c) {
-        low[c] = static_cast<std::uint8_t>(levels[c] | lowest);
-        high[c] = static_cast<std::uint8_t>(levels[c] & highest);
-      }
+    std::transform(measured_m, measured_m + known.width, own_least_m_.at(known.x, y),
+                   [](float z_m) { return z_m > 0 ? z_m : nothing_m; });
+    std::uint8_t* const low = own_low_.at(known.x, y);
+    std::uint8_t* const high = own_high_.at(known.x, y);
+    std::copy_n(&colors->b, 3 * known.width, low);
+    std::copy_n(&colors->b, 3 * known.width, high);
+    for (int i = 0; i < known.width; ++i) {
+      if (measured_m[i] > 0) continue;
+      std::fill_n(low + 3 * i, 3, std::uint8_t{255});
+      std::fill_n(high + 3 * i, 3, std::uint8_t{0});
     }
   }
   const auto least = [](auto a, auto b) { return std::min(a, b); };

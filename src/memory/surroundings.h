@@ -34,6 +34,14 @@ class Padded {
   int channels_ = 1;
 };
 
+/// Puts into each of some values what `combine` makes of it and two others. Apart, so that a
+/// compiler sees that the count does not change: bytes that are written may be anything.
+template <class Value, class Combine>
+void combine_all(const Value* before, const Value* after, int count, const Combine& combine,
+                 Value* to) {
+  for (int i = 0; i < count; ++i) to[i] = combine(to[i], combine(before[i], after[i]));
+}
+
 /// Combines each pixel of a part with those within `reach` (at most Padded::margin) in columns and
 /// rows: their least value, their greatest or their sum, by what `combine` does with two. across:
 /// scratch memory.
@@ -44,9 +52,7 @@ void combine_around(const Padded<Value>& image, const Rect& part, int reach, con
   const auto along = [&](const Value* from, std::ptrdiff_t step, Value* to) {
     std::copy_n(from, count, to);
     for (int k = 1; k <= reach; ++k) {
-      const Value* const before = from - k * step;
-      const Value* const after = from + k * step;
-      for (int i = 0; i < count; ++i) to[i] = combine(to[i], combine(before[i], after[i]));
+      combine_all(from - k * step, from + k * step, count, combine, to);
     }
   };
   for (int y = part.y - reach; y < part.bottom() + reach; ++y) {
@@ -69,6 +75,9 @@ class Surroundings {
   /// The least and the greatest; `nothing_m` and 0 if nothing was measured.
   float least_m(int x, int y) const { return *least_m_.at(x, y); }
   float greatest_m(int x, int y) const { return *greatest_m_.at(x, y); }
+  /// Of a place and those after it in its row.
+  const float* least_row_m(int x, int y) const { return least_m_.at(x, y); }
+  const float* greatest_row_m(int x, int y) const { return greatest_m_.at(x, y); }
   /// The least and the greatest of each channel; 255 and 0.
   const std::uint8_t* low(int x, int y) const { return low_.at(x, y); }
   const std::uint8_t* high(int x, int y) const { return high_.at(x, y); }

@@ -47,6 +47,27 @@ bool is_between(const Bgr& color, const std::uint8_t* low, const std::uint8_t* h
                                  1 / deepest_shadow));
 }
 
+/// Whether levels lie between two others, or nearly: 1 or 0.
+void are_within(const std::uint8_t* levels, const std::uint8_t* low, const std::uint8_t* high,
+                int count, int tolerance, std::uint8_t* within) {
+  for (int i = 0; i < count; ++i) {
+    within[i] = (levels[i] + tolerance >= low[i]) & (levels[i] <= high[i] + tolerance) ? 1 : 0;
+  }
+}
+
+/// Whether a measured depth is that of a surface around, without an edge: 1 or 0.
+void are_near(const float* depth_m, const float* least_m, const float* greatest_m, int count,
+              float tolerance, std::uint8_t* near) {
+  for (int i = 0; i < count; ++i) {
+    const float z_m = depth_m[i];
+    const float tolerance_m = tolerance * usual_noise.at(z_m);
+    near[i] = (z_m > 0) & (z_m >= least_m[i] - tolerance_m) & (z_m <= greatest_m[i] + tolerance_m) &
+                      (greatest_m[i] - least_m[i] <= edge * z_m)
+                  ? 1
+                  : 0;
+  }
+}
+
 }  // namespace
 
 int TestimonyComparison::count_same(const Testimony& a, const Testimony& b,
@@ -147,6 +168,21 @@ Verdict TestimonyComparison::verdict_of(const Place& own, const Place& there,
              : Verdict::recolored;
 }
 
+void TestimonyComparison::find_sure(const Testimony& own, const Rect& row,
+                                    const Tolerance& tolerance) {
+  const auto room = static_cast<std::size_t>(row.width);
+  sure_.resize(room);
+  colors_sure_.resize(3 * room);
+  are_within(&own.color(row.x, row.y).b, around_.low(row.x, row.y), around_.high(row.x, row.y),
+             3 * row.width, static_cast<int>(tolerance.color), colors_sure_.data());
+  are_near(own.depth_m.row(row.y) + row.x, around_.least_row_m(row.x, row.y),
+           around_.greatest_row_m(row.x, row.y), row.width, tolerance.depth, sure_.data());
+  for (std::size_t i = 0; i < room; ++i) {
+    const std::uint8_t* const sure = colors_sure_.data() + 3 * i;
+    sure_[i] = static_cast<std::uint8_t>(sure_[i] & sure[0] & sure[1] & sure[2]);
+  }
+}
+
 void TestimonyComparison::judge(const Side& side, const Side& other,
                                 const FloatTransform& other_from_side, const Tolerance& tolerance) {
   const Rect& grid = grid_.bounds();
@@ -172,7 +208,16 @@ void TestimonyComparison::judge(const Side& side, const Side& other,
       }
     }
     Verdict* const verdicts = side.verdicts.row(y) + part.x;
+    if (tolerance.reach == 1) {
+      find_sure(own, {part.x, y, part.width, 1}, tolerance);
+    } else {
+      sure_.assign(static_cast<std::size_t>(part.width), 0);
+    }
     for (int i = 0; i < part.width; ++i) {
+      if (sure_[static_cast<std::size_t>(i)] != 0) {
+        verdicts[i] = Verdict::same;
+        continue;
+      }
       if (places[i] < 0) continue;
       const int row = places[i] / grid.width;
       const int column = places[i] - row * grid.width;

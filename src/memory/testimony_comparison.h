@@ -53,6 +53,9 @@ class TestimonyComparison {
   };
   /// On a point at a place of one testimony, which is at a place of the other for that camera.
   Verdict verdict_of(const Place& own, const Place& there, const Tolerance& tolerance) const;
+  /// For a camera that stands still: whether places of a row are surely the same, which most are.
+  /// Others are asked for one by one.
+  void find_sure(const Testimony& own, const Rect& row, const Tolerance& tolerance);
   void judge(const Side& side, const Side& other, const FloatTransform& other_from_side,
              const Tolerance& tolerance);
   /// Leaves out changes that are no wider than the errors at the edges of things.
@@ -61,6 +64,7 @@ class TestimonyComparison {
   TestimonyGrid grid_;
   Surroundings around_;
   Padded<std::uint8_t> across_, changed_, core_, count_, kept_;
+  std::vector<std::uint8_t> sure_, colors_sure_;  ///< of a row: 1: the same
   std::vector<float> depth_differences_, color_differences_;
 };
 

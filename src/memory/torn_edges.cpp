@@ -1,47 +1,125 @@
 #include "memory/torn_edges.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "core/rows.h"
+#include "core/runs.h"
 
 namespace diminish {
+namespace {
+
+/// Pixels that are looked at together: few are where a gap ends.
+constexpr int lanes = sizeof(std::uint64_t);
+
+/// Whether any of some pixels is not open but the one above is. Of bytes that are 0 or 1.
+bool any_ends(const std::uint8_t* above, const std::uint8_t* own) {
+  std::uint64_t above_word;
+  std::uint64_t own_word;
+  std::memcpy(&above_word, above, sizeof(above_word));
+  std::memcpy(&own_word, own, sizeof(own_word));
+  return (above_word & ~own_word) != 0;
+}
+
+}  // namespace
 
 TornEdges::TornEdges(const Intrinsics& color, const KeyframeGrid& grid)
     : color_(color), grid_(grid) {}
 
-void TornEdges::close(const View& view, const Mask& objects, const Rect& part,
+void TornEdges::close(const View& view, const Mask& objects, const TiledRegion& part,
                       Reconstruction& drawn) {
   if (!rays_) rays_ = RayTable::of(color_);
   part_ = part;
-  gaps_.resize(part.width, part.height);
+  open_.resize(part.width, part.height);
   for_rows(part.height, [&](Rows rows) {
     for (int y = rows.first; y < rows.last; ++y) {
-      const std::uint8_t* const masked = objects.row(y + part.y) + part.x;
-      const std::uint8_t* const source = drawn.source.row(y + part.y) + part.x;
-      std::uint8_t* const gaps = gaps_.row(y);
-      for (int x = 0; x < part.width; ++x) gaps[x] = masked[x] != 0 && source[x] == 0 ? 1 : 0;
+      const std::uint8_t* const source = drawn.source.row(y + part.y);
+      std::uint8_t* const open = open_.row(y) - part.x;
+      part.for_each_gap(y + part.y, [&](int first, int last) {
+        std::fill(open + first, open + last, std::uint8_t{1});
+      });
+      part.for_each_run(y + part.y, [&](int first, int last) {
+        for (int x = first; x < last; ++x) open[x] = source[x] == 0 ? 1 : 0;
+      });
     }
   });
   for_rows(part.height, [&](Rows rows) {
-    for (int y = rows.first; y < rows.last; ++y) {
-      for (int x = 0; x < part.width; ++x) {
-        if (gaps_(x, y) != 0) close_at(view, x, y, drawn);
+    for (int y = rows.first; y < rows.last; ++y) close_along_row(view, objects, y, drawn);
+  });
+  for_rows(part.height, [&](Rows rows) {
+    for (int y = std::max(1, rows.first); y < rows.last; ++y) {
+      close_along_columns(view, objects, y, drawn);
+    }
+  });
+}
+
+void TornEdges::close_along_row(const View& view, const Mask& objects, int y,
+                                Reconstruction& drawn) const {
+  const std::uint8_t* const open = open_.row(y);
+  const int end = part_.width;
+  for (int first = find_other(open, 0, end, 0); first < end;) {
+    const int last = find_equal(open, first, end, 0);
+    if (last == end) return;
+    const int x = part_.x + first;
+    const int count = last - first;
+    const int row = part_.y + y;
+    if (first > 0 && count < 2 * reach_px()) {
+      close_gap(view, objects, {{x - 1, row}, {x, row}, {x + count, row}, count}, drawn);
+    }
+    first = find_other(open, last, end, 0);
+  }
+}
+
+void TornEdges::close_along_columns(const View& view, const Mask& objects, int y,
+                                    Reconstruction& drawn) const {
+  const auto end_at = [&](int x) {
+    int count = 1;
+    while (count < 2 * reach_px() && count < y && open_(x, y - count - 1) != 0) ++count;
+    if (count == 2 * reach_px() || count == y) return;
+    const int column = part_.x + x;
+    const int row = part_.y + y;
+    close_gap(view, objects,
+              {{column, row - count - 1}, {column, row - count}, {column, row}, count}, drawn);
+  };
+  const std::uint8_t* const above = open_.row(y - 1);
+  const std::uint8_t* const own = open_.row(y);
+  part_.for_each_run(part_.y + y, [&](int first, int last) {
+    const int end = last - part_.x;
+    for (int x = first - part_.x; x < end; x += lanes) {
+      if (x + lanes <= end && !any_ends(above + x, own + x)) continue;
+      for (int i = x; i < std::min(x + lanes, end); ++i) {
+        if (above[i] != 0 && own[i] == 0) end_at(i);
       }
     }
   });
 }
 
-float TornEdges::depth_beside(const Reconstruction& drawn, int x, int y, int dx, int dy) const {
-  constexpr int cells = 2;
-  for (int i = 1; i <= cells * grid_.step(); ++i) {
-    const int column = x + i * dx;
-    const int row = y + i * dy;
-    if (!gaps_.bounds().contains(column, row)) return 0;
-    if (gaps_(column, row) != 0) continue;
-    const bool is_drawn = drawn.source(column + part_.x, row + part_.y) != 0;
-    if (is_drawn) return drawn.depth_m(column + part_.x, row + part_.y);
+void TornEdges::close_gap(const View& view, const Mask& objects, const Gap& gap,
+                          Reconstruction& drawn) const {
+  const int dx = gap.first.x - gap.before.x;
+  const int dy = gap.first.y - gap.before.y;
+  const float before_m = drawn.depth_m(gap.before.x, gap.before.y);
+  const float after_m = drawn.depth_m(gap.after.x, gap.after.y);
+  for (int i = std::max(0, gap.count - reach_px()); i < std::min(gap.count, reach_px()); ++i) {
+    const Pixel pixel{gap.first.x + i * dx, gap.first.y + i * dy};
+    if (objects(pixel.x, pixel.y) == 0) continue;
+    close_pixel(view, pixel, before_m, drawn);
+    close_pixel(view, pixel, after_m, drawn);
   }
-  return 0;
+}
+
+/// Shows a surface there, if nothing nearer is shown.
+void TornEdges::close_pixel(const View& view, const Pixel& pixel, float z_m,
+                            Reconstruction& drawn) const {
+  const auto& [x, y] = pixel;
+  if (drawn.source(x, y) != 0 && z_m >= drawn.depth_m(x, y)) return;
+  const Eigen::Vector2f ray = (*rays_)(x, y);
+  const auto color = look(view, {ray.x() * z_m, ray.y() * z_m, z_m});
+  if (!color) return;
+  drawn.color(x, y) = {color->b, color->g, color->r, 255};
+  drawn.depth_m(x, y) = z_m;
+  drawn.source(x, y) = 1;
 }
 
 std::optional<Bgr> TornEdges::look(const View& view, const Eigen::Vector3f& x_in_color) const {
@@ -64,30 +142,6 @@ std::optional<Bgr> TornEdges::look(const View& view, const Eigen::Vector3f& x_in
   const float there_m = KeyframeGrid::depth_m(view.depth(place.x, place.y));
   if (!(std::abs(there_m - point.z()) < same_surface * point.z())) return std::nullopt;
   return view.picture(pixel.x, pixel.y);
-}
-
-void TornEdges::close_at(const View& view, int x, int y, Reconstruction& drawn) const {
-  const int column = x + part_.x;
-  const int row = y + part_.y;
-  const Eigen::Vector2f ray = (*rays_)(column, row);
-  float shown_m = 0;
-  Bgr shown;
-  for (const auto& [dx, dy] : {std::pair{1, 0}, {0, 1}}) {
-    const float before_m = depth_beside(drawn, x, y, -dx, -dy);
-    const float after_m = depth_beside(drawn, x, y, dx, dy);
-    if (before_m == 0 || after_m == 0) continue;
-    for (const float z_m : {before_m, after_m}) {
-      if (shown_m > 0 && z_m >= shown_m) continue;
-      const auto color = look(view, {ray.x() * z_m, ray.y() * z_m, z_m});
-      if (!color) continue;
-      shown_m = z_m;
-      shown = *color;
-    }
-  }
-  if (shown_m == 0) return;
-  drawn.color(column, row) = {shown.b, shown.g, shown.r, 255};
-  drawn.depth_m(column, row) = shown_m;
-  drawn.source(column, row) = 1;
 }
 
 }  // namespace diminish

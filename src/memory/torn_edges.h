@@ -21,21 +21,33 @@ class TornEdges {
     const Image<std::uint16_t>& depth;
     FloatTransform keyframe_from_color;
   };
-  /// Inside the objects' mask, in a part of the picture. Cost: 0.1 us per pixel in a gap.
-  void close(const View& view, const Mask& objects, const Rect& part, Reconstruction& drawn);
+  /// Inside the objects' mask, in a part of the picture. Cost: a tenth of a ns a pixel, and 0.1 us
+  /// one in a narrow gap.
+  void close(const View& view, const Mask& objects, const TiledRegion& part, Reconstruction& drawn);
 
  private:
-  /// Of the nearest drawn pixel in a direction; 0 if the gap is wide. x, y: in the part.
-  float depth_beside(const Reconstruction& drawn, int x, int y, int dx, int dy) const;
   /// The keyframe's colour at a point, if that is on its surface.
   std::optional<Bgr> look(const View& view, const Eigen::Vector3f& x_in_color) const;
-  void close_at(const View& view, int x, int y, Reconstruction& drawn) const;
+  /// Pixels [first, last) along a row or column of the picture, between two that are drawn.
+  struct Gap {
+    Pixel before, first, after;
+    int count;
+  };
+  void close_gap(const View& view, const Mask& objects, const Gap& gap,
+                 Reconstruction& drawn) const;
+  void close_pixel(const View& view, const Pixel& pixel, float z_m, Reconstruction& drawn) const;
+  void close_along_row(const View& view, const Mask& objects, int y, Reconstruction& drawn) const;
+  /// Those that end above a row.
+  void close_along_columns(const View& view, const Mask& objects, int y,
+                           Reconstruction& drawn) const;
+  /// The furthest that a pixel in a gap may be from those that are drawn.
+  int reach_px() const { return 2 * grid_.step(); }
 
   Intrinsics color_;
   KeyframeGrid grid_;
   std::shared_ptr<const RayTable> rays_;  ///< found when they are needed
-  Rect part_;
-  Mask gaps_;  ///< of the part: 1 where nothing was drawn
+  TiledRegion part_;
+  Mask open_;  ///< of the part: 1 where nothing was drawn
 };
 
 }  // namespace diminish

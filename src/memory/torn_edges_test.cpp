@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "analytic_scene.h"
 
 namespace diminish {
@@ -83,6 +85,63 @@ TEST_F(Torn, WhatTheKeyframeDoesNotShowStays) {
 TEST_F(Torn, OnlyTheObjectsAreCovered) {
   objects.fill(0);
   EXPECT_EQ(close(edge - 1, edge + 1), 0);
+}
+
+/// The nearest drawn pixel in a direction, not too far away: its depth, or 0.
+float depth_beside(const Reconstruction& drawn, const Rect& part, int x, int y, int dx, int dy,
+                   int reach) {
+  for (int i = 1; i <= reach; ++i) {
+    const int column = x + i * dx;
+    const int row = y + i * dy;
+    if (!part.contains(column, row)) return 0;
+    if (drawn.source(column, row) != 0) return drawn.depth_m(column, row);
+  }
+  return 0;
+}
+
+// Against a search from each pixel.
+TEST_F(Torn, AllNarrowGapsAreFound) {
+  std::mt19937 random(1);
+  const auto below = [&](int end) { return static_cast<int>(random() % unsigned(end)); };
+  const Rect whole = rig.color.bounds();
+  for (int hole = 0; hole < 400; ++hole) {
+    const Rect part =
+        intersect({below(whole.width), below(whole.height), 1 + below(12), 1 + below(12)}, whole);
+    drawn.source.fill(part, 0);
+    objects.fill(intersect({below(whole.width), below(whole.height), 6, 6}, whole), 0);
+  }
+  // All is on the blue wall, so that any gap can be closed.
+  depth.fill(units(2));
+  picture.fill(blue);
+  drawn.depth_m.fill(2);
+  const Reconstruction before = drawn;
+  TiledRegion part(Rect{3, 5, whole.width - 9, whole.height - 12});
+  part.keep_if([](const Rect& tile) { return (tile.x / 16 + tile.y / 16) % 7 != 0; });
+  // What is not kept is not drawn.
+  Reconstruction kept = before;
+  for (int y = 0; y < whole.height; ++y) {
+    for (int x = 0; x < whole.width; ++x) {
+      if (!part.contains(x, y) || !part.keeps(x, y)) kept.source(x, y) = 0;
+    }
+  }
+  drawn = kept;
+  TornEdges(rig.color, grid)
+      .close({picture, depth, FloatTransform(RigidTransform())}, objects, part, drawn);
+  const int reach = 2 * grid.step();
+  int closed = 0;
+  for (int y = part.y; y < part.bottom(); ++y) {
+    for (int x = part.x; x < part.right(); ++x) {
+      if (kept.source(x, y) != 0) continue;
+      const auto has = [&](int dx, int dy) {
+        return depth_beside(kept, part, x, y, dx, dy, reach) > 0 &&
+               depth_beside(kept, part, x, y, -dx, -dy, reach) > 0;
+      };
+      const bool is_narrow = objects(x, y) != 0 && (has(1, 0) || has(0, 1));
+      ASSERT_EQ(drawn.source(x, y) != 0, is_narrow) << x << ' ' << y;
+      closed += is_narrow ? 1 : 0;
+    }
+  }
+  EXPECT_GT(closed, 500);
 }
 
 }  // namespace

@@ -24,13 +24,6 @@ Witness::Witness(const Rig& rig, const KeyframeGrid& grid)
   }
 }
 
-Verdict Witness::was_there(std::size_t k, const Eigen::Vector3f& x_in_depth) const {
-  const Camera& camera = cameras_[k];
-  const auto pixel = project(camera.grid.lens(), x_in_depth);
-  if (!pixel || !camera.now.bounds().contains(pixel->x, pixel->y)) return Verdict::unknown;
-  return camera.now(pixel->x, pixel->y);
-}
-
 void Witness::find_parts(const Inputs& inputs) {
   constexpr int step = KeyframeGrid::overview_step;
   const Keyframe& keyframe = inputs.keyframe;

@@ -26,9 +26,16 @@ class Witness {
   /// the keyframe's frame. Cost: 10 ns a place that is judged, and comparing testimonies there.
   void judge(const Inputs& inputs, Image<std::uint16_t>& depth, std::vector<Eigen::Vector3f>& gone);
 
-  /// Whether what RGB-D camera `k` sees at a point was there when the keyframe of the last `judge`
-  /// was taken. x_in_depth: in the frame of its depth sensor.
-  Verdict was_there(std::size_t k, const Eigen::Vector3f& x_in_depth) const;
+  /// Of the keyframe's grid: what the last `judge` judged.
+  const Rect& part() const { return part_; }
+
+  /// Whether what RGB-D camera `k` sees at a place of its testimony was there when the keyframe of
+  /// the last `judge` was taken.
+  Verdict was_there(std::size_t k, std::int32_t place) const {
+    const Verdicts& now = cameras_[k].now;
+    return now.empty() ? Verdict::unknown : now.data()[place];
+  }
+  const TestimonyGrid& grid(std::size_t k) const { return cameras_[k].grid; }
 
  private:
   struct Camera {

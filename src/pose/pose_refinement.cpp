@@ -12,8 +12,6 @@ namespace diminish {
 namespace {
 
 constexpr int most_iterations = 10;
-/// Metres and radians: smaller steps move no pixel by a tenth.
-constexpr float last_step = 1e-4F;
 constexpr float nearest_m = 1e-3F;
 constexpr std::size_t fewest_points = 150;
 constexpr std::size_t most_points = 2400;
@@ -31,10 +29,13 @@ RigidTransform exponential(const Eigen::Matrix<double, 6, 1>& twist) {
 
 }  // namespace
 
-PoseRefinement::PoseRefinement(const Intrinsics& color, int small_width)
+PoseRefinement::PoseRefinement(const Intrinsics& color, int small_width, float last_step,
+                               bool extrapolates)
     : color_(color),
       projection_(Lens(color)),
       shrinkage_(std::max(1, (color.width + small_width / 2) / small_width)),
+      last_step_(last_step),
+      extrapolates_(extrapolates),
       lines_(256) {}
 
 /// The brightness around each sample that may be in the picture, over about the area of a pixel of
@@ -236,6 +237,14 @@ PoseRefinement::Equations PoseRefinement::add_up() const {
   return sums;
 }
 
+PoseRefinement::Twist PoseRefinement::further(const Twist& step, const Twist& last) {
+  const float squared = last.squaredNorm();
+  if (!(squared > 0)) return step;
+  const float ratio = step.dot(last) / squared;
+  constexpr float most = 0.8F;
+  return step / (1 - std::clamp(ratio, 0.F, most));
+}
+
 std::optional<RigidTransform> PoseRefinement::refine(const FrameSet& frame, const Mask& occlusion,
                                                      const SceneSamples& scene) {
   const std::vector<SceneSample>& samples = scene.surfaces;
@@ -251,6 +260,7 @@ std::optional<RigidTransform> PoseRefinement::refine(const FrameSet& frame, cons
   prior.tail<3>().setConstant(1 / (rotation_deviation * rotation_deviation));
   RigidTransform correction;
   Twist total = Twist::Zero();
+  Twist last = Twist::Zero();
   float first_cost = 0;
   float cost = 0;
   float scale = 0;
@@ -278,8 +288,10 @@ std::optional<RigidTransform> PoseRefinement::refine(const FrameSet& frame, cons
     const Twist held = prior * (scale * scale / independent_share);
     equations.squares.diagonal() += held;
     equations.products -= held.cwiseProduct(total);
-    const Twist step = equations.solve();
-    if (step.cwiseAbs().maxCoeff() < last_step) break;
+    Twist step = equations.solve();
+    if (extrapolates_) step = further(step, last);
+    if (step.cwiseAbs().maxCoeff() < last_step_) break;
+    last = step;
     total += step;
     correction = exponential(step.cast<double>()) * correction;
   }

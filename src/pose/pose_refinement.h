@@ -27,10 +27,14 @@ namespace diminish {
 class PoseRefinement {
  public:
   static constexpr int usual_width = 320;
+  /// Smaller steps move no pixel by a tenth.
+  static constexpr float usual_last_step = 1e-4F;
 
   /// small_width: about what the picture is shrunk to, to blur what is misplaced by a few pixels
-  /// into one another.
-  explicit PoseRefinement(const Intrinsics& color, int small_width = usual_width);
+  /// into one another. last_step: smaller ones end the iteration, in metres and radians.
+  /// extrapolates: gets there in fewer steps, by going further than each says.
+  explicit PoseRefinement(const Intrinsics& color, int small_width = usual_width,
+                          float last_step = usual_last_step, bool extrapolates = false);
 
   /// Returns how the colour camera's frame moves: color_from_measured_color. Nothing where no
   /// correction is taken: it must explain the picture better, and be small. Cost: about 0.2 us a
@@ -65,6 +69,9 @@ class PoseRefinement {
     float cost = 0;
   };
 
+  /// Robust weights and gains follow slowly: where steps go on in the same direction, as far as
+  /// they would go in the end.
+  static Twist further(const Twist& step, const Twist& last);
   void collect(const FrameSet& frame, const std::vector<SceneSample>& samples);
   void add(const Eigen::Vector3f& point_m, float brightness, std::uint8_t source);
   /// Returns how many points the colour camera sees.
@@ -80,6 +87,8 @@ class PoseRefinement {
   Intrinsics color_;
   Projection projection_;
   int shrinkage_;
+  float last_step_;
+  bool extrapolates_;
   ShrunkPicture small_;
   std::vector<Points> points_;
   std::vector<float> magnitudes_;

@@ -71,6 +71,22 @@ TEST_F(PoseRefinementTest, FindsBackToTheTruePose) {
             1e-9);
 }
 
+// As far as with steps as they come, in a picture of which the weights take long to settle.
+TEST_F(PoseRefinementTest, FindsBackByFurtherSteps) {
+  Poses poses = frame.poses;
+  poses.color_from_depth[0] = small_motion() * *poses.color_from_depth[0];
+  poses.color_from_world = small_motion() * *poses.color_from_world;
+  const double before = error_px(poses);
+  SceneSamples samples;
+  SceneSampler(frame.rig).sample(frame.frame, poses, masks, samples);
+  PoseRefinement refinement(frame.rig.color, PoseRefinement::usual_width,
+                            PoseRefinement::usual_last_step, true);
+  const auto correction = refinement.refine(frame.frame, masks.color, samples);
+  ASSERT_TRUE(correction);
+  refinement.apply(*correction, poses, samples);
+  EXPECT_LT(error_px(poses), before / 4);
+}
+
 TEST_F(PoseRefinementTest, FindsBackThroughEveryLens) {
   for (const LensModel model : {LensModel::rational, LensModel::fisheye}) {
     SCOPED_TRACE(name_of(model));
