@@ -65,7 +65,7 @@ struct BenchCommand {
 
  private:
   /// Frames that let each thread's memory grow to its size.
-  std::size_t warm_up() const { return static_cast<std::size_t>(2 * threads); }
+  std::size_t warm_up() const { return 2 * static_cast<std::size_t>(threads); }
 
   std::vector<FrameSet> load(const Recording& input, Figures& figures) const;
   void measure_latency(const Recording& input, const std::vector<FrameSet>& frames,
@@ -261,6 +261,7 @@ double BenchCommand::reading_fps(FrameSource& source) const {
   Clock::time_point start;
   {
     std::vector<std::jthread> readers;
+    readers.reserve(static_cast<std::size_t>(threads));
     for (int i = 0; i < threads; ++i) {
       readers.emplace_back([&] {
         for (FrameSet frame;; source.read_images(frame)) {

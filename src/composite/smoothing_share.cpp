@@ -41,8 +41,8 @@ Color smoothed(const Window& colors) {
   for (int dy = -ColorSmoothing::reach; dy <= ColorSmoothing::reach; ++dy) {
     for (int dx = -ColorSmoothing::reach; dx <= ColorSmoothing::reach; ++dx) {
       if (!ColorSmoothing::is_neighbour(dx, dy)) continue;
-      const auto x = static_cast<std::size_t>(reach + dx);
-      const auto y = static_cast<std::size_t>(reach + dy);
+      const std::size_t x = reach + dx;
+      const std::size_t y = reach + dy;
       const float difference = (guide(x, y) - own).abs().sum();
       const float weight =
           std::max(0.F, static_cast<float>(ColorSmoothing::largest_difference) - difference);
@@ -86,8 +86,8 @@ void add(ImageView<Bgr> camera, const Mask& occlusion, ImageView<Bgr> rgbd, floa
   Window seen;
   for (int dy = -reach; dy <= reach; ++dy) {
     for (int dx = -reach; dx <= reach; ++dx) {
-      const auto column = static_cast<std::size_t>(reach + dx);
-      const auto row = static_cast<std::size_t>(reach + dy);
+      const std::size_t column = reach + dx;
+      const std::size_t row = reach + dy;
       drawn[row][column] = bilinear(texture.x() + step * static_cast<float>(dx),
                                     texture.y() + step * static_cast<float>(dy),
                                     [&](int u, int v) { return color_of(rgbd(u, v)); });

@@ -54,13 +54,14 @@ void Witness::find_parts(const Inputs& inputs) {
       Camera& camera = cameras_[k];
       if (!camera.is_asked) continue;
       const Rect& bounds = camera.grid.bounds();
-      const Sight* const sights = keyframe.sights[k].row(y * step);
+      const Image<Sight>& sights = keyframe.sights[k];
       find_pixels(row, {camera.from_keyframe, camera.grid.lens(), bounds, bounds.width}, places,
                   unused);
       for (int x = 0; x < row.count; ++x) {
         if (places[x] >= 0) extend_to(camera.now_part, places[x], bounds.width);
-        if (depth_m[x] > 0 && sights[x * step].kind() != Sight::aside) {
-          extend_to(camera.then_part, sights[x * step].place(), bounds.width);
+        const Sight sight = sights(x * step, y * step);
+        if (depth_m[x] > 0 && sight.kind() != Sight::aside) {
+          extend_to(camera.then_part, sight.place(), bounds.width);
         }
       }
     }
