@@ -194,8 +194,9 @@ TEST_F(ProgramTest, ScansAPlaceAndShowsItLater) {
   const auto refused = Program::run({"run", lone.string(), "--out", recording.out()});
   EXPECT_EQ(refused.exit_code, 1);
   EXPECT_THAT(refused.err, HasSubstr("memory: expected 'on', and a background"));
-  const auto outcome = Program::run(
-      {"run", lone.string(), "--background", room, "--out", recording.out(), "--force"});
+  EXPECT_FALSE(fs::exists(recording.out()));
+  const auto outcome =
+      Program::run({"run", lone.string(), "--background", room, "--out", recording.out()});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("truly seen 0.0 %, remembered "));
   const auto summary = nlohmann::json::parse(read_text_file(out("summary.json"), 1 << 20));

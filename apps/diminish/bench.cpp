@@ -382,8 +382,8 @@ void write_json(const BenchCommand& command, const Figures& figures) {
 }
 
 int BenchCommand::execute() const {
-  check(options);
   const Recording input = load_recording(recording);
+  check(options, input.rig, input.scene);
   Figures figures;
   std::vector<FrameSet> loaded = load(input, figures);
   figures.start_up = measure_start_up(input, loaded, options);

@@ -34,8 +34,8 @@ struct RunCommand {
 };
 
 int RunCommand::execute() const {
-  check(options);
   const Recording input = load_recording(recording);
+  check(options, input.rig, input.scene);
   const auto source = open_recording(input, options);
   RunnerOptions runner;
   runner.background = background.load();

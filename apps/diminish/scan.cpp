@@ -39,8 +39,8 @@ double known_share(const Scan& scan) {
 }
 
 int ScanCommand::execute() const {
-  check(options);
   const Recording input = load_recording(recording);
+  check(options, input.rig, input.scene);
   std::signal(SIGINT, [](int) { stop_requested = true; });
   std::signal(SIGTERM, [](int) { stop_requested = true; });
   const std::size_t frames = open_recording(input, options)->frame_count();

@@ -95,7 +95,8 @@ void for_each_option(AnyOptions& options, Visit&& visit) {
   visit(
       OptionInfo{
           "smooth_colors", "",
-          "Reduce the RGB-D cameras' noise by averaging neighbouring pixels of similar colour"},
+          "Average neighbouring pixels of similar colour as far as that brings what is drawn "
+          "closer to the colour camera's picture"},
       options.smooth_colors);
   visit(
       OptionInfo{"lift_shadows", "", "Remove the shadows that the objects cast on what they hide"},
@@ -167,9 +168,11 @@ void for_each_option(AnyOptions& options, Visit&& visit) {
 /// method.
 DIMINISH_EXPORT void check(const Options& options);
 
+struct Rig;
 struct Scene;
-/// The same, and checks that the objects in `keep` exist.
-DIMINISH_EXPORT void check(const Options& options, const Scene& scene);
+/// The same, and that the options fit the rig and the scene: the objects in `keep` exist, and there
+/// is an RGB-D camera or a memory.
+DIMINISH_EXPORT void check(const Options& options, const Rig& rig, const Scene& scene);
 
 /// The texts that an option accepts, in the order in which they are offered; empty if it accepts
 /// any.

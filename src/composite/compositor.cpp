@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "composite/object_pixels.h"
+#include "core/conditions.h"
 #include "core/rows.h"
 
 namespace diminish {
@@ -26,7 +27,7 @@ void sort_row(const std::uint8_t* mask, const std::uint8_t* source, int begin, i
     origin[x] = mask[x] != 0 ? provenance::inpainted : provenance::camera;
   }
   for (int x = drawn_begin; x < drawn_end; ++x) {
-    const bool is_seen = (mask[x] != 0) & (source[x] != 0);  // without a branch: vectorised
+    const bool is_seen = all_of(mask[x] != 0, source[x] != 0);
     origin[x] = is_seen ? source[x] : origin[x];
   }
 }

@@ -9,6 +9,7 @@
 #include "core/text.h"
 #include "diminish/error.h"
 #include "diminish/registry.h"
+#include "diminish/rig.h"
 #include "diminish/scene.h"
 
 namespace diminish {
@@ -45,8 +46,14 @@ void check(const Options& options) {
   });
 }
 
-void check(const Options& options, const Scene& scene) {
+void check(const Options& options, const Rig& rig, const Scene& scene) {
   check(options);
+  if (rig.rgbd.empty() && options.memory != "on") {
+    throw Error(
+        "memory: expected 'on', and a background (diminish scan): the rig has no RGB-D camera "
+        "(rgbd: []), got '" +
+        options.memory + "'");
+  }
   std::vector<std::string> names;
   for (const OccluderSpec& occluder : scene.occluders) names.push_back(occluder.name);
   for (const std::string& kept : kept_objects(options)) {

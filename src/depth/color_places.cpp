@@ -9,7 +9,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "geometry/distortion_vectors-inl.h"
+#include "geometry/projection_vectors-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace diminish::HWY_NAMESPACE {
@@ -24,12 +24,6 @@ using Vector = hn::Vec<Floats>;
 HWY_INLINE Vector Set(float value) {
   return hn::Set(Floats(), value);
 }
-/// In the order of FloatTransform::apply.
-HWY_INLINE Vector Apply(const FloatTransform& t, int axis, Vector x, Vector y, Vector z) {
-  return hn::Add(hn::Add(hn::Add(hn::Mul(Set(t.r[axis][0]), x), hn::Mul(Set(t.r[axis][1]), y)),
-                         hn::Mul(Set(t.r[axis][2]), z)),
-                 Set(t.t[axis]));
-}
 
 /// As ColorPlaces::at.
 template <LensModel model>
@@ -37,24 +31,17 @@ void FindPlacesBy(const ColorPlaces::Constants& constants, const float* ray_x, c
                   const float* depth_m, int count, std::int32_t* columns, std::int32_t* lines) {
   const Floats d;
   const Ints di;
-  const Projection& lens = constants.color;
   for (int i = 0; i < count; i += static_cast<int>(hn::Lanes(d))) {
     const Vector z = hn::LoadU(d, depth_m + i);
     const Vector side = hn::Mul(hn::LoadU(d, ray_x + i), z);
     const Vector down = hn::Mul(hn::LoadU(d, ray_y + i), z);
-    const Vector ahead = Apply(constants.to_color, 2, side, down, z);
-    const Vector x = hn::Div(Apply(constants.to_color, 0, side, down, z), ahead);
-    const Vector y = hn::Div(Apply(constants.to_color, 1, side, down, z), ahead);
-    const Vector r2 = hn::Add(hn::Mul(x, x), hn::Mul(y, y));
-    Vector distorted_x, distorted_y;
-    distort_ray<model>(
-        lens.distortion, [](float value) HWY_ATTR { return Set(value); }, x, y, r2, distorted_x,
-        distorted_y);
-    const Vector u = hn::Add(hn::Mul(Set(lens.fx), distorted_x), Set(lens.cx));
-    const Vector v = hn::Add(hn::Mul(Set(lens.fy), distorted_y), Set(lens.cy));
+    const Vector ahead = Apply(d, constants.to_color, 2, side, down, z);
+    const Vector x = hn::Div(Apply(d, constants.to_color, 0, side, down, z), ahead);
+    const Vector y = hn::Div(Apply(d, constants.to_color, 1, side, down, z), ahead);
+    Vector u, v;
+    const auto in_radius = Distort<model>(d, constants.color, x, y, u, v);
     const Vector one = Set(1);
-    const auto is_seen =
-        hn::And(hn::Gt(ahead, Set(sdct::near_plane_m)), hn::Lt(r2, Set(lens.max_radius_squared)));
+    const auto is_seen = hn::And(hn::Gt(ahead, Set(sdct::near_plane_m)), in_radius);
     const auto is_right = hn::And(hn::Ge(u, one), hn::Lt(u, Set(constants.end_column)));
     const auto is_below = hn::And(hn::Ge(v, one), hn::Lt(v, Set(constants.end_line)));
     const auto exists = hn::And(is_seen, hn::And(is_right, is_below));

@@ -299,7 +299,7 @@ Options LiveSession::options() const {
   return implementation_->options;
 }
 void LiveSession::set_options(const Options& options) {
-  check(options, implementation_->scene);
+  check(options, implementation_->rig, implementation_->scene);
   const std::lock_guard lock(implementation_->mutex);
   implementation_->options = options;
   implementation_->options_changed = true;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/conditions.h"
 #include "core/rows.h"
 #include "core/runs.h"
 
@@ -16,10 +17,9 @@ constexpr int block = 3;
 /// Of samples, around the picture.
 constexpr int margin = VoteSamples::side / 2;
 
-/// Without branches: it is asked of every place.
 bool is_step(float a, float b) {
   constexpr float smallest = 0.05F;
-  return (std::min(a, b) > 0) & (std::abs(a - b) > smallest * std::max(a, b));
+  return all_of(std::min(a, b) > 0, std::abs(a - b) > smallest * std::max(a, b));
 }
 
 /// Of the known ones.
@@ -64,7 +64,7 @@ void ColorEdges::find_band(const Image<float>& inverse_depth) {
     const float* const below = inverse_depth.row(y + 1);
     std::uint8_t* const steps = steps_.row(y);
     for (int x = 0; x + 1 < width; ++x) {
-      steps[x] = is_step(own[x], own[x + 1]) | is_step(own[x], below[x]) ? 1 : 0;
+      steps[x] = any_of(is_step(own[x], own[x + 1]), is_step(own[x], below[x])) ? 1 : 0;
     }
     std::uint8_t* const across = across_.row(y);
     const int end = width - 1;

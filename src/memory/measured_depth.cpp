@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/conditions.h"
 #include "core/rows.h"
 #include "core/tasks.h"
 #include "depth/depth_rows.h"
@@ -16,12 +17,11 @@ namespace {
 constexpr float nothing_m = 1e9F;
 
 /// Whether a place lies behind two others of one surface: seen through a gap between its points.
-/// Without branches: it is asked of every place.
 bool is_behind(float z_m, float before_m, float after_m) {
   const float nearer_m = std::max(before_m, after_m);
   const float tolerance_m = between_cameras.at(nearer_m);
-  return (std::min(before_m, after_m) > 0) & (z_m - nearer_m > 2 * tolerance_m) &
-         (std::abs(before_m - after_m) < tolerance_m);
+  return all_of(std::min(before_m, after_m) > 0, z_m - nearer_m > 2 * tolerance_m,
+                std::abs(before_m - after_m) < tolerance_m);
 }
 
 /// Leaves out what is seen through gaps. All but `depth_m` have a place more on both sides.
@@ -30,7 +30,7 @@ void close_row(const float* own_m, const float* above_m, const float* below_m, i
   for (int x = 0; x < width; ++x) {
     const float z_m = own_m[x];
     const bool is_open =
-        is_behind(z_m, own_m[x - 1], own_m[x + 1]) | is_behind(z_m, above_m[x], below_m[x]);
+        any_of(is_behind(z_m, own_m[x - 1], own_m[x + 1]), is_behind(z_m, above_m[x], below_m[x]));
     depth_m[x] = is_open ? 0 : z_m;
   }
 }

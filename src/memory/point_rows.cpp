@@ -5,7 +5,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "geometry/distortion_vectors-inl.h"
+#include "geometry/projection_vectors-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace diminish::HWY_NAMESPACE {
@@ -13,8 +13,6 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// No fused multiply-add, and the order of Projection and FloatTransform: every CPU computes the
-// same bits as plain C++.
 template <LensModel model, class D>
 HWY_INLINE void FindSome(D d, const PointRow& points, const PointView& view, int i,
                          std::int32_t* pixels, float* depth_m) {
@@ -23,27 +21,16 @@ HWY_INLINE void FindSome(D d, const PointRow& points, const PointView& view, int
   const auto own_z = hn::LoadU(d, points.depth_m + i);
   const auto own_x = hn::Mul(hn::LoadU(d, points.ray_x + i), own_z);
   const auto own_y = hn::Mul(hn::LoadU(d, points.ray_y + i), own_z);
-  const auto apply = [&](int axis) HWY_ATTR {
-    const auto& r = view.from_points.r[axis];
-    const auto turned = hn::Add(hn::Add(hn::Mul(set(r[0]), own_x), hn::Mul(set(r[1]), own_y)),
-                                hn::Mul(set(r[2]), own_z));
-    return hn::Add(turned, set(view.from_points.t[axis]));
-  };
+  const auto apply = [&](int axis)
+                         HWY_ATTR { return Apply(d, view.from_points, axis, own_x, own_y, own_z); };
   const auto z = apply(2);
-  const auto x = hn::Div(apply(0), z);
-  const auto y = hn::Div(apply(1), z);
-  const auto r2 = hn::Add(hn::Mul(x, x), hn::Mul(y, y));
-  hn::Vec<D> distorted_x, distorted_y;
-  distort_ray<model>(
-      view.lens.distortion, [&](float value) HWY_ATTR { return hn::Set(d, value); }, x, y, r2,
-      distorted_x, distorted_y);
-  const auto u = hn::Add(hn::Mul(set(view.lens.fx), distorted_x), set(view.lens.cx));
-  const auto v = hn::Add(hn::Mul(set(view.lens.fy), distorted_y), set(view.lens.cy));
+  hn::Vec<D> u, v;
+  const auto in_radius =
+      Distort<model>(d, view.lens, hn::Div(apply(0), z), hn::Div(apply(1), z), u, v);
   const auto limit = set(PointView::most_px);
   const auto valid =
       hn::And(hn::And(hn::Gt(own_z, hn::Zero(d)), hn::Gt(z, set(PointView::nearest_m))),
-              hn::And(hn::Lt(r2, set(view.lens.max_radius_squared)),
-                      hn::And(hn::Lt(hn::Abs(u), limit), hn::Lt(hn::Abs(v), limit))));
+              hn::And(in_radius, hn::And(hn::Lt(hn::Abs(u), limit), hn::Lt(hn::Abs(v), limit))));
   // Invalid values become 0, which can be converted safely.
   const auto column = hn::NearestInt(hn::IfThenElseZero(valid, u));
   const auto row = hn::NearestInt(hn::IfThenElseZero(valid, v));

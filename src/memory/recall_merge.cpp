@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/channels.h"
+#include "core/conditions.h"
 #include "core/rows.h"
 #include "core/runs.h"
 #include "memory/light.h"
@@ -29,7 +30,7 @@ void subtract_row(const std::uint8_t* row, int width, std::uint8_t* sums) {
 void layer_run(const std::uint8_t* source, const float* drawn_m, int count, std::uint8_t name,
                std::uint8_t* layer, float* depth_m) {
   for (int i = 0; i < count; ++i) {
-    const bool is_next = (layer[i] == 0) & (source[i] != 0);
+    const bool is_next = all_of(layer[i] == 0, source[i] != 0);
     const float own_m = drawn_m[i];
     layer[i] = is_next ? name : layer[i];
     depth_m[i] = is_next ? own_m : depth_m[i];
@@ -211,8 +212,7 @@ void RecallMerge::drop_specks(const RecallInputs& inputs, Reconstruction& recons
       std::uint8_t* const known = known_.row(y) - part.x;
       part.for_each_run(y + part.y, [&](int first, int last) {
         for (int x = first; x < last; ++x) {
-          known[x] =
-              static_cast<std::uint8_t>((objects[x] == 0 ? 1 : 0) | (source[x] != 0 ? 1 : 0));
+          known[x] = any_of(objects[x] == 0, source[x] != 0) ? 1 : 0;
         }
       });
     }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/channels.h"
+#include "core/conditions.h"
 #include "core/robust.h"
 #include "memory/light.h"
 #include "memory/point_rows.h"
@@ -51,7 +52,7 @@ bool is_between(const Bgr& color, const std::uint8_t* low, const std::uint8_t* h
 void are_within(const std::uint8_t* levels, const std::uint8_t* low, const std::uint8_t* high,
                 int count, int tolerance, std::uint8_t* within) {
   for (int i = 0; i < count; ++i) {
-    within[i] = (levels[i] + tolerance >= low[i]) & (levels[i] <= high[i] + tolerance) ? 1 : 0;
+    within[i] = all_of(levels[i] + tolerance >= low[i], levels[i] <= high[i] + tolerance) ? 1 : 0;
   }
 }
 
@@ -61,8 +62,8 @@ void are_near(const float* depth_m, const float* least_m, const float* greatest_
   for (int i = 0; i < count; ++i) {
     const float z_m = depth_m[i];
     const float tolerance_m = tolerance * usual_noise.at(z_m);
-    near[i] = (z_m > 0) & (z_m >= least_m[i] - tolerance_m) & (z_m <= greatest_m[i] + tolerance_m) &
-                      (greatest_m[i] - least_m[i] <= edge * z_m)
+    near[i] = all_of(z_m > 0, z_m >= least_m[i] - tolerance_m, z_m <= greatest_m[i] + tolerance_m,
+                     greatest_m[i] - least_m[i] <= edge * z_m)
                   ? 1
                   : 0;
   }

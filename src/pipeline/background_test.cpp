@@ -15,6 +15,7 @@
 namespace diminish {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 /// The calendar's recording, whose RGB-D camera is only there during the scan.
@@ -71,6 +72,7 @@ TEST_F(Background, IsShownWithoutAnyRgbdCameraAndSaysSo) {
       EXPECT_GT(report.remembered_pixels, report.mask_pixels / 2);
       error_with += error(frame, result);
       without.process(frame, result);
+      EXPECT_THAT(report.messages, ElementsAre(HasSubstr("no background (diminish scan)")));
       error_without += error(frame, result);
     }
     EXPECT_LT(error_with, 0.8 * error_without) << backend;

@@ -77,13 +77,7 @@ struct Pipeline::Implementation {
         memory(rig) {}
 
   void set_options(const Options& wanted) {
-    check(wanted, scene);
-    if (rig.rgbd.empty() && wanted.memory != "on") {
-      throw Error(
-          "memory: expected 'on', and a background (diminish scan): the rig has no RGB-D "
-          "camera (rgbd: []), got '" +
-          wanted.memory + "'");
-    }
+    check(wanted, rig, scene);
     backend.choose(wanted.backend);
     occluders.draw_by(backend.mask_drawer());
     options = wanted;
@@ -324,6 +318,10 @@ void Pipeline::Implementation::process(const FrameSet& frame, DiminishedFrame& r
     if (!message->empty()) report.messages.push_back(*message);
   }
   texture.finish_frame(backend.has_done(Stage::finish), result);
+  if (rig.rgbd.empty() && report.poses.color_from_world && report.memory.keyframes == 0) {
+    report.messages.emplace_back(
+        "no RGB-D camera and no background (diminish scan): what is hidden is invented");
+  }
   for (const std::string& message : report.poses.messages) report.messages.push_back(message);
   for (const OccluderReport& occluder : report.occluders) {
     if (!occluder.message.empty()) report.messages.push_back(occluder.message);

@@ -124,8 +124,6 @@ TEST_P(PipelineOnRecordings, RemovingShadowsDoesNotHarmThePicture) {
   }
 }
 
-// From one marker of 20 cm, 150 pixels wide in the colour camera, which faces it: there a tenth of
-// a pixel tilts the pose by half a degree. (The marker hangs 3 mm in front of the truth's origin.)
 // Then colours are looked up only where a stage needs them.
 TEST_P(PipelineOnRecordings, ShowsTheSameWhereNobodyLooksAtTheReconstruction) {
   BundledRecording looked_at(GetParam().recording), not_looked_at(GetParam().recording);
@@ -140,6 +138,8 @@ TEST_P(PipelineOnRecordings, ShowsTheSameWhereNobodyLooksAtTheReconstruction) {
   EXPECT_LT(count_colors(not_looked_at), count_colors(looked_at));
 }
 
+// From one marker of 20 cm, 150 pixels wide in the colour camera, which faces it: there a tenth of
+// a pixel tilts the pose by half a degree. (The marker hangs 3 mm in front of the truth's origin.)
 TEST_P(PipelineOnRecordings, KnowsWhereTheCamerasAre) {
   BundledRecording recording(GetParam().recording);
   double worst_mm = 0;

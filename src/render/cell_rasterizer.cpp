@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <climits>
-#include <cstdlib>
 
 #include "render/sdct.h"
 
@@ -12,18 +10,11 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "render/cell_drawing-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace diminish::HWY_NAMESPACE {
 namespace {
-
-namespace hn = hwy::HWY_NAMESPACE;
-
-/// Most cells are less than 8 pixels wide.
-using Floats = hn::CappedTag<float, 8>;
-using Ints = hn::RebindToSigned<Floats>;
-using Vector = hn::Vec<Floats>;
-using IntVector = hn::Vec<Ints>;
-using LaneMask = hn::Mask<Floats>;
 
 /// Larger cells are drawn with 64-bit numbers.
 constexpr int max_cell_px = 64;
@@ -79,23 +70,6 @@ struct Edge {
   }
 };
 
-/// Functions that are linear in the picture, one cell per lane: the value at the cell's first
-/// pixel, and the steps from pixel to pixel.
-template <class T>
-struct alignas(64) LinearFunctions {
-  T value[VertexRow::block], step_x[VertexRow::block], step_y[VertexRow::block];
-};
-
-/// What is needed to draw a block's cells. The triangles of a cell
-///   a b
-///   c e
-/// are a b c and b e c; `diagonal` is negative on the second's side.
-struct Cells {
-  LinearFunctions<std::int32_t> diagonal, first_edges[2], second_edges[2];
-  LinearFunctions<float> first_planes[3], second_planes[3];  ///< 1 / z, u / z, v / z
-  std::int32_t place[VertexRow::block], columns[VertexRow::block], rows[VertexRow::block];
-};
-
 HWY_INLINE void StoreEdge(const Edge& edge, IntVector value, hn::Mask<Ints> exists,
                           LinearFunctions<std::int32_t>& out) {
   const Ints d;
@@ -129,193 +103,6 @@ HWY_INLINE void StorePlanes(const Edge& bc, const Edge& ca, const Edge& ab, cons
   StorePlane(bc, ca, ab, a.inverse_z, b.inverse_z, c.inverse_z, scale, out[0]);
   StorePlane(bc, ca, ab, a.u_over_z, b.u_over_z, c.u_over_z, scale, out[1]);
   StorePlane(bc, ca, ab, a.v_over_z, b.v_over_z, c.v_over_z, scale, out[2]);
-}
-
-/// A linear function along a few pixels of a row, a pixel in each lane.
-struct IntWalk {
-  IntVector value, step_y;
-
-  HWY_INLINE IntWalk(const LinearFunctions<std::int32_t>& f, int lane, IntVector x)
-      : value(hn::Add(hn::Set(Ints(), f.value[lane]), hn::Mul(x, hn::Set(Ints(), f.step_x[lane])))),
-        step_y(hn::Set(Ints(), f.step_y[lane])) {}
-  HWY_INLINE void Down() { value = hn::Add(value, step_y); }
-};
-struct FloatWalk {
-  Vector value, step_y;
-
-  HWY_INLINE FloatWalk(const LinearFunctions<float>& f, int lane, Vector x)
-      : value(hn::MulAdd(x, hn::Set(Floats(), f.step_x[lane]), hn::Set(Floats(), f.value[lane]))),
-        step_y(hn::Set(Floats(), f.step_y[lane])) {}
-  HWY_INLINE void Down() { value = hn::Add(value, step_y); }
-};
-
-/// Draws the cell of one lane: both its triangles at once, a vector of pixels at a time.
-HWY_INLINE void DrawCell(const Cells& cells, int lane, SurfaceBuffer& surface) {
-  const Floats d;
-  const Ints di;
-  const auto lanes = static_cast<int>(hn::Lanes(d));
-  const int rows = cells.rows[lane];
-  for (int x = 0; x < cells.columns[lane]; x += lanes) {
-    const IntVector column = hn::Iota(di, x);
-    const Vector float_column = hn::ConvertTo(d, column);
-    IntWalk diagonal(cells.diagonal, lane, column);
-    IntWalk ca(cells.first_edges[0], lane, column), ab(cells.first_edges[1], lane, column);
-    IntWalk be(cells.second_edges[0], lane, column), ec(cells.second_edges[1], lane, column);
-    FloatWalk z1(cells.first_planes[0], lane, float_column);
-    FloatWalk u1(cells.first_planes[1], lane, float_column);
-    FloatWalk v1(cells.first_planes[2], lane, float_column);
-    FloatWalk z2(cells.second_planes[0], lane, float_column);
-    FloatWalk u2(cells.second_planes[1], lane, float_column);
-    FloatWalk v2(cells.second_planes[2], lane, float_column);
-    const std::ptrdiff_t place = cells.place[lane] + x;
-    float* zs = surface.inverse_z.data() + place;
-    float* us = surface.u_over_z.data() + place;
-    float* vs = surface.v_over_z.data() + place;
-    for (int y = 0; y < rows; ++y) {
-      const auto in_second = hn::Lt(diagonal.value, hn::Zero(di));
-      const LaneMask second = hn::RebindMask(d, in_second);
-      const IntVector outside =
-          hn::IfThenElse(in_second, hn::Or(be.value, ec.value), hn::Or(ca.value, ab.value));
-      const Vector old_z = hn::LoadU(d, zs);
-      const Vector z = hn::IfThenElse(second, z2.value, z1.value);
-      const Vector u = hn::IfThenElse(second, u2.value, u1.value);
-      const Vector v = hn::IfThenElse(second, v2.value, v1.value);
-      const LaneMask kept =
-          hn::AndNot(hn::RebindMask(d, hn::Lt(outside, hn::Zero(di))), hn::Gt(z, old_z));
-      const Vector nearest = hn::IfThenElse(kept, z, old_z);
-      hn::StoreU(nearest, d, zs);
-      hn::StoreU(hn::IfThenElse(kept, u, hn::LoadU(d, us)), d, us);
-      hn::StoreU(hn::IfThenElse(kept, v, hn::LoadU(d, vs)), d, vs);
-      for (IntWalk* walk : {&diagonal, &ca, &ab, &be, &ec}) walk->Down();
-      for (FloatWalk* walk : {&z1, &u1, &v1, &z2, &u2, &v2}) walk->Down();
-      zs += surface.pitch;
-      us += surface.pitch;
-      vs += surface.pitch;
-    }
-  }
-}
-
-#if HWY_TARGET != HWY_SCALAR && !HWY_HAVE_SCALABLE && HWY_MAX_BYTES >= 32
-/// Cells that are no wider than half a vector are drawn two at a time.
-constexpr int most_pair_columns = 4;
-/// How many more rows than its neighbour a cell of a pair may have: rows beyond the lower end of
-/// the other, in which nothing of it lies, are read and written back.
-constexpr int most_rows_more = SurfaceBuffer::rows_beyond;
-
-using HalfFloats = hn::Half<Floats>;
-using HalfVector = hn::Vec<HalfFloats>;
-
-/// The values of one cell in the lower and of the next in the upper half.
-HWY_INLINE IntVector OfTwo(const std::int32_t* values) {
-  HWY_ALIGN static constexpr std::int32_t lanes[8] = {0, 0, 0, 0, 1, 1, 1, 1};
-  return hn::TableLookupLanes(hn::LoadU(Ints(), values), hn::SetTableIndices(Ints(), lanes));
-}
-HWY_INLINE Vector OfTwo(const float* values) {
-  HWY_ALIGN static constexpr std::int32_t lanes[8] = {0, 0, 0, 0, 1, 1, 1, 1};
-  return hn::TableLookupLanes(hn::LoadU(Floats(), values), hn::SetTableIndices(Floats(), lanes));
-}
-/// As IntWalk and FloatWalk.
-struct IntPairWalk {
-  IntVector value, step_y;
-
-  HWY_INLINE IntPairWalk(const LinearFunctions<std::int32_t>& f, int lane, IntVector x)
-      : value(hn::Add(OfTwo(f.value + lane), hn::Mul(x, OfTwo(f.step_x + lane)))),
-        step_y(OfTwo(f.step_y + lane)) {}
-  HWY_INLINE void Down() { value = hn::Add(value, step_y); }
-};
-struct FloatPairWalk {
-  Vector value, step_y;
-
-  HWY_INLINE FloatPairWalk(const LinearFunctions<float>& f, int lane, Vector x)
-      : value(hn::MulAdd(x, OfTwo(f.step_x + lane), OfTwo(f.value + lane))),
-        step_y(OfTwo(f.step_y + lane)) {}
-  HWY_INLINE void Down() { value = hn::Add(value, step_y); }
-};
-
-/// Where a cell's pixels are to be drawn.
-struct SurfacePlace {
-  float *z, *u, *v;
-
-  HWY_INLINE SurfacePlace(SurfaceBuffer& surface, std::ptrdiff_t place)
-      : z(surface.inverse_z.data() + place),
-        u(surface.u_over_z.data() + place),
-        v(surface.v_over_z.data() + place) {}
-  HWY_INLINE void Down(std::ptrdiff_t pitch) {
-    z += pitch;
-    u += pitch;
-    v += pitch;
-  }
-  HWY_INLINE void Draw(HalfVector outside, HalfVector new_z, HalfVector new_u,
-                       HalfVector new_v) const {
-    const HalfFloats d;
-    const HalfVector old_z = hn::LoadU(d, z);
-    const auto kept = hn::AndNot(hn::MaskFromVec(outside), hn::Gt(new_z, old_z));
-    hn::StoreU(hn::IfThenElse(kept, new_z, old_z), d, z);
-    hn::StoreU(hn::IfThenElse(kept, new_u, hn::LoadU(d, u)), d, u);
-    hn::StoreU(hn::IfThenElse(kept, new_v, hn::LoadU(d, v)), d, v);
-  }
-};
-
-/// Whether the cells of a lane and the next are drawn by DrawPair.
-HWY_INLINE bool IsPair(const Cells& cells, int lane) {
-  return std::max(cells.columns[lane], cells.columns[lane + 1]) <= most_pair_columns &&
-         std::abs(cells.rows[lane] - cells.rows[lane + 1]) <= most_rows_more;
-}
-
-/// DrawCell for the cells of a lane and the next, one after the other in each row.
-HWY_INLINE void DrawPair(const Cells& cells, int lane, SurfaceBuffer& surface) {
-  const Floats d;
-  const Ints di;
-  const HalfFloats half;
-  const IntVector column = hn::And(hn::Iota(di, 0), hn::Set(di, most_pair_columns - 1));
-  const Vector float_column = hn::ConvertTo(d, column);
-  IntPairWalk diagonal(cells.diagonal, lane, column);
-  IntPairWalk ca(cells.first_edges[0], lane, column), ab(cells.first_edges[1], lane, column);
-  IntPairWalk be(cells.second_edges[0], lane, column), ec(cells.second_edges[1], lane, column);
-  FloatPairWalk z1(cells.first_planes[0], lane, float_column);
-  FloatPairWalk u1(cells.first_planes[1], lane, float_column);
-  FloatPairWalk v1(cells.first_planes[2], lane, float_column);
-  FloatPairWalk z2(cells.second_planes[0], lane, float_column);
-  FloatPairWalk u2(cells.second_planes[1], lane, float_column);
-  FloatPairWalk v2(cells.second_planes[2], lane, float_column);
-  SurfacePlace first(surface, cells.place[lane]), second(surface, cells.place[lane + 1]);
-  const int rows = std::max(cells.rows[lane], cells.rows[lane + 1]);
-  for (int y = 0; y < rows; ++y) {
-    const auto in_second = hn::Lt(diagonal.value, hn::Zero(di));
-    const LaneMask is_second = hn::RebindMask(d, in_second);
-    const IntVector beyond =
-        hn::IfThenElse(in_second, hn::Or(be.value, ec.value), hn::Or(ca.value, ab.value));
-    const Vector outside = hn::BitCast(d, hn::VecFromMask(di, hn::Lt(beyond, hn::Zero(di))));
-    const Vector z = hn::IfThenElse(is_second, z2.value, z1.value);
-    const Vector u = hn::IfThenElse(is_second, u2.value, u1.value);
-    const Vector v = hn::IfThenElse(is_second, v2.value, v1.value);
-    // They may share pixels.
-    first.Draw(hn::LowerHalf(half, outside), hn::LowerHalf(half, z), hn::LowerHalf(half, u),
-               hn::LowerHalf(half, v));
-    second.Draw(hn::UpperHalf(half, outside), hn::UpperHalf(half, z), hn::UpperHalf(half, u),
-                hn::UpperHalf(half, v));
-    for (IntPairWalk* walk : {&diagonal, &ca, &ab, &be, &ec}) walk->Down();
-    for (FloatPairWalk* walk : {&z1, &u1, &v1, &z2, &u2, &v2}) walk->Down();
-    first.Down(surface.pitch);
-    second.Down(surface.pitch);
-  }
-}
-#endif
-
-/// Draws the cells of the lanes whose bits are set.
-HWY_INLINE void DrawDrawn(const Cells& cells, unsigned bits, SurfaceBuffer& surface) {
-  while (bits != 0) {
-    const int lane = std::countr_zero(bits);
-#if HWY_TARGET != HWY_SCALAR && !HWY_HAVE_SCALABLE && HWY_MAX_BYTES >= 32
-    if ((bits >> lane & 2U) != 0 && IsPair(cells, lane)) {
-      DrawPair(cells, lane, surface);
-      bits &= ~(3U << lane);
-      continue;
-    }
-#endif
-    DrawCell(cells, lane, surface);
-    bits &= bits - 1;
-  }
 }
 
 /// A vertex in a row, by its index.
@@ -370,14 +157,6 @@ void DrawLarge(const VertexAt (&p)[3], SurfaceBuffer& surface) {
       surface.v_over_z[place] = v_over_z;
     }
   }
-}
-
-void ClearValues(float* values, int count) {
-  const hn::ScalableTag<float> d;
-  const auto lanes = static_cast<int>(hn::Lanes(d));
-  int i = 0;
-  for (; i + lanes <= count; i += lanes) hn::StoreU(hn::Zero(d), d, values + i);
-  for (; i < count; ++i) values[i] = 0;
 }
 
 HWY_INLINE unsigned Bits(LaneMask mask) {
@@ -490,41 +269,6 @@ HWY_AFTER_NAMESPACE();
 namespace diminish {
 
 HWY_EXPORT(DrawCells);
-HWY_EXPORT(ClearValues);
-
-namespace {
-
-void clear_values(float* values, int count) {
-  HWY_DYNAMIC_DISPATCH(ClearValues)(values, count);
-}
-
-}  // namespace
-
-void SurfaceBuffer::clear(const Rect& part, const TiledRegion& wanted) {
-  region = part;
-  pitch = region.width + VertexRow::block;
-  const int rows = region.height + rows_beyond;
-  const auto size = static_cast<std::size_t>(pitch) * static_cast<std::size_t>(rows);
-  for (std::vector<float>* values : {&inverse_z, &u_over_z, &v_over_z}) {
-    if (values->size() < size) values->resize(size);
-  }
-  for (int y = region.y; y < region.bottom(); ++y) {
-    float* const from = inverse_z.data() + row(y) - region.x;
-    int begin = region.x;
-    wanted.for_each_gap(y, [&](int first, int last) {
-      clear_values(from + begin, first - begin);
-      begin = last;
-    });
-    clear_values(from + begin, region.right() - begin);
-  }
-}
-
-int count_drawn(const SurfaceBuffer& surface, int y) {
-  const float* const z = surface.inverse_z.data() + surface.row(y);
-  int count = 0;
-  for (int i = 0; i < surface.region.width; ++i) count += z[i] > 0 ? 1 : 0;
-  return count;
-}
 
 void draw_cells(const VertexRow& upper, const VertexRow& lower, int block,
                 const sdct::Threshold& threshold, SurfaceBuffer& surface) {

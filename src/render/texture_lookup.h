@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "diminish/image.h"
-#include "render/cell_rasterizer.h"
+#include "render/surface_buffer.h"
 
 namespace diminish {
 

@@ -9,7 +9,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "geometry/distortion_vectors-inl.h"
+#include "geometry/projection_vectors-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace diminish::HWY_NAMESPACE {
@@ -22,28 +22,8 @@ using Ints = hn::RebindToSigned<Floats>;
 using Vector = hn::Vec<Floats>;
 using LaneMask = hn::Mask<Floats>;
 
-// Products and sums stay separate (no fused multiply-add) and in the order of Projection and
-// FloatTransform, so that every CPU computes the same bits as the plain version.
-
 HWY_INLINE Vector Set(float value) {
   return hn::Set(Floats(), value);
-}
-HWY_INLINE Vector Apply(const FloatTransform& t, int axis, Vector x, Vector y, Vector z) {
-  return hn::Add(hn::Add(hn::Add(hn::Mul(Set(t.r[axis][0]), x), hn::Mul(Set(t.r[axis][1]), y)),
-                         hn::Mul(Set(t.r[axis][2]), z)),
-                 Set(t.t[axis]));
-}
-/// Projection::distort; the mask of lanes inside the valid radius.
-template <LensModel model>
-HWY_INLINE LaneMask Distort(const Projection& p, Vector x, Vector y, Vector& u, Vector& v) {
-  const Vector r2 = hn::Add(hn::Mul(x, x), hn::Mul(y, y));
-  Vector distorted_x, distorted_y;
-  distort_ray<model>(
-      p.distortion, [](float value) HWY_ATTR { return Set(value); }, x, y, r2, distorted_x,
-      distorted_y);
-  u = hn::Add(hn::Mul(Set(p.fx), distorted_x), Set(p.cx));
-  v = hn::Add(hn::Mul(Set(p.fy), distorted_y), Set(p.cy));
-  return hn::Lt(r2, Set(p.max_radius_squared));
 }
 
 /// One row; the arrays are padded to whole blocks.
@@ -92,12 +72,13 @@ void ProjectRowBy(const VertexRows::Constants& constants, const FloatTransform& 
       const Vector z = hn::Mul(hn::ConvertTo(d, hn::PromoteTo(di, values)), Set(constants.unit_m));
       const Vector x = hn::Mul(hn::LoadU(d, ray_x + i), z);
       const Vector y = hn::Mul(hn::LoadU(d, ray_y + i), z);
-      const Vector color_z = Apply(to_color, 2, x, y, z);
+      const Vector color_z = Apply(d, to_color, 2, x, y, z);
       valid = hn::And(valid, hn::Gt(color_z, Set(sdct::near_plane_m)));
       Vector px, py;
-      valid = hn::And(valid,
-                      Distort<model>(constants.color, hn::Div(Apply(to_color, 0, x, y, z), color_z),
-                                     hn::Div(Apply(to_color, 1, x, y, z), color_z), px, py));
+      valid =
+          hn::And(valid, Distort<model>(d, constants.color,
+                                        hn::Div(Apply(d, to_color, 0, x, y, z), color_z),
+                                        hn::Div(Apply(d, to_color, 1, x, y, z), color_z), px, py));
       const Vector limit = Set(sdct::max_coordinate_px);
       valid = hn::And(valid, hn::And(hn::Lt(hn::Abs(px), limit), hn::Lt(hn::Abs(py), limit)));
       // Invalid values become 0, which can be compared and converted safely.
@@ -153,13 +134,14 @@ void FindColorsBy(const VertexRows::Constants& constants, const float* ray_x, co
     const Vector z = hn::LoadU(d, row.depth_m.data() + i);
     const Vector x = hn::Mul(hn::LoadU(d, ray_x + i), z);
     const Vector y = hn::Mul(hn::LoadU(d, ray_y + i), z);
-    const Vector rgbd_z = Apply(constants.to_rgbd_color, 2, x, y, z);
+    const Vector rgbd_z = Apply(d, constants.to_rgbd_color, 2, x, y, z);
     valid = hn::And(valid, hn::Gt(rgbd_z, Set(sdct::near_plane_m)));
     Vector u, v;
     valid = hn::And(
-        valid, Distort<model>(constants.rgbd_color,
-                              hn::Div(Apply(constants.to_rgbd_color, 0, x, y, z), rgbd_z),
-                              hn::Div(Apply(constants.to_rgbd_color, 1, x, y, z), rgbd_z), u, v));
+        valid,
+        Distort<model>(d, constants.rgbd_color,
+                       hn::Div(Apply(d, constants.to_rgbd_color, 0, x, y, z), rgbd_z),
+                       hn::Div(Apply(d, constants.to_rgbd_color, 1, x, y, z), rgbd_z), u, v));
     const Vector zero = hn::Zero(d);
     valid = hn::And(valid, hn::And(hn::And(hn::Ge(u, zero), hn::Le(u, Set(constants.last_column))),
                                    hn::And(hn::Ge(v, zero), hn::Le(v, Set(constants.last_row)))));
