@@ -14,20 +14,21 @@ enum class Stage {
   refinement,   ///< refines the colour camera's pose
   background,   ///< planes, and the shadows that the objects cast on them
   color_maps,   ///< how the cameras' colours relate
-  drawing,      ///< the scene from the colour camera's viewpoint
-  memory,       ///< what was seen earlier
+  memory,       ///< what was seen earlier, from the colour camera's viewpoint
+  drawing,      ///< the scene as it is seen now
+  merging,      ///< shows what was seen earlier where that is better
   compositing,  ///< which pixels were seen, and the plane and light of each
   colors,       ///< seen pixels in the colour camera's colours, without shadows
   inpainting,   ///< pixels that were not seen
   finish        ///< noise, rims, view mode
 };
-inline constexpr std::size_t stage_count = 13;
+inline constexpr std::size_t stage_count = 14;
 inline constexpr std::array<const char*, stage_count> stage_names = {
-    "poses",   "objects", "depth",       "samples", "refinement", "background", "color_maps",
-    "drawing", "memory",  "compositing", "colors",  "inpainting", "finish"};
+    "poses",  "objects", "depth",   "samples",     "refinement", "background", "color_maps",
+    "memory", "drawing", "merging", "compositing", "colors",     "inpainting", "finish"};
 
-/// Milliseconds by Stage. `depth` runs at the same time as the four stages after it, so the sum may
-/// exceed the frame's time.
+/// Milliseconds by Stage. Some stages run at the same time, so the sum may exceed the frame's time:
+/// `depth` to `refinement`; `background` to `drawing`.
 using StageTimes = std::array<double, stage_count>;
 
 }  // namespace diminish

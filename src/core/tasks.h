@@ -24,10 +24,13 @@ void for_tasks(std::size_t count, const Visit& visit) {
       oneapi::tbb::simple_partitioner());
 }
 
-/// Calls both, at the same time if a thread is free.
-template <class First, class Second>
-void do_both(const First& first, const Second& second) {
-  for_tasks(2, [&](std::size_t i) { i == 0 ? first() : second(); });
+/// Does all works, at the same time if threads are free.
+template <class... Works>
+void do_all(const Works&... works) {
+  for_tasks(sizeof...(works), [&](std::size_t i) {
+    std::size_t k = 0;
+    ((k++ == i ? works() : void()), ...);
+  });
 }
 
 }  // namespace diminish

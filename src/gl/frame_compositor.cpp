@@ -51,7 +51,7 @@ bool FrameCompositor::takes_over(Stage stage, const FrameMethods& methods) {
   using ColorRule = ColorCorrector::Declaration::Rule;
   using FillingRule = Inpainter::Declaration::Rule;
   switch (stage) {
-    case Stage::memory:
+    case Stage::merging:
       return !methods.remembers;
     case Stage::compositing:
     case Stage::colors:

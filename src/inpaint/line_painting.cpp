@@ -152,11 +152,11 @@ void LinePainting::lay_out(const std::vector<RimLine>& lines, const Holes& holes
   }
 }
 
-/// Calls visit(pixel, across) for the missing pixels that are no further than `width` from a
-/// stroke; across: how far, along its normal.
+/// Calls visit(x, y, across) for the missing pixels of a part that are no further than `width` from
+/// a stroke; across: how far, along its normal.
 template <class Visit>
-void LinePainting::for_each_beside(const Stroke& stroke, float width, const Mask& missing,
-                                   const Visit& visit) const {
+void LinePainting::for_each_beside(const Stroke& stroke, float width, const Rect& part,
+                                   const Mask& missing, const Visit& visit) {
   constexpr float before = 12;  ///< pixels: lines may enter at an angle
   const float after = stroke.end != nullptr ? before : 0;
   const Eigen::Vector2f from = stroke.start - before * stroke.along;
@@ -164,15 +164,26 @@ void LinePainting::for_each_beside(const Stroke& stroke, float width, const Mask
   const bool steep = std::abs(stroke.along.y()) > std::abs(stroke.along.x());
   const int main = steep ? 1 : 0;
   const int side = 1 - main;
-  const int low[] = {part_.x, part_.y};
-  const int high[] = {part_.right(), part_.bottom()};
+  const int low[] = {part.x, part.y};
+  const int high[] = {part.right(), part.bottom()};
   const float slope = stroke.along[side] / stroke.along[main];
   const float wide = width / std::abs(stroke.along[main]);
   const float margin = width * std::abs(stroke.along[side]);
-  const int first =
-      std::max(low[main], static_cast<int>(std::floor(std::min(from[main], to[main]) - margin)));
-  const int last = std::min(high[main] - 1,
-                            static_cast<int>(std::ceil(std::max(from[main], to[main]) + margin)));
+  float least = std::min(from[main], to[main]) - margin;
+  float most = std::max(from[main], to[main]) + margin;
+  constexpr float level = 1e-3F;
+  if (std::abs(slope) > level) {
+    // Where it passes the part.
+    const auto pass = [&](float at) {
+      return stroke.start[main] + (at - stroke.start[side]) / slope;
+    };
+    const float one = pass(static_cast<float>(low[side]) - wide - 1);
+    const float other = pass(static_cast<float>(high[side]) + wide + 1);
+    least = std::max(least, std::min(one, other));
+    most = std::min(most, std::max(one, other));
+  }
+  const int first = std::max(low[main], static_cast<int>(std::floor(least)));
+  const int last = std::min(high[main] - 1, static_cast<int>(std::ceil(most)));
   for (int i = first; i <= last; ++i) {
     const float centre = stroke.start[side] + slope * (static_cast<float>(i) - stroke.start[main]);
     const int begin = std::max(low[side], static_cast<int>(std::ceil(centre - wide)));
@@ -189,14 +200,12 @@ void LinePainting::for_each_beside(const Stroke& stroke, float width, const Mask
   }
 }
 
-/// Gives each pixel beside a stroke to the nearest one.
-void LinePainting::claim(const Mask& missing) {
-  claims_.resize(part_.width, part_.height,
-                 {std::numeric_limits<float>::infinity(), nobody, false});
+/// Gives each pixel of a part that is beside a stroke to the nearest one.
+void LinePainting::claim(const Mask& missing, const Rect& part) {
   for (std::size_t i = 0; i < strokes_.size(); ++i) {
     const float handicap = strokes_[i].end != nullptr ? 0.F : 1.F;
-    for_each_beside(strokes_[i], half_width, missing, [&](int x, int y, float across) {
-      Claim& claim = claims_(x - part_.x, y - part_.y);
+    for_each_beside(strokes_[i], half_width, part, missing, [&](int x, int y, float across) {
+      Claim& claim = claims_(x - objects_.x, y - objects_.y);
       const float distance = std::abs(across) + handicap;
       if (distance >= claim.distance) return;
       claim.distance = distance;
@@ -204,8 +213,8 @@ void LinePainting::claim(const Mask& missing) {
     });
   }
   for (const Stroke& stroke : strokes_) {
-    for_each_beside(stroke, half_width + feather, missing, [&](int x, int y, float across) {
-      Claim& claim = claims_(x - part_.x, y - part_.y);
+    for_each_beside(stroke, half_width + feather, part, missing, [&](int x, int y, float across) {
+      Claim& claim = claims_(x - objects_.x, y - objects_.y);
       if (claim.stroke == nobody) return;
       const Stroke& nearest = strokes_[claim.stroke];
       const float turned = stroke.normal.dot(nearest.normal);
@@ -217,7 +226,7 @@ void LinePainting::claim(const Mask& missing) {
 }
 
 void LinePainting::color(int x, int y, Bgr& pixel) const {
-  const Claim& claim = claims_(x - part_.x, y - part_.y);
+  const Claim& claim = claims_(x - objects_.x, y - objects_.y);
   const Stroke& stroke = strokes_[claim.stroke];
   const Eigen::Vector2f offset =
       Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y)) - stroke.start;
@@ -249,11 +258,15 @@ void LinePainting::paint(const std::vector<RimLine>& lines, const Holes& holes, 
   match(lines);
   lay_out(lines, holes);
   if (strokes_.empty()) return;
-  part_ = objects;
-  claim(holes.missing);
+  objects_ = objects;
+  claims_.resize(objects.width, objects.height);
   for_rows(objects.height, [&](Rows rows) {
-    for (int y = objects.y + rows.first; y < objects.y + rows.last; ++y) {
-      for (int x = objects.x; x < objects.right(); ++x) {
+    const Rect part{objects.x, objects.y + rows.first, objects.width, rows.last - rows.first};
+    constexpr Claim unclaimed{std::numeric_limits<float>::infinity(), nobody, false};
+    claims_.fill({0, rows.first, objects.width, part.height}, unclaimed);
+    claim(holes.missing, part);
+    for (int y = part.y; y < part.bottom(); ++y) {
+      for (int x = part.x; x < part.right(); ++x) {
         if (claims_(x - objects.x, y - objects.y).stroke != nobody) color(x, y, picture(x, y));
       }
     }

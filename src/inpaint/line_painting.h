@@ -39,9 +39,9 @@ class LinePainting {
   void lay_out(const std::vector<RimLine>& lines, const Holes& holes);
   float free_length(const RimLine& line, const Holes& holes) const;
   template <class Visit>
-  void for_each_beside(const Stroke& stroke, float width, const Mask& missing,
-                       const Visit& visit) const;
-  void claim(const Mask& missing);
+  static void for_each_beside(const Stroke& stroke, float width, const Rect& part,
+                              const Mask& missing, const Visit& visit);
+  void claim(const Mask& missing, const Rect& part);
   void color(int x, int y, Bgr& pixel) const;
 
   struct Pair {
@@ -52,7 +52,7 @@ class LinePainting {
   std::vector<int> mates_;
   std::vector<Stroke> strokes_;
   Image<Claim> claims_;
-  Rect part_;  ///< of the picture: what `claims_` holds
+  Rect objects_;  ///< their box: what `claims_` holds
 };
 
 }  // namespace diminish

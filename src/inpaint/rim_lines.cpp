@@ -5,6 +5,9 @@
 
 #include "core/bilinear.h"
 #include "core/channels.h"
+#include "core/conditions.h"
+#include "core/extremum_filters.h"
+#include "core/runs.h"
 
 namespace diminish {
 namespace {
@@ -20,10 +23,10 @@ constexpr float least_contrast = 6;
 constexpr float least_share = 0.5F;
 constexpr int step = 2;               ///< pixels from one point of an edge to the next
 constexpr int search = 2;             ///< pixels to each side
+constexpr int sampled = search + 2;   ///< pixels around a point that are looked at
 constexpr int most_gaps = 1;          ///< steps in a row without an edge
 constexpr float straightness = 0.6F;  ///< largest deviation, pixels, root mean square
 constexpr int deepest = 14;           ///< the mask begins no further from the ring, along the line
-constexpr float scale = 256;          ///< of the blurred picture
 constexpr int profile_length = 16;    ///< pixels along the line
 
 Eigen::Vector2f across(const Eigen::Vector2f& direction) {
@@ -67,60 +70,18 @@ struct RimLines::Track {
   }
 };
 
-/// The grey picture, blurred by about a pixel.
-void RimLines::blur(const Image<Bgr>& picture) {
-  const int width = part_.width;
-  const int height = part_.height;
-  rows_.resize(width, height);
-  grey_.resize(width, height);
-  wide_.resize(width + 4, 1);
-  for (int y = 0; y < height; ++y) {
-    const Bgr* const colors = picture.row(part_.y + y) + part_.x;
-    std::uint8_t* const grey = wide_.row(0) + 2;
-    for (int x = 0; x < width; ++x) {
-      grey[x] = static_cast<std::uint8_t>(
-          (29 * colors[x].b + 150 * colors[x].g + 77 * colors[x].r + 128) >> 8);
-    }
-    grey[-2] = grey[-1] = grey[0];
-    grey[width] = grey[width + 1] = grey[width - 1];
-    std::uint16_t* const out = rows_.row(y);
-    for (int x = 0; x < width; ++x) {
-      out[x] = static_cast<std::uint16_t>(grey[x - 2] + grey[x + 2] +
-                                          4 * (grey[x - 1] + grey[x + 1]) + 6 * grey[x]);
-    }
+/// Marks the pixels of `box` on a ring around the mask.
+void RimLines::find_ring(const Rect& box) {
+  hidden_.resize(box.width, box.height);
+  for (int y = 0; y < box.height; ++y) {
+    std::copy_n(occlusion_->row(box.y + y) + box.x, box.width, hidden_.row(y));
   }
-  for (int y = 0; y < height; ++y) {
-    const auto row = [&](int shift) { return rows_.row(std::clamp(y + shift, 0, height - 1)); };
-    const std::uint16_t* const rows[] = {row(-2), row(-1), row(0), row(1), row(2)};
-    std::uint16_t* const out = grey_.row(y);
-    for (int x = 0; x < width; ++x) {
-      out[x] = static_cast<std::uint16_t>(rows[0][x] + rows[4][x] + 4 * (rows[1][x] + rows[3][x]) +
-                                          6 * rows[2][x]);
-    }
-  }
-}
-
-/// The mask, grown by a square of this radius.
-void RimLines::grow_mask(const Mask& occlusion, const Rect& objects, int radius, Mask& grown) {
-  grown.resize(part_.width, part_.height, 0);
-  wide_.resize(part_.width, 1);
-  const Rect reached = intersect(grow(objects, radius), part_);
-  // By value, so that the loops are vectorised.
-  const auto add = [](const std::uint8_t* from, int first, int end, int shift, std::uint8_t* to) {
-    for (int x = first; x < end; ++x) to[x] |= from[x + shift];
-  };
-  for (int y = reached.y; y < reached.bottom(); ++y) {
-    std::uint8_t* const column = wide_.row(0) - part_.x;
-    std::fill(column + reached.x, column + reached.right(), std::uint8_t{0});
-    const int last = std::min(y + radius, objects.bottom() - 1);
-    for (int other = std::max(y - radius, objects.y); other <= last; ++other) {
-      add(occlusion.row(other), objects.x, objects.right(), 0, column);
-    }
-    std::uint8_t* const out = grown.row(y - part_.y) - part_.x;
-    for (int shift = -radius; shift <= radius; ++shift) {
-      add(column, std::max(reached.x, objects.x - shift),
-          std::min(reached.right(), objects.right() - shift), shift, out);
-    }
+  dilate(hidden_, {ring_begin, ring_begin}, scratch_, near_);
+  dilate(near_, {ring_end - ring_begin, ring_end - ring_begin}, scratch_, ring_);
+  for (int y = 0, width = box.width; y < box.height; ++y) {
+    const std::uint8_t* const near = near_.row(y);
+    std::uint8_t* const ring = ring_.row(y);
+    for (int x = 0; x < width; ++x) ring[x] = all_of(ring[x] != 0, near[x] == 0) ? 1 : 0;
   }
 }
 
@@ -131,7 +92,8 @@ Eigen::Vector2f RimLines::gradient(int x, int y) const {
   const std::uint16_t* const below = grey_.row(y + 1) + x;
   const int across = above[1] - above[-1] + below[1] - below[-1] + 2 * (here[1] - here[-1]);
   const int down = below[-1] - above[-1] + below[1] - above[1] + 2 * (below[0] - above[0]);
-  return Eigen::Vector2f(static_cast<float>(across), static_cast<float>(down)) / (8 * scale);
+  return Eigen::Vector2f(static_cast<float>(across), static_cast<float>(down)) /
+         (8 * BlurredGrey::scale);
 }
 
 // All positions below are in the picture.
@@ -140,12 +102,12 @@ float RimLines::level(const Eigen::Vector2f& at) const {
   const auto level = [&](int x, int y) { return static_cast<float>(grey_(x, y)); };
   return bilinear(at.x() - static_cast<float>(part_.x), at.y() - static_cast<float>(part_.y),
                   level) /
-         scale;
+         BlurredGrey::scale;
 }
 
 /// Whether all that is sampled around a position is known.
 bool RimLines::is_inside(const Eigen::Vector2f& at) const {
-  constexpr float margin = search + 2;
+  constexpr float margin = sampled;
   return at.x() >= static_cast<float>(part_.x) + margin &&
          at.y() >= static_cast<float>(part_.y) + margin &&
          at.x() < static_cast<float>(part_.right()) - margin - 1 &&
@@ -158,7 +120,8 @@ bool RimLines::is_hidden(const Eigen::Vector2f& at) const {
 }
 
 /// Whether an edge that runs into the mask passes through this pixel of `part_`.
-bool RimLines::start(int x, int y, Track& track) const {
+bool RimLines::start(int x, int y, Track& track) {
+  grey_.look_at(grow({x, y, 1, 1}, sampled));
   const Eigen::Vector2f slope = gradient(x, y);
   const float contrast = slope.norm();
   if (contrast < least_contrast) return false;
@@ -189,7 +152,7 @@ bool RimLines::start(int x, int y, Track& track) const {
 }
 
 /// Follows an edge away from the mask, as long as it is straight.
-bool RimLines::follow(Track& track) const {
+bool RimLines::follow(Track& track) {
   constexpr int positions = 2 * search + 3;
   Eigen::Vector2f base = track.start;
   int gaps = 0;
@@ -197,6 +160,8 @@ bool RimLines::follow(Track& track) const {
   for (int k = 0; k <= longest; k += step) {
     const Eigen::Vector2f at = base + static_cast<float>(k) * track.outward;
     if (!is_inside(at) || is_hidden(at)) break;
+    grey_.look_at(grow(
+        {static_cast<int>(at.x()) - part_.x, static_cast<int>(at.y()) - part_.y, 2, 2}, sampled));
     std::array<float, positions> levels;
     for (int i = 0; i < positions; ++i) {
       levels[static_cast<std::size_t>(i)] =
@@ -261,22 +226,19 @@ const std::vector<RimLine>& RimLines::find(const Image<Bgr>& picture, const Mask
   occlusion_ = &occlusion;
   part_ = intersect(grow(objects, ring_end + longest), picture.bounds());
   if (part_.empty()) return lines_;
-  blur(picture);
-  grow_mask(occlusion, objects, ring_begin, near_);
-  grow_mask(occlusion, objects, ring_end, far_);
-  const Rect ring = intersect(grow(objects, ring_end), grow(part_, -1));
-  for (int y = ring.y - part_.y; y < ring.bottom() - part_.y; ++y) {
-    const std::uint8_t* const near = near_.row(y);
-    const std::uint8_t* const far = far_.row(y);
-    for (int x = ring.x - part_.x; x < ring.right() - part_.x; ++x) {
-      if (far[x] == 0 || near[x] != 0) continue;
+  grey_.begin(picture, part_);
+  const Rect box = intersect(grow(objects, ring_end), part_);
+  find_ring(box);
+  const Rect inner = intersect(box, grow(part_, -1));
+  for (int y = inner.y; y < inner.bottom(); ++y) {
+    for_each_set(ring_.row(y - box.y) + inner.x - box.x, inner.width, [&](int i) {
       Track track;
-      if (!start(x, y, track)) continue;
+      if (!start(inner.x + i - part_.x, y - part_.y, track)) return;
       RimLine line;
       line.entry = track.start;
       line.outward = track.outward;
       line.normal = track.normal;
-      if (!follow(track)) continue;
+      if (!follow(track)) return;
       line.outward = track.outward;
       line.normal = track.normal;
       line.contrast = track.contrasts / static_cast<float>(track.points);
@@ -285,9 +247,8 @@ const std::vector<RimLine>& RimLines::find(const Image<Bgr>& picture, const Mask
       for (int k = 0; k < deepest && !is_hidden(line.entry - line.outward); ++k) {
         line.entry -= line.outward;
       }
-      if (is_known(line) || !collect_profile(picture, line)) continue;
-      lines_.push_back(line);
-    }
+      if (!is_known(line) && collect_profile(picture, line)) lines_.push_back(line);
+    });
   }
   std::stable_sort(lines_.begin(), lines_.end(),
                    [](const RimLine& a, const RimLine& b) { return a.strength() > b.strength(); });

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "diminish/image.h"
+#include "inpaint/blurred_grey.h"
 
 namespace diminish {
 
@@ -40,23 +41,21 @@ class RimLines {
  private:
   struct Track;
 
-  void blur(const Image<Bgr>& picture);
-  void grow_mask(const Mask& occlusion, const Rect& objects, int radius, Mask& grown);
+  void find_ring(const Rect& box);
   Eigen::Vector2f gradient(int x, int y) const;
   float level(const Eigen::Vector2f& at) const;
   bool is_hidden(const Eigen::Vector2f& at) const;
   bool is_inside(const Eigen::Vector2f& at) const;
-  bool start(int x, int y, Track& track) const;
-  bool follow(Track& track) const;
+  bool start(int x, int y, Track& track);
+  bool follow(Track& track);
   bool collect_profile(const Image<Bgr>& picture, RimLine& line) const;
   bool is_known(const RimLine& line) const;
 
   const Mask* occlusion_ = nullptr;
   Rect part_;                  ///< of the picture, around the objects
-  Image<std::uint16_t> grey_;  ///< of `part_`, blurred; 256 times the level
-  Image<std::uint16_t> rows_;  ///< blurred along rows only
-  Mask near_, far_;            ///< of `part_`: the mask, grown
-  Mask wide_;
+  BlurredGrey grey_;           ///< of `part_`
+  Mask hidden_, near_, ring_;  ///< of the box around the mask
+  Mask scratch_;
   std::vector<RimLine> lines_;
 };
 

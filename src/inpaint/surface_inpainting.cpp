@@ -51,11 +51,11 @@ class SurfaceInpainting : public Inpainter {
   bool inpaint(const Holes& holes, const Options&, Image<Bgr>& picture) override {
     window_ = grow(bounding_box(holes.missing), 1);
     if (window_.empty()) return true;
-    do_both([&] { plane_colors_.collect(holes.occlusion, holes.surfaces, picture); },
-            [&] {
-              collect_states(holes);
-              find_holes();
-            });
+    do_all([&] { plane_colors_.collect(holes.occlusion, holes.surfaces, picture); },
+           [&] {
+             collect_states(holes);
+             find_holes();
+           });
     // They do not depend on each other: what one fills no other takes for known.
     std::array<bool, label_count> filled{};
     for_tasks(label_count,

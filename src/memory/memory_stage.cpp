@@ -35,6 +35,10 @@ void report_ages(std::span<const Recollection> recollections, std::span<const st
   }
 }
 
+RecallInputs with_poses(const RecallInputs& inputs, const Poses& poses) {
+  return {inputs.frame, poses, inputs.masks, inputs.objects, inputs.region, inputs.options};
+}
+
 }  // namespace
 
 template <class Work>
@@ -47,15 +51,13 @@ auto MemoryStage::in_turn(const Work& work) {
   return work();
 }
 
-void MemoryStage::remember(const RecallInputs& inputs, const SceneSamples& samples,
-                           const std::vector<OccluderReport>& objects,
-                           Reconstruction& reconstruction, MemoryReport& report) {
-  const Poses poses = anchored(inputs.poses);
-  if (!poses.color_from_world) return;
-  const RecallInputs anchored_inputs{inputs.frame,   poses,         inputs.masks,
-                                     inputs.objects, inputs.region, inputs.color_maps,
-                                     inputs.options};
-  const std::size_t count = in_turn([&] {
+void MemoryStage::recall(const RecallInputs& inputs, const SceneSamples& samples,
+                         const std::vector<OccluderReport>& objects, MemoryReport& report) {
+  recalled_ = 0;
+  poses_ = anchored(inputs.poses);
+  if (!poses_.color_from_world) return;
+  const RecallInputs anchored_inputs = with_poses(inputs, poses_);
+  recalled_ = in_turn([&] {
     if (!shared_->memory) shared_->memory.emplace(shared_->rig);
     SceneMemory& memory = *shared_->memory;
     const bool is_anchored = !inputs.poses.color_from_world;
@@ -65,11 +67,16 @@ void MemoryStage::remember(const RecallInputs& inputs, const SceneSamples& sampl
     report.bytes = memory.bytes();
     return recalled;
   });
-  if (count == 0) return;
-  for_tasks(count, [&](std::size_t i) { recollections_[i].draw(anchored_inputs); });
-  const auto recalled = std::span(recollections_).first(count);
-  merge_.merge(anchored_inputs, recalled, inputs.options.memory == "witnessed", reconstruction);
-  report_ages(recalled, merge_.count_remembered(count, reconstruction), inputs.frame.stamp_s,
+  for_tasks(recalled_, [&](std::size_t i) { recollections_[i].draw(anchored_inputs); });
+}
+
+void MemoryStage::merge(const RecallInputs& inputs, ColorMapsBySource color_maps,
+                        Reconstruction& reconstruction, MemoryReport& report) {
+  if (recalled_ == 0) return;
+  const auto recalled = std::span(recollections_).first(recalled_);
+  merge_.merge(with_poses(inputs, poses_), recalled, color_maps,
+               inputs.options.memory == "witnessed", reconstruction);
+  report_ages(recalled, merge_.count_remembered(recalled_, reconstruction), inputs.frame.stamp_s,
               report);
 }
 

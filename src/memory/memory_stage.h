@@ -11,8 +11,8 @@
 
 namespace diminish {
 
-/// Stage::memory: shows what was seen earlier where it is better than what is seen now. Several
-/// pipelines share one memory; each works on a frame of the same sequence.
+/// Stage::memory and merging: shows what was seen earlier where it is better than what is seen now.
+/// Several pipelines share one memory; each works on a frame of the same sequence.
 class MemoryStage {
  public:
   explicit MemoryStage(const Rig& rig)
@@ -23,11 +23,14 @@ class MemoryStage {
   /// Does nothing if there is none.
   void end_turn() { turn_.end(); }
 
-  /// Recalls and learns when it is this frame's turn, and ends it. Then draws, at the same time as
-  /// other frames. samples, objects: of this frame, to learn from. report: comes empty.
-  void remember(const RecallInputs& inputs, const SceneSamples& samples,
-                const std::vector<OccluderReport>& objects, Reconstruction& reconstruction,
-                MemoryReport& report);
+  /// Recalls and learns when it is this frame's turn, and ends it. Then draws what it recalls, at
+  /// the same time as other frames. samples, objects: of this frame, to learn from. report: comes
+  /// empty.
+  void recall(const RecallInputs& inputs, const SceneSamples& samples,
+              const std::vector<OccluderReport>& objects, MemoryReport& report);
+  /// Stage::merging. inputs: as in recall(). color_maps: of the RGB-D cameras.
+  void merge(const RecallInputs& inputs, ColorMapsBySource color_maps,
+             Reconstruction& reconstruction, MemoryReport& report);
   void forget();
 
   /// Fills the memory before the first frame. Throws Error (keyframes_of).
@@ -49,7 +52,9 @@ class MemoryStage {
 
   std::shared_ptr<Shared> shared_;
   Turn turn_;
+  Poses poses_;  ///< of this frame, anchored
   std::vector<Recollection> recollections_;
+  std::size_t recalled_ = 0;  ///< that are used in this frame
   RecallMerge merge_;
 };
 

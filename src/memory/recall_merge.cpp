@@ -43,7 +43,7 @@ RecallMerge::RecallMerge(const Intrinsics& color) : color_(color) {}
 
 bool RecallMerge::explains_surroundings(const RecallInputs& inputs,
                                         const Recollection& recollection,
-                                        const Reconstruction& live) {
+                                        ColorMapsBySource color_maps, const Reconstruction& live) {
   constexpr float most = 60;  // levels: more is no worse
   constexpr auto fewest = static_cast<int>(Recollection::fewest_beside);
   constexpr float slack = 4;    // levels
@@ -64,7 +64,7 @@ bool RecallMerge::explains_surroundings(const RecallInputs& inputs,
     ++count;
     const std::uint8_t source = live.source(x, y);
     if (source == 0) continue;
-    live_error += difference(mapped(inputs.color_maps[source], live.color(x, y), x, y));
+    live_error += difference(mapped(color_maps[source], live.color(x, y), x, y));
     shared_error += own;
     ++shared;
   }
@@ -253,7 +253,8 @@ void RecallMerge::drop_specks(const RecallInputs& inputs, Reconstruction& recons
 }
 
 void RecallMerge::merge(const RecallInputs& inputs, std::span<const Recollection> recollections,
-                        bool witnessed_only, Reconstruction& reconstruction) {
+                        ColorMapsBySource color_maps, bool witnessed_only,
+                        Reconstruction& reconstruction) {
   Rect box;
   for (const Recollection& recollection : recollections) box = join(box, recollection.part());
   part_.set(box);
@@ -274,7 +275,8 @@ void RecallMerge::merge(const RecallInputs& inputs, std::span<const Recollection
   usable_.clear();
   baselines_m_.clear();
   for (const Recollection& recollection : recollections) {
-    usable_.push_back(explains_surroundings(inputs, recollection, reconstruction) ? 1 : 0);
+    usable_.push_back(explains_surroundings(inputs, recollection, color_maps, reconstruction) ? 1
+                                                                                              : 0);
     baselines_m_.push_back(recollection.baseline_m());
   }
   for_rows(part_.height, [&](Rows rows) {

@@ -26,9 +26,10 @@ class RecallMerge {
  public:
   explicit RecallMerge(const Intrinsics& color);
 
-  /// recollections: the best first. witnessed_only: leave out the rest.
+  /// recollections: the best first. color_maps: of the RGB-D cameras. witnessed_only: leave out the
+  /// rest.
   void merge(const RecallInputs& inputs, std::span<const Recollection> recollections,
-             bool witnessed_only, Reconstruction& reconstruction);
+             ColorMapsBySource color_maps, bool witnessed_only, Reconstruction& reconstruction);
 
   /// How many remembered pixels each recollection of the last `merge` shows.
   std::vector<std::size_t> count_remembered(std::size_t recollections,
@@ -36,7 +37,7 @@ class RecallMerge {
 
  private:
   static bool explains_surroundings(const RecallInputs& inputs, const Recollection& recollection,
-                                    const Reconstruction& live);
+                                    ColorMapsBySource color_maps, const Reconstruction& live);
   /// Pixels [first, last) of a row of the picture.
   struct Run {
     int first, last, y;

@@ -20,9 +20,8 @@ struct RecallInputs {
   const FrameSet& frame;
   const Poses& poses;  ///< refined; color_from_world is known
   const OcclusionMasks& masks;
-  const Rect& objects;           ///< their box in the picture
-  const TiledRegion& region;     ///< that is drawn
-  ColorMapsBySource color_maps;  ///< of the RGB-D cameras
+  const Rect& objects;        ///< their box in the picture
+  const TiledRegion& region;  ///< that is drawn
   const Options& options;
 };
 

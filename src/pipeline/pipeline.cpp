@@ -248,7 +248,7 @@ void Pipeline::Implementation::process(const FrameSet& frame, DiminishedFrame& r
   report.poses = measured_poses;
   background.clear();
   const auto learn = [&] {
-    do_both(
+    do_all(
         [&] {
           stage(Stage::background, [&] { background.find(objects, samples, wanted_background()); });
         },
@@ -263,17 +263,19 @@ void Pipeline::Implementation::process(const FrameSet& frame, DiminishedFrame& r
                       objects, region,         options,      methods};
   drawing.wants_reconstruction = wants_reconstruction;
   drawing.texture = texture.output();
-  const auto draw = [&] {
-    stage(Stage::drawing, [&] {
-      choose_region();
-      backend.draw(drawing, result);
+  const auto draw = [&] { stage(Stage::drawing, [&] { backend.draw(drawing, result); }); };
+  // Not in the paper: what the colour camera saw earlier
+  const RecallInputs recalling{frame, report.poses, masks, objects, region, options};
+  const auto recall = [&] {
+    stage(Stage::memory, [&] {
+      if (methods.remembers) memory.recall(recalling, samples, report.occluders, report.memory);
     });
   };
   const bool looks = looks_at_scene();
   // What is learnt of the scene may be needed only after the drawing: then both are done together.
   const bool learns_while_drawing = looks && backend.only_draws() && !options.remove_shadows;
   if (looks) {
-    do_both(
+    do_all(
         [&] {
           stage(Stage::depth, [&] {
             const Rect drawn = options.remove_shadows ? rig.color.bounds() : surroundings();
@@ -286,21 +288,19 @@ void Pipeline::Implementation::process(const FrameSet& frame, DiminishedFrame& r
           if (!learns_while_drawing) learn();
         });
   }
+  choose_region();
   if (learns_while_drawing) {
-    do_both(draw, learn);
+    do_all(recall, draw, learn);
   } else {
     drawing.planes = background.planes();
     drawing.shadows = background.shadows();
     drawing.color_maps = color_maps.by_source();
     drawing.smoothing_share = smoothing;
-    draw();
+    do_all(recall, draw);
   }
-
-  // Not in the paper: what the colour camera saw earlier
-  stage(Stage::memory, [&] {
+  stage(Stage::merging, [&] {
     if (!methods.remembers) return;
-    memory.remember({frame, report.poses, masks, objects, region, color_maps.by_source(), options},
-                    samples, report.occluders, result.reconstruction, report.memory);
+    memory.merge(recalling, color_maps.by_source(), result.reconstruction, report.memory);
   });
 
   // 3.4 Compositing, colour correction, inpainting; a backend may have done these

@@ -11,8 +11,9 @@ constexpr std::array<TimeRow, time_row_count> rows{{
     {"refinement", "Pose refinement", ""},
     {"background", "Background", ""},
     {"color_maps", "Colour maps", ""},
-    {"drawing", "Drawing", ""},
     {"memory", "Memory", ""},
+    {"drawing", "Drawing", ""},
+    {"merging", "Merging", ""},
     {"compositing", "Compositing", ""},
     {"colors", "Colours", ""},
     {"inpainting", "Inpainting", ""},
@@ -36,8 +37,9 @@ constexpr std::size_t paper_row(Stage stage) {
     case Stage::refinement:
     case Stage::background:
     case Stage::color_maps:
-    case Stage::drawing:
     case Stage::memory:
+    case Stage::drawing:
+    case Stage::merging:
       return stage_count + 1;
     case Stage::compositing:
     case Stage::finish:

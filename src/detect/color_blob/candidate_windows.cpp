@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "detect/color_blob/extremum_filters.h"
+#include "core/extremum_filters.h"
 
 namespace diminish {
 

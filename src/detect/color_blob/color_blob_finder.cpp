@@ -5,7 +5,7 @@
 #include <span>
 
 #include "core/shrink.h"
-#include "detect/color_blob/extremum_filters.h"
+#include "core/extremum_filters.h"
 
 namespace diminish {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <limits>
 
-#include "detect/color_blob/extremum_filters.h"
+#include "core/extremum_filters.h"
 
 namespace diminish {
 namespace {

@@ -3,7 +3,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/mat.h"
-#include "detect/color_blob/extremum_filters.h"
+#include "core/extremum_filters.h"
 #include "detect/color_blob/smooth_picture.h"
 #include "each_vector_target.h"
 #include "noise.h"

@@ -1,10 +1,10 @@
-#include "detect/color_blob/extremum_filters.h"
+#include "core/extremum_filters.h"
 
 #include <algorithm>
 #include <array>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "detect/color_blob/extremum_filters.cpp"
+#define HWY_TARGET_INCLUDE "core/extremum_filters.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
