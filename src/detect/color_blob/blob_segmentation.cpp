@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "core/shrink.h"
 #include "core/extremum_filters.h"
+#include "core/shrink.h"
 
 namespace diminish {
 

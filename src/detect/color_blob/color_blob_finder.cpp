@@ -4,8 +4,8 @@
 #include <iterator>
 #include <span>
 
-#include "core/shrink.h"
 #include "core/extremum_filters.h"
+#include "core/shrink.h"
 
 namespace diminish {
 namespace {

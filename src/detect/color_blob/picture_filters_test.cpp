@@ -2,8 +2,8 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "core/mat.h"
 #include "core/extremum_filters.h"
+#include "core/mat.h"
 #include "detect/color_blob/smooth_picture.h"
 #include "each_vector_target.h"
 #include "noise.h"
