@@ -68,8 +68,9 @@ class MemoryTest : public ::testing::Test {
     sampler.sample(now.frame, now.poses, masks, samples);
     OccluderReport report;
     if (moment.is_lost) report.message = "board: not found";
-    memory.remember({now.frame, now.poses, masks, moment.object, region, maps, options}, samples,
-                    {report}, result, memory_report = {});
+    const RecallInputs inputs{now.frame, now.poses, masks, moment.object, region, options};
+    memory.recall(inputs, samples, {report}, memory_report = {});
+    memory.merge(inputs, maps, result, memory_report);
     return result;
   }
 

@@ -33,7 +33,7 @@ struct Options {
   std::string color_correct = "field_membrane";
   std::string memory = "off";
   double memory_max_age_s = 60;
-  std::string inpaint = "surfaces";
+  std::string inpaint = "structure";
   int inpaint_radius_px = 5;
   std::string mode = "remove";
   std::string keep;

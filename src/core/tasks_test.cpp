@@ -22,7 +22,7 @@ TEST(Tasks, EachIsDoneOnce) {
 TEST(Tasks, BothAreDone) {
   int first = 0;
   int second = 0;
-  do_both([&] { ++first; }, [&] { ++second; });
+  do_all([&] { ++first; }, [&] { ++second; });
   EXPECT_EQ(first, 1);
   EXPECT_EQ(second, 1);
 }
@@ -66,11 +66,11 @@ TEST_F(Tracing, TheSpanOfTasksIsTheLongestOnes) {
 
 TEST_F(Tracing, TasksInTasksCountBySpan) {
   const tracing::Cost cost = cost_of([] {
-    do_both([] { for_tasks(4, [](std::size_t) { take(3); }); },  // 12 of work, 3 of span
-            [] {
-              take(2);
-              for_tasks(2, [](std::size_t i) { take(i == 0 ? 4 : 1); });
-            });
+    do_all([] { for_tasks(4, [](std::size_t) { take(3); }); },  // 12 of work, 3 of span
+           [] {
+             take(2);
+             for_tasks(2, [](std::size_t i) { take(i == 0 ? 4 : 1); });
+           });
   });
   EXPECT_EQ(cost.work_ns, 12 + 2 + 5);
   EXPECT_EQ(cost.span_ns, 6);

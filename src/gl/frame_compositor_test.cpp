@@ -9,6 +9,7 @@
 #include "diminish/view_mode.h"
 #include "diminished_wall.h"
 #include "gl/context.h"
+#include "gpu_options.h"
 #include "picture_difference.h"
 #include "scene/color_maps.h"
 
@@ -127,7 +128,7 @@ class Composition : public ::testing::Test, protected testing::DiminishedWall {
   }
 
   static constexpr std::size_t most_others = 100;
-  Options options;
+  Options options = testing::gpu_options();
   ColorMaps maps;
   testing::Composing composing;
   DiminishedFrame result;

@@ -9,6 +9,7 @@
 
 #include "expect_error.h"
 #include "first_frame.h"
+#include "gpu_options.h"
 #include "paths.h"
 
 namespace diminish {
@@ -68,7 +69,7 @@ class Application {
 constexpr const char* by_cpu = "the picture was made by the CPU, and uploaded to its texture";
 
 Options on_gpu() {
-  Options options;
+  Options options = testing::gpu_options();
   options.backend = "gl";
   return options;
 }
@@ -186,7 +187,7 @@ TEST_F(Textures, HoldTheCpusPicturesToo) {
     return std::make_unique<Broken>();
   });
   for (const char* what : {"cpu", "broken", "telea", "poisson"}) {
-    Options options;
+    Options options = testing::gpu_options();
     const std::string name = what;
     options.backend = name == "cpu" || name == "broken" ? name : "gl";
     if (name == "telea") options.inpaint = name;

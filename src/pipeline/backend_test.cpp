@@ -11,6 +11,7 @@
 #include "diminish/pipeline.h"
 #include "diminish/view_mode.h"
 #include "expect_error.h"
+#include "gpu_options.h"
 #include "mask_overlap.h"
 #include "paths.h"
 #include "picture_difference.h"
@@ -69,7 +70,7 @@ class Helpless : public ComposingReconstructor {
 void expect_the_cpus_frames(const std::string& backend, const std::vector<bool>& failures) {
   const Recording recording =
       load_recording(std::filesystem::path(testing::recordings_dir()) / "calendar");
-  Options options;
+  Options options = testing::gpu_options();
   Pipeline by_cpu(recording.rig, recording.scene, options);
   options.backend = backend;
   Pipeline pipeline(recording.rig, recording.scene, options);
@@ -208,7 +209,7 @@ INSTANTIATE_TEST_SUITE_P(Recordings, WholeFrames,
 TEST_P(WholeFrames, OfTheGpuAreThoseOfTheCpu) {
   const auto source = open_recording(recording, {});
   while (source->next(frame)) {
-    process_both({});
+    process_both(testing::gpu_options());
     expect_alike(frame.name);
     expect_camera_outside(frame.name);
     const Image<Bgr> truth = read_color_image(folder / "truth/background" / (frame.name + ".jpg"));
@@ -223,7 +224,7 @@ TEST_P(WholeFrames, OfTheGpuAreThoseOfTheCpuInEveryMode) {
   ASSERT_TRUE(open_recording(recording, {})->next(frame));
   for (const char* inpainting : {"surfaces", "none"}) {
     for (const std::string& mode : Registry<ViewMode>::names()) {
-      Options options;
+      Options options = testing::gpu_options();
       options.mode = mode;
       options.inpaint = inpainting;
       options.soft_rim_px = mode == "half" ? 0 : 2;
@@ -239,7 +240,7 @@ TEST_P(WholeFrames, OfTheGpuAreThoseOfTheCpuWithOtherOptions) {
   for (const char* what :
        {"remove_shadows", "with shadows", "whole_view", "harmonic", "none", "surroundings_px"}) {
     const std::string name = what;
-    Options options;
+    Options options = testing::gpu_options();
     options.inpaint = name == "harmonic" ? "harmonic" : "none";
     options.remove_shadows = name == "remove_shadows";
     options.lift_shadows = name != "with shadows";
@@ -254,7 +255,7 @@ TEST_P(WholeFrames, OfTheGpuAreThoseOfTheCpuWithOtherOptions) {
 
 // It stays on the GPU; nothing else changes, nor does it when it is wanted again.
 TEST_P(WholeFrames, DoNotNeedTheReconstructionWhereNobodyLooksAtIt) {
-  Options options;
+  Options options = testing::gpu_options();
   options.backend = "gl";
   options.inpaint = "none";
   ASSERT_TRUE(open_recording(recording, {})->next(frame));
@@ -277,7 +278,7 @@ TEST_P(WholeFrames, DoNotNeedTheReconstructionWhereNobodyLooksAtIt) {
 TEST(WholeFrame, WithoutObjectsOrRgbdCamerasIsTheGpusToo) {
   const Recording recording =
       load_recording(std::filesystem::path(testing::recordings_dir()) / "ball");
-  Options options;
+  Options options = testing::gpu_options();
   options.backend = "gl";
   options.inpaint = "none";
   FrameSet frame;

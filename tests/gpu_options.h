@@ -1,0 +1,15 @@
+#pragma once
+
+#include "diminish/options.h"
+
+namespace diminish::testing {
+
+/// Of frames that the GPU can make whole, from drawing to the picture.
+inline Options gpu_options() {
+  Options options;
+  options.memory = "off";
+  options.inpaint = "surfaces";
+  return options;
+}
+
+}  // namespace diminish::testing
