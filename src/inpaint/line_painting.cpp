@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/channels.h"
 #include "core/rows.h"
+#include "core/runs.h"
 
 namespace diminish {
 namespace {
@@ -13,7 +13,8 @@ namespace {
 constexpr float half_width = RimLine::half_width;
 constexpr float feather = 3;           ///< pixels at each side over which a line fades
 constexpr float side_by_side = 0.98F;  ///< cosine between their normals
-constexpr std::uint8_t nobody = 255;
+constexpr float before =
+    12;  ///< pixels that are painted before a stroke's start: it may enter at an angle
 
 // Two ends of one edge:
 constexpr float same_direction = 0.985F;  ///< cosine
@@ -150,6 +151,11 @@ void LinePainting::lay_out(const std::vector<RimLine>& lines, const Holes& holes
     if (length < 2) continue;
     strokes_.push_back({&line, nullptr, line.entry, -line.outward, line.normal, length});
   }
+  for (Stroke& stroke : strokes_) {
+    stroke.has_company = std::any_of(strokes_.begin(), strokes_.end(), [&](const Stroke& other) {
+      return &other != &stroke && are_company(stroke, other);
+    });
+  }
 }
 
 /// Calls visit(x, y, across) for the missing pixels of a part that are no further than `width` from
@@ -157,7 +163,6 @@ void LinePainting::lay_out(const std::vector<RimLine>& lines, const Holes& holes
 template <class Visit>
 void LinePainting::for_each_beside(const Stroke& stroke, float width, const Rect& part,
                                    const Mask& missing, const Visit& visit) {
-  constexpr float before = 12;  ///< pixels: lines may enter at an angle
   const float after = stroke.end != nullptr ? before : 0;
   const Eigen::Vector2f from = stroke.start - before * stroke.along;
   const Eigen::Vector2f to = stroke.start + (stroke.length + after) * stroke.along;
@@ -185,19 +190,31 @@ void LinePainting::for_each_beside(const Stroke& stroke, float width, const Rect
   const int first = std::max(low[main], static_cast<int>(std::floor(least)));
   const int last = std::min(high[main] - 1, static_cast<int>(std::ceil(most)));
   for (int i = first; i <= last; ++i) {
-    const float centre = stroke.start[side] + slope * (static_cast<float>(i) - stroke.start[main]);
+    const float ahead = static_cast<float>(i) - stroke.start[main];
+    const float own_along = ahead * stroke.along[main];
+    const float own_across = ahead * stroke.normal[main];
+    const float centre = stroke.start[side] + slope * ahead;
     const int begin = std::max(low[side], static_cast<int>(std::ceil(centre - wide)));
     const int end = std::min(high[side] - 1, static_cast<int>(std::floor(centre + wide)));
     for (int k = begin; k <= end; ++k) {
       const int x = steep ? k : i;
       const int y = steep ? i : k;
       if (missing(x, y) == 0) continue;
-      const Eigen::Vector2f pixel(static_cast<float>(x), static_cast<float>(y));
-      const float along = (pixel - stroke.start).dot(stroke.along);
+      const float beside = static_cast<float>(k) - stroke.start[side];
+      const float along = own_along + beside * stroke.along[side];
       if (along < -before || along > stroke.length + after) continue;
-      visit(x, y, (pixel - stroke.start).dot(stroke.normal));
+      visit(x, y, own_across + beside * stroke.normal[side]);
     }
   }
+}
+
+/// Whether a pixel may lie beside both strokes, and these run side by side.
+bool LinePainting::are_company(const Stroke& a, const Stroke& b) {
+  if (std::abs(a.normal.dot(b.normal)) < side_by_side) return false;
+  // Beyond its end a stroke may be wider yet.
+  constexpr float wide = 2 * half_width + feather;
+  const float slack = wide + std::sqrt(1 - side_by_side * side_by_side) * (b.length + 2 * before);
+  return std::abs((b.start - a.start).dot(a.normal)) <= slack;
 }
 
 /// Gives each pixel of a part that is beside a stroke to the nearest one.
@@ -205,31 +222,36 @@ void LinePainting::claim(const Mask& missing, const Rect& part) {
   for (std::size_t i = 0; i < strokes_.size(); ++i) {
     const float handicap = strokes_[i].end != nullptr ? 0.F : 1.F;
     for_each_beside(strokes_[i], half_width, part, missing, [&](int x, int y, float across) {
+      std::uint8_t& nearest = nearest_(x - objects_.x, y - objects_.y);
       Claim& claim = claims_(x - objects_.x, y - objects_.y);
       const float distance = std::abs(across) + handicap;
-      if (distance >= claim.distance) return;
-      claim.distance = distance;
-      claim.stroke = static_cast<std::uint8_t>(i);
+      if (nearest != 0 && distance >= claim.distance) return;
+      nearest = static_cast<std::uint8_t>(1 + i);
+      claim = {distance, false};
     });
   }
   for (const Stroke& stroke : strokes_) {
+    if (!stroke.has_company) continue;
     for_each_beside(stroke, half_width + feather, part, missing, [&](int x, int y, float across) {
-      Claim& claim = claims_(x - objects_.x, y - objects_.y);
-      if (claim.stroke == nobody) return;
-      const Stroke& nearest = strokes_[claim.stroke];
+      const std::uint8_t number = nearest_(x - objects_.x, y - objects_.y);
+      if (number == 0) return;
+      const Stroke& nearest = strokes_[number - 1U];
       const float turned = stroke.normal.dot(nearest.normal);
       if (std::abs(turned) < side_by_side) return;
       const Eigen::Vector2f pixel(static_cast<float>(x), static_cast<float>(y));
-      claim.is_between |= across * (pixel - nearest.start).dot(nearest.normal) * turned < 0;
+      claims_(x - objects_.x, y - objects_.y).is_between |=
+          across * (pixel - nearest.start).dot(nearest.normal) * turned < 0;
     });
   }
 }
 
-void LinePainting::color(int x, int y, Bgr& pixel) const {
-  const Claim& claim = claims_(x - objects_.x, y - objects_.y);
-  const Stroke& stroke = strokes_[claim.stroke];
-  const Eigen::Vector2f offset =
-      Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y)) - stroke.start;
+/// column, row: in the objects' box.
+void LinePainting::color(int column, int row, Bgr& pixel) const {
+  const Claim& claim = claims_(column, row);
+  const Stroke& stroke = strokes_[nearest_(column, row) - 1U];
+  const Eigen::Vector2f offset = Eigen::Vector2f(static_cast<float>(objects_.x + column),
+                                                 static_cast<float>(objects_.y + row)) -
+                                 stroke.start;
   const float across = std::clamp(offset.dot(stroke.normal), -half_width, half_width);
   const float position = std::min(across + half_width, 2 * half_width - 0.001F);
   float weight =
@@ -259,16 +281,15 @@ void LinePainting::paint(const std::vector<RimLine>& lines, const Holes& holes, 
   lay_out(lines, holes);
   if (strokes_.empty()) return;
   objects_ = objects;
+  nearest_.resize(objects.width, objects.height, 0);
   claims_.resize(objects.width, objects.height);
   for_rows(objects.height, [&](Rows rows) {
-    const Rect part{objects.x, objects.y + rows.first, objects.width, rows.last - rows.first};
-    constexpr Claim unclaimed{std::numeric_limits<float>::infinity(), nobody, false};
-    claims_.fill({0, rows.first, objects.width, part.height}, unclaimed);
-    claim(holes.missing, part);
-    for (int y = part.y; y < part.bottom(); ++y) {
-      for (int x = part.x; x < part.right(); ++x) {
-        if (claims_(x - objects.x, y - objects.y).stroke != nobody) color(x, y, picture(x, y));
-      }
+    claim(holes.missing,
+          {objects.x, objects.y + rows.first, objects.width, rows.last - rows.first});
+    for (int row = rows.first; row < rows.last; ++row) {
+      Bgr* const pixels = picture.row(objects.y + row) + objects.x;
+      for_each_set(nearest_.row(row), objects.width,
+                   [&](int column) { color(column, row, pixels[column]); });
     }
   });
 }

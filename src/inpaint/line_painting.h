@@ -27,22 +27,23 @@ class LinePainting {
     const RimLine* end;  ///< null: it just ends
     Eigen::Vector2f start, along, normal;
     float length;
+    bool has_company = false;  ///< others run beside it
   };
-  /// Which stroke is nearest to a pixel.
+  /// Of the stroke that is nearest to a pixel.
   struct Claim {
     float distance;
-    std::uint8_t stroke;
     bool is_between;  ///< two that run side by side: inside a pipe
   };
 
   void match(const std::vector<RimLine>& lines);
   void lay_out(const std::vector<RimLine>& lines, const Holes& holes);
   float free_length(const RimLine& line, const Holes& holes) const;
+  static bool are_company(const Stroke& a, const Stroke& b);
   template <class Visit>
   static void for_each_beside(const Stroke& stroke, float width, const Rect& part,
                               const Mask& missing, const Visit& visit);
   void claim(const Mask& missing, const Rect& part);
-  void color(int x, int y, Bgr& pixel) const;
+  void color(int column, int row, Bgr& pixel) const;
 
   struct Pair {
     float misfit;
@@ -51,8 +52,10 @@ class LinePainting {
   std::vector<Pair> pairs_;
   std::vector<int> mates_;
   std::vector<Stroke> strokes_;
-  Image<Claim> claims_;
-  Rect objects_;  ///< their box: what `claims_` holds
+  // Of the objects' box:
+  Image<std::uint8_t> nearest_;  ///< 1 + the stroke's index; 0: none is near
+  Image<Claim> claims_;          ///< where one is
+  Rect objects_;
 };
 
 }  // namespace diminish
