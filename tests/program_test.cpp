@@ -38,6 +38,14 @@ class ProgramTest : public ::testing::Test {
     return Program::run(arguments);
   }
   fs::path out(const std::string& name) const { return fs::path(recording.out()) / name; }
+  /// The recording without its RGB-D cameras.
+  std::string lone(const std::string& from) const {
+    const fs::path folder = recording.path("lone");
+    fs::copy(from, folder, fs::copy_options::recursive);
+    const std::string rig = read_text_file(folder / "rig.yaml", 1 << 20);
+    recording.write("lone/rig.yaml", rig.substr(0, rig.find("rgbd:")) + "rgbd: []\n");
+    return folder.string();
+  }
 
   MaskedRecording recording;
 };
@@ -186,23 +194,39 @@ TEST_F(ProgramTest, ScansAPlaceAndShowsItLater) {
   // A scan is a recording.
   ASSERT_EQ(Program::run({"run", room, "--out", recording.path("itself").string()}).exit_code, 0);
 
-  // Without the RGB-D camera.
-  const fs::path lone = recording.path("lone");
-  fs::copy(calendar, lone, fs::copy_options::recursive);
-  const std::string rig = read_text_file(lone / "rig.yaml", 1 << 20);
-  recording.write("lone/rig.yaml", rig.substr(0, rig.find("rgbd:")) + "rgbd: []\n");
-  const auto refused = Program::run({"run", lone.string(), "--out", recording.out()});
+  const std::string without_rgbd = lone(calendar);
+  const auto refused = Program::run({"run", without_rgbd, "--out", recording.out()});
   EXPECT_EQ(refused.exit_code, 1);
   EXPECT_THAT(refused.err, HasSubstr("memory: expected 'on', and a background"));
   EXPECT_FALSE(fs::exists(recording.out()));
   const auto outcome =
-      Program::run({"run", lone.string(), "--background", room, "--out", recording.out()});
+      Program::run({"run", without_rgbd, "--background", room, "--out", recording.out()});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("truly seen 0.0 %, remembered "));
   const auto summary = nlohmann::json::parse(read_text_file(out("summary.json"), 1 << 20));
   EXPECT_EQ(summary["options"]["memory"], "on");
   EXPECT_GT(summary["pixels"]["background"], 1000);
   EXPECT_EQ(summary["pixels"]["background"], summary["pixels"]["remembered"]);
+}
+
+TEST_F(ProgramTest, ScansWithLiveCameras) {
+  const std::string calendar = testing::recordings_dir() + "/calendar";
+  const std::string camera = "recording:" + calendar;
+  const std::string room = recording.path("room").string();
+  const auto scan = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"scan", calendar, "--out", room});
+    return Program::run(arguments);
+  };
+  EXPECT_THAT(scan({"--record", room}).err, HasSubstr("--record: expected live cameras"));
+  EXPECT_THAT(scan({"--rgbd", camera}).err, HasSubstr("--color: expected a camera"));
+  const auto scanned = scan({"--color", camera, "--rgbd", camera});
+  ASSERT_EQ(scanned.exit_code, 0) << scanned.err;
+  EXPECT_FALSE(fs::exists(room + ".recording"));
+  const auto outcome =
+      Program::run({"run", lone(calendar), "--background", room, "--out", recording.out()});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const auto summary = nlohmann::json::parse(read_text_file(out("summary.json"), 1 << 20));
+  EXPECT_GT(summary["pixels"]["background"], 1000);
 }
 
 TEST_F(ProgramTest, SaysWhatIsWrongWithABackground) {

@@ -104,14 +104,14 @@ void LiveSetup::add_output_flags(CLI::App& command) {
 LiveRun LiveSetup::start() const {
   const Rig rig = load_rig(rig_file());
   const Scene scene = load_scene(scene_file());
-  LiveRun run;
-  if (!record.empty()) {
-    run.recording = std::make_shared<RecordingWriter>(record, rig_file(), rig, scene_file(), scene);
-  }
   std::vector<LiveCamera> all = cameras(rig);
   if (draw_clock) all.front().uri = "clock:" + all.front().uri;
   LiveOptions with_background = live_options;
   with_background.background = background.load();
+  LiveRun run;
+  if (!record.empty()) {
+    run.recording = std::make_shared<RecordingWriter>(record, rig_file(), rig, scene_file(), scene);
+  }
   run.session = std::make_unique<LiveSession>(rig, scene, options, all, with_background);
   if (run.recording) {
     run.recording_listener = run.session->on_frame(
