@@ -15,8 +15,8 @@ struct WebServerOptions {
   std::string address = "127.0.0.1";
   /// 0: any free port.
   int port = 8080;
-  /// The token that requests must carry, as "Authorization: Bearer TOKEN" or "?token=TOKEN". Empty:
-  /// none.
+  /// The token that requests must carry, as "Authorization: Bearer TOKEN", "?token=TOKEN" or the
+  /// cookie that the page gets. Letters, digits and "-._~". Empty: none.
   std::string token;
   /// The folder for recordings, each in a folder of its own. Empty: recording is not allowed.
   std::filesystem::path recordings;

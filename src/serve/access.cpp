@@ -1,13 +1,24 @@
 #include "serve/access.h"
 
+#include <arpa/inet.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <random>
+#include <regex>
+#include <string_view>
 
 namespace diminish {
 
 bool is_loopback(const std::string& address) {
-  return address == "localhost" || address == "::1" || address.starts_with("127.");
+  constexpr unsigned char network = 127;
+  in_addr four{};
+  if (inet_pton(AF_INET, address.c_str(), &four) == 1) {
+    return reinterpret_cast<const unsigned char*>(&four)[0] == network;
+  }
+  in6_addr six{};
+  if (inet_pton(AF_INET6, address.c_str(), &six) == 1) return IN6_IS_ADDR_LOOPBACK(&six);
+  return address == "localhost";
 }
 
 std::string make_token() {
@@ -15,6 +26,12 @@ std::string make_token() {
   std::string token;
   for (int i = 0; i < 4; ++i) token += fmt::format("{:08x}", device());
   return token;
+}
+
+bool is_token(const std::string& text) {
+  return text.find_first_not_of(
+             "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-._~") ==
+         std::string::npos;
 }
 
 bool equals_secretly(const std::string& a, const std::string& b) {
@@ -27,13 +44,31 @@ bool equals_secretly(const std::string& a, const std::string& b) {
 }
 
 bool names_loopback(const std::string& host_header) {
-  std::string host = host_header;
-  if (host.starts_with('[')) {
-    host = host.substr(1, host.find(']') - 1);
-  } else {
-    host = host.substr(0, host.find(':'));
+  static const std::regex pattern(R"((?:\[([0-9A-Fa-f:.]+)\]|([^:\[\]]+))(?::\d{1,5})?)");
+  std::smatch parts;
+  if (!std::regex_match(host_header, parts, pattern)) return false;
+  const std::string host = parts[1].matched ? parts[1] : parts[2];
+  // An IPv6 address stands in brackets, and nothing else does.
+  return is_loopback(host) && parts[1].matched == (host.find(':') != std::string::npos);
+}
+
+bool is_same_site(const std::string& origin_header, const std::string& host_header) {
+  return origin_header.empty() || origin_header == "http://" + host_header ||
+         origin_header == "https://" + host_header;
+}
+
+std::string cookie_of(const std::string& cookie_header, const std::string& name) {
+  for (std::size_t begin = 0; begin < cookie_header.size();) {
+    const std::size_t end = std::min(cookie_header.find(';', begin), cookie_header.size());
+    const std::string_view pair(cookie_header.data() + begin, end - begin);
+    const std::size_t first = std::min(pair.find_first_not_of(' '), pair.size());
+    const std::size_t equals = pair.find('=');
+    if (equals != std::string_view::npos && pair.substr(first, equals - first) == name) {
+      return std::string(pair.substr(equals + 1));
+    }
+    begin = end + 1;
   }
-  return is_loopback(host);
+  return {};
 }
 
 }  // namespace diminish

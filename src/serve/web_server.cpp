@@ -42,6 +42,17 @@ void refuse(httplib::Response& response, int status, const std::string& why) {
   answer(response, {{"error", why}}, status);
 }
 
+/// What a browser may do with an answer: show it in this program's own page, with nothing from
+/// elsewhere.
+httplib::Headers page_rules() {
+  return {{"Content-Security-Policy",
+           "default-src 'self'; img-src 'self' blob: data:; base-uri 'none'; form-action 'none'; "
+           "frame-ancestors 'none'"},
+          {"X-Content-Type-Options", "nosniff"},
+          {"Cross-Origin-Resource-Policy", "same-origin"},
+          {"Referrer-Policy", "no-referrer"}};
+}
+
 std::string content_type(const std::string& file) {
   if (file.ends_with(".html")) return "text/html; charset=utf-8";
   if (file.ends_with(".css")) return "text/css; charset=utf-8";
@@ -83,6 +94,9 @@ struct WebServer::Implementation {
     if (!is_loopback(options.address) && options.token.empty()) {
       throw Error(options.address + ": an address that others can reach needs a token");
     }
+    if (!is_token(options.token)) {
+      throw Error("token: expected letters, digits, '-', '.', '_' and '~' only");
+    }
     // One thread for each viewer's pictures, one for its events, and some for short requests.
     const std::size_t threads = 2 * options.most_viewers + 8;
     server.new_task_queue = [threads] { return new httplib::ThreadPool(threads); };
@@ -96,6 +110,7 @@ struct WebServer::Implementation {
     server.set_keep_alive_timeout(1);
     server.set_write_timeout(write_timeout_s);
     server.set_payload_max_length(most_request_bytes);
+    server.set_default_headers(page_rules());
     add_routes();
     if (options.port == 0) {
       port = server.bind_to_any_port(options.address);
@@ -118,6 +133,9 @@ struct WebServer::Implementation {
   }
 
   void add_routes();
+  /// Browsers send a host's cookies to all of its ports.
+  std::string cookie_name() const { return fmt::format("diminish-{}", port); }
+  std::string given_token(const httplib::Request& request) const;
   httplib::Server::HandlerResponse check_access(const httplib::Request& request,
                                                 httplib::Response& response) const;
   /// Adds a viewer; answers with a refusal and returns nullptr if there are too many.
@@ -189,23 +207,39 @@ void WebServer::Implementation::add_routes() {
               [this](const auto& request, auto& response) { change_recording(request, response); });
 }
 
+std::string WebServer::Implementation::given_token(const httplib::Request& request) const {
+  const std::string bearer = "Bearer ";
+  const std::string header = request.get_header_value("Authorization");
+  if (header.starts_with(bearer)) return header.substr(bearer.size());
+  if (request.has_param("token")) return request.get_param_value("token");
+  return cookie_of(request.get_header_value("Cookie"), cookie_name());
+}
+
 httplib::Server::HandlerResponse WebServer::Implementation::check_access(
     const httplib::Request& request, httplib::Response& response) const {
   const auto handled = httplib::Server::HandlerResponse::Handled;
+  const std::string host = request.get_header_value("Host");
+  if (!is_same_site(request.get_header_value("Origin"), host)) {
+    refuse(response, 403, "Origin: expected this program's own page");
+    return handled;
+  }
   if (options.token.empty()) {
-    if (!names_loopback(request.get_header_value("Host"))) {
+    if (!names_loopback(host)) {
       refuse(response, 403, "Host: expected this machine's own name, such as localhost");
       return handled;
     }
   } else {
-    const std::string bearer = "Bearer ";
-    const std::string header = request.get_header_value("Authorization");
-    const std::string given = header.starts_with(bearer) ? header.substr(bearer.size())
-                                                         : request.get_param_value("token");
-    // The page's own files hold no secrets, and the page asks for the token.
-    const bool is_page = !request.path.starts_with("/api/");
-    if (!is_page && !equals_secretly(given, options.token)) {
+    const bool has_token = equals_secretly(given_token(request), options.token);
+    // The page's own files hold no secrets.
+    if (request.path.starts_with("/api/") && !has_token) {
       refuse(response, 401, "expected the token that diminish printed when it started");
+      return handled;
+    }
+    // From the first visit on a cookie holds the token: no history and no log then does.
+    if (request.path == "/" && request.has_param("token") && has_token) {
+      response.set_header("Set-Cookie", fmt::format("{}={}; HttpOnly; SameSite=Strict; Path=/",
+                                                    cookie_name(), options.token));
+      response.set_redirect("/", 303);
       return handled;
     }
   }

@@ -273,7 +273,17 @@ TEST_F(Web, SaysWhatIsRememberedAndForgetsOnRequest) {
 
 TEST_F(Web, RefusesOtherSites) {
   const WebServer server(session_, options());
-  EXPECT_EQ(client(server).Get("/api/status", {{"Host", "evil.example"}})->status, 403);
+  for (const char* host : {"evil.example", "127.0.0.1.evil.example", "[::1].evil.example"}) {
+    EXPECT_EQ(client(server).Get("/api/status", {{"Host", host}})->status, 403) << host;
+    EXPECT_EQ(client(server).Get("/", {{"Host", host}})->status, 403) << host;
+  }
+  const std::string own = "127.0.0.1:" + std::to_string(server.port());
+  const auto status_from = [&](const std::string& origin) {
+    return client(server).Get("/api/status", {{"Host", own}, {"Origin", origin}})->status;
+  };
+  EXPECT_EQ(status_from("http://" + own), 200);
+  EXPECT_EQ(status_from("http://" + own + ".evil.example"), 403);
+  EXPECT_EQ(status_from("null"), 403);
   const auto form = client(server).Post("/api/settings", "{\"mode\":\"half\"}", "text/plain");
   EXPECT_EQ(form->status, 415);
   EXPECT_EQ(session_.options().mode, "remove");
@@ -290,6 +300,33 @@ TEST_F(Web, WithATokenNothingIsToldWithoutIt) {
   }
   EXPECT_EQ(client(server).Get("/api/status?token=sesame")->status, 200);
   EXPECT_EQ(client(server).Get("/api/status", {{"Authorization", "Bearer sesame"}})->status, 200);
+}
+
+TEST_F(Web, ACookieKeepsTheTokenOutOfAddresses) {
+  WebServerOptions secret = options();
+  secret.token = "sesame";
+  const WebServer server(session_, secret);
+  EXPECT_FALSE(client(server).Get("/?token=sesam")->has_header("Set-Cookie"));
+  const auto first = client(server).Get("/?token=sesame");
+  EXPECT_EQ(first->status, 303);
+  EXPECT_EQ(first->get_header_value("Location"), "/");
+  const std::string set = first->get_header_value("Set-Cookie");
+  EXPECT_THAT(set, HasSubstr("; HttpOnly; SameSite=Strict"));
+  const std::string cookie = set.substr(0, set.find(';'));
+  EXPECT_EQ(client(server).Get("/api/status", {{"Cookie", cookie}})->status, 200);
+  EXPECT_EQ(client(server).Get("/api/status", {{"Cookie", cookie + "x"}})->status, 401);
+}
+
+TEST_F(Web, ForbidsOtherPagesToShowIt) {
+  const WebServer server(session_, options());
+  for (const char* path : {"/", "/api/status", "/viewer.js", "/missing"}) {
+    const auto answer = client(server).Get(path);
+    EXPECT_THAT(answer->get_header_value("Content-Security-Policy"),
+                HasSubstr("frame-ancestors 'none'"))
+        << path;
+    EXPECT_EQ(answer->get_header_value("X-Content-Type-Options"), "nosniff") << path;
+    EXPECT_EQ(answer->get_header_value("Cross-Origin-Resource-Policy"), "same-origin") << path;
+  }
 }
 
 TEST_F(Web, AnOpenAddressNeedsAToken) {

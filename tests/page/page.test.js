@@ -213,6 +213,23 @@ test("a marker that is hidden is said in the warning bar", async () => {
   await rm(hidden, { recursive: true });
 });
 
+test("the token leaves the address, and the page still works", async () => {
+  const secret = await serve(path.join(recordings, "calendar"), "--token", "sesame");
+  const page = await open(secret.url);
+  const violations = [];
+  page.on("console", (message) => { if (message.type() === "error") violations.push(message.text()); });
+  assert.equal(new URL(page.url()).search, "");
+  await page.reload();
+  await page.waitForSelector("#picture[data-frame]", { ...patience, state: "attached" });
+  const first = await frameNumber(page);
+  await eventually(async () => (await frameNumber(page)) > first + 2, "more frames");
+  const [still] = await Promise.all([page.waitForEvent("download"), page.locator("#still").click()]);
+  assert.equal(still.suggestedFilename(), "diminish.png");
+  assert.deepEqual([page.errors, violations], [[], []]);
+  await page.close();
+  await secret.stop();
+});
+
 test("it fits a phone", async () => {
   const page = await open(server.url, { viewport: { width: 390, height: 844 }, isMobile: true, hasTouch: true });
   const width = await page.evaluate(() => document.documentElement.scrollWidth);

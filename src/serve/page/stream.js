@@ -1,13 +1,5 @@
-// The program's own addresses, with the token that this page was opened with, if any.
-const token = new URLSearchParams(location.search).get("token");
-const headers = token ? { Authorization: `Bearer ${token}` } : {};
-
-export function addressWithToken(path) {
-  return token ? `${path}${path.includes("?") ? "&" : "?"}token=${encodeURIComponent(token)}` : path;
-}
-
 export async function get(path) {
-  const response = await fetch(path, { headers });
+  const response = await fetch(path);
   const json = await response.json();
   if (!response.ok) throw new Error(json.error);
   return json;
@@ -16,7 +8,7 @@ export async function get(path) {
 export async function post(path, body) {
   const response = await fetch(path, {
     method: "POST",
-    headers: { ...headers, "Content-Type": "application/json" },
+    headers: { "Content-Type": "application/json" },
     body: JSON.stringify(body),
   });
   const json = await response.json();
@@ -44,7 +36,7 @@ function join(a, b) {
 // The pictures of a multipart stream as they come, each {number, blob}. Reading slowly makes the
 // program send fewer.
 export async function* pictures(path, signal) {
-  const response = await fetch(path, { headers, signal });
+  const response = await fetch(path, { signal });
   if (!response.ok) throw new Error((await response.json()).error);
   const reader = response.body.getReader();
   let waiting = new Uint8Array(0);

@@ -1,4 +1,4 @@
-import { addressWithToken, get, pictures, post } from "./stream.js";
+import { get, pictures, post } from "./stream.js";
 
 const element = (id) => document.getElementById(id);
 const stageColors = ["#4db6ac", "#81c784", "#90a4ae", "#b0bec5", "#9575cd", "#7986cb",
@@ -237,9 +237,8 @@ async function command(path, body) {
 }
 element("record").onclick = ({ target }) => command("api/recording", { active: !target.classList.contains("recording") });
 element("forget").onclick = () => command("api/memory", { forget: true });
-element("still").href = addressWithToken("api/frame.png");
 
-const events = new EventSource(addressWithToken("api/events"));
+const events = new EventSource("api/events");
 events.onmessage = ({ data }) => showStatus(JSON.parse(data));
 events.onerror = () => {
   const warnings = element("warnings");
