@@ -6,9 +6,11 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <optional>
 #include <sstream>
 #include <string>
 
+#include "core/text.h"
 #include "diminish/error.h"
 
 namespace diminish {
@@ -32,10 +34,9 @@ std::vector<StampedPose> read_pose_list(std::istream& stream, const std::filesys
     std::string text;
     std::size_t count = 0;
     while (fields >> text) {
-      char* end = nullptr;
-      const double value = std::strtod(text.c_str(), &end);
-      if (*end != '\0' || !std::isfinite(value)) fail("expected a finite number");
-      if (count < v.size()) v[count] = value;
+      const std::optional<double> value = parse_number(text);
+      if (!value) fail("expected a finite number");
+      if (count < v.size()) v[count] = *value;
       ++count;
     }
     if (count == 0) continue;
