@@ -12,6 +12,7 @@
 
 #include "core/mat.h"
 #include "diminish/error.h"
+#include "source/image_header.h"
 
 namespace diminish {
 namespace {
@@ -30,9 +31,20 @@ bool is_cut_short(const std::vector<std::uint8_t>& bytes) {
   return is_jpeg && (last(image_end) == bytes.end() || last(image_end) < last(scan_start));
 }
 
+/// More than any camera has.
+constexpr std::int64_t most_pixels = 1 << 28;
+
+std::int64_t pixels_of(const cv::Size& size) {
+  return static_cast<std::int64_t>(size.width) * size.height;
+}
+
 cv::Mat decode_with(const std::vector<std::uint8_t>& bytes, int flags) {
   if (bytes.empty()) throw Error(Error::input, "the file is empty");
   if (is_cut_short(bytes)) throw Error(Error::input, "the file is cut short");
+  if (const auto size = declared_size(bytes); size && pixels_of(*size) > most_pixels) {
+    throw Error(Error::input, fmt::format("expected at most {} million pixels, got {}x{}",
+                                          most_pixels / 1'000'000, size->width, size->height));
+  }
   cv::Mat image;
   try {
     image = cv::imdecode(bytes, flags);
