@@ -71,7 +71,8 @@ struct Pipeline::Implementation {
                 camera_poses.needs_markers() || occluders.needs_markers()),
         depth(rig),
         sampler(rig),
-        refinement(rig.color),
+        refinement(rig.color, PoseRefinement::usual_width, PoseRefinement::usual_last_step, false,
+                   PoseRefinement::usual_coarser),
         background(rig.color),
         backend(rig),
         memory(rig) {}

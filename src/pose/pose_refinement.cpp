@@ -30,23 +30,22 @@ RigidTransform exponential(const Eigen::Matrix<double, 6, 1>& twist) {
 }  // namespace
 
 PoseRefinement::PoseRefinement(const Intrinsics& color, int small_width, float last_step,
-                               bool extrapolates)
-    : color_(color),
-      projection_(Lens(color)),
-      shrinkage_(std::max(1, (color.width + small_width / 2) / small_width)),
-      last_step_(last_step),
-      extrapolates_(extrapolates),
+                               bool extrapolates, int coarser)
+    : projection_(Lens(color)),
+      coarser_(coarser),
+      fine_{std::max(1, (color.width + small_width / 2) / small_width), most_points, last_step,
+            extrapolates},
       lines_(256) {}
 
 /// The brightness around each sample that may be in the picture, over about the area of a pixel of
 /// the small one.
 void PoseRefinement::collect(const FrameSet& frame, const std::vector<SceneSample>& samples) {
   constexpr int reach = 2;
-  const int spacing = shrinkage_ / 2;
+  const int spacing = level_.shrinkage / 2;
   const int rim = reach * spacing;
   const Rect picture = frame.color.bounds();
   points_.clear();
-  const std::size_t step = (samples.size() + most_points - 1) / most_points;
+  const std::size_t step = (samples.size() + level_.most_points - 1) / level_.most_points;
   for (std::size_t i = 0; i < samples.size(); i += step) {
     const SceneSample& sample = samples[i];
     if (!picture.contains(static_cast<int>(sample.pixel.x()), static_cast<int>(sample.pixel.y()))) {
@@ -93,9 +92,9 @@ std::size_t PoseRefinement::linearise(const RigidTransform& correction) {
   const Eigen::Matrix3f r = correction.rotation.cast<float>();
   const Eigen::Vector3f t = correction.translation.cast<float>();
   const Projection& lens = projection_;
-  const float scale = 1 / static_cast<float>(shrinkage_);
+  const float scale = 1 / static_cast<float>(level_.shrinkage);
   // Of the four pixels that make one of the small picture.
-  const float center = static_cast<float>(shrinkage_ / 2) / 2;
+  const float center = static_cast<float>(level_.shrinkage / 2) / 2;
   const auto last_column = static_cast<float>(small_.width() - 2);
   const auto last_row = static_cast<float>(small_.height() - 2);
   const auto linearise_some = [&](Points& points) {
@@ -247,26 +246,44 @@ PoseRefinement::Twist PoseRefinement::further(const Twist& step, const Twist& la
 
 std::optional<RigidTransform> PoseRefinement::refine(const FrameSet& frame, const Mask& occlusion,
                                                      const SceneSamples& scene) {
-  const std::vector<SceneSample>& samples = scene.surfaces;
-  const int smallest_side = 8 * shrinkage_;
-  if (std::min(frame.color.width(), frame.color.height()) < smallest_side) return std::nullopt;
-  if (samples.size() < fewest_points) return std::nullopt;
-  small_.begin(frame.color, occlusion, shrinkage_);
-  collect(frame, samples);
-  std::fill(lines_.begin(), lines_.end(), Line{});
+  if (scene.surfaces.size() < fewest_points) return std::nullopt;
+  Estimate estimate;
+  for (int coarser = coarser_; coarser > 0; --coarser) {
+    level_ = {fine_.shrinkage << coarser, fine_.most_points / 2, 5 * fine_.last_step, true};
+    if (!begin_level(frame, occlusion, scene) || !iterate(most_iterations, estimate)) estimate = {};
+  }
+  level_ = fine_;
+  if (!begin_level(frame, occlusion, scene)) return std::nullopt;
+  // The pose as it was measured is to be bettered.
+  Estimate measured;
+  if (!iterate(0, measured) || !iterate(most_iterations, estimate)) return std::nullopt;
+  if (!(estimate.cost < measured.cost) ||
+      estimate.twist.head<3>().norm() > largest_deviations * translation_deviation_m ||
+      estimate.twist.tail<3>().norm() > largest_deviations * rotation_deviation) {
+    return std::nullopt;
+  }
+  return estimate.correction;
+}
 
+bool PoseRefinement::begin_level(const FrameSet& frame, const Mask& occlusion,
+                                 const SceneSamples& scene) {
+  const int smallest_side = 8 * level_.shrinkage;
+  if (std::min(frame.color.width(), frame.color.height()) < smallest_side) return false;
+  small_.begin(frame.color, occlusion, level_.shrinkage);
+  collect(frame, scene.surfaces);
+  std::fill(lines_.begin(), lines_.end(), Line{});
+  return true;
+}
+
+bool PoseRefinement::iterate(int iterations, Estimate& estimate) {
   Twist prior;
   prior.head<3>().setConstant(1 / (translation_deviation_m * translation_deviation_m));
   prior.tail<3>().setConstant(1 / (rotation_deviation * rotation_deviation));
-  RigidTransform correction;
-  Twist total = Twist::Zero();
   Twist last = Twist::Zero();
-  float first_cost = 0;
-  float cost = 0;
   float scale = 0;
   for (int iteration = 0;; ++iteration) {
-    const std::size_t seen = linearise(correction);
-    if (seen < fewest_points) return std::nullopt;
+    const std::size_t seen = linearise(estimate.correction);
+    if (seen < fewest_points) return false;
     if (iteration == 0) {
       for (Points& points : points_) points.weight = points.is_seen;
     } else {
@@ -282,25 +299,18 @@ std::optional<RigidTransform> PoseRefinement::refine(const FrameSet& frame, cons
       weigh(scale);
     }
     Equations equations = add_up();
-    cost = equations.cost / static_cast<float>(seen);
-    if (iteration == 0) first_cost = cost;
-    if (iteration == most_iterations) break;
+    estimate.cost = equations.cost / static_cast<float>(seen);
+    if (iteration == iterations) return true;
     const Twist held = prior * (scale * scale / independent_share);
     equations.squares.diagonal() += held;
-    equations.products -= held.cwiseProduct(total);
+    equations.products -= held.cwiseProduct(estimate.twist);
     Twist step = equations.solve();
-    if (extrapolates_) step = further(step, last);
-    if (step.cwiseAbs().maxCoeff() < last_step_) break;
+    if (level_.extrapolates) step = further(step, last);
+    if (step.cwiseAbs().maxCoeff() < level_.last_step) return true;
     last = step;
-    total += step;
-    correction = exponential(step.cast<double>()) * correction;
+    estimate.twist += step;
+    estimate.correction = exponential(step.cast<double>()) * estimate.correction;
   }
-  if (!(cost < first_cost) ||
-      total.head<3>().norm() > largest_deviations * translation_deviation_m ||
-      total.tail<3>().norm() > largest_deviations * rotation_deviation) {
-    return std::nullopt;
-  }
-  return correction;
 }
 
 void PoseRefinement::apply(const RigidTransform& correction, Poses& poses,

@@ -22,19 +22,23 @@ namespace diminish {
 ///
 /// Direct alignment: brightness at the samples' projections must equal, but for gain and offset,
 /// what the RGB-D camera saw there (Gauss-Newton on 6 degrees of freedom with robust weights, as in
-/// Kerl, Sturm & Cremers 2013), in a shrunk picture. The pose that
-/// was measured is held to within its uncertainty.
+/// Kerl, Sturm & Cremers 2013), in shrunk pictures, the
+/// smallest first. The pose that was measured is held to within its uncertainty.
 class PoseRefinement {
  public:
   static constexpr int usual_width = 320;
   /// Smaller steps move no pixel by a tenth.
   static constexpr float usual_last_step = 1e-4F;
+  /// From 80 pixels' width on, an error of 16 pixels in 1280 is one of a pixel.
+  static constexpr int usual_coarser = 2;
 
   /// small_width: about what the picture is shrunk to, to blur what is misplaced by a few pixels
   /// into one another. last_step: smaller ones end the iteration, in metres and radians.
-  /// extrapolates: gets there in fewer steps, by going further than each says.
+  /// extrapolates: gets there in fewer steps, by going further than each says. coarser: how many
+  /// pictures, each half as wide as the next, are aligned before.
   explicit PoseRefinement(const Intrinsics& color, int small_width = usual_width,
-                          float last_step = usual_last_step, bool extrapolates = false);
+                          float last_step = usual_last_step, bool extrapolates = false,
+                          int coarser = 0);
 
   /// Returns how the colour camera's frame moves: color_from_measured_color. Nothing where no
   /// correction is taken: it must explain the picture better, and be small. Cost: about 0.2 us a
@@ -65,6 +69,18 @@ class PoseRefinement {
   struct Line {
     float gain = 1, offset = 0;
   };
+  /// How one shrunk picture is aligned.
+  struct Level {
+    int shrinkage;
+    std::size_t most_points;
+    float last_step;
+    bool extrapolates;
+  };
+  struct Estimate {
+    RigidTransform correction;
+    Twist twist = Twist::Zero();  ///< the sum of the steps
+    float cost = 0;
+  };
   struct Equations : NormalEquations<float> {
     float cost = 0;
   };
@@ -72,6 +88,10 @@ class PoseRefinement {
   /// Robust weights and gains follow slowly: where steps go on in the same direction, as far as
   /// they would go in the end.
   static Twist further(const Twist& step, const Twist& last);
+  /// Shrinks the picture and collects points. False if the picture is too small.
+  bool begin_level(const FrameSet& frame, const Mask& occlusion, const SceneSamples& scene);
+  /// Betters the estimate, and finds its cost. False if the colour camera sees too few points.
+  bool iterate(int iterations, Estimate& estimate);
   void collect(const FrameSet& frame, const std::vector<SceneSample>& samples);
   void add(const Eigen::Vector3f& point_m, float brightness, std::uint8_t source);
   /// Returns how many points the colour camera sees.
@@ -84,11 +104,9 @@ class PoseRefinement {
   void weigh(float scale);
   Equations add_up() const;
 
-  Intrinsics color_;
   Projection projection_;
-  int shrinkage_;
-  float last_step_;
-  bool extrapolates_;
+  int coarser_;
+  Level fine_, level_;  ///< the last one; the one at hand
   ShrunkPicture small_;
   std::vector<Points> points_;
   std::vector<float> magnitudes_;

@@ -87,6 +87,29 @@ TEST_F(PoseRefinementTest, FindsBackByFurtherSteps) {
   EXPECT_LT(error_px(poses), before / 4);
 }
 
+// As far off as a tracker that was mounted by eye: nothing lies within its neighbourhood any more.
+TEST_F(PoseRefinementTest, FindsBackFromFarByTheSmallestPictureFirst) {
+  RigidTransform far;
+  far.rotation = Eigen::AngleAxisd(0.028, Eigen::Vector3d(1, -2, 0.5).normalized()).matrix();
+  Poses poses = frame.poses;
+  poses.color_from_depth[0] = far * *poses.color_from_depth[0];
+  poses.color_from_world = far * *poses.color_from_world;
+  const double before = error_px(poses);
+  SceneSamples samples;
+  SceneSampler(frame.rig).sample(frame.frame, poses, masks, samples);
+  const auto left_px = [&](int coarser) {
+    PoseRefinement refinement(frame.rig.color, PoseRefinement::usual_width,
+                              PoseRefinement::usual_last_step, false, coarser);
+    const auto correction = refinement.refine(frame.frame, masks.color, samples);
+    Poses refined = poses;
+    SceneSamples moved = samples;
+    if (correction) refinement.apply(*correction, refined, moved);
+    return error_px(refined);
+  };
+  EXPECT_GT(left_px(0), before / 2);
+  EXPECT_LT(left_px(PoseRefinement::usual_coarser), before / 8);
+}
+
 TEST_F(PoseRefinementTest, FindsBackThroughEveryLens) {
   for (const LensModel model : {LensModel::rational, LensModel::fisheye}) {
     SCOPED_TRACE(name_of(model));

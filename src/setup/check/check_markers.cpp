@@ -16,6 +16,8 @@ namespace {
 using Severity = Finding::Severity;
 
 constexpr double small_marker_px = 40;
+/// Of the frames: a camera whose world marker is seen in fewer is missed.
+constexpr double least_share = 0.9;
 
 bool sees_known_markers(const SensorSurvey& sensor) {
   return !sensor.markers.empty();
@@ -110,14 +112,14 @@ void check_world_marker(Diagnosis& setup, const SensorSurvey& sensor, std::size_
   const std::size_t count = statistics == sensor.markers.end() ? 0 : statistics->second.count;
   setup.note(fmt::format("{}: frames with the world marker", sensor.name),
              static_cast<double>(count), "");
-  if (2 * count >= sensor.images) return;
+  if (static_cast<double>(count) >= least_share * static_cast<double>(sensor.images)) return;
   if (count == 0) {
     setup.mark_unusable(index);
     if (check_too_small(setup, sensor, index, id)) return;
   }
   setup.find(
       count == 0 ? Severity::serious : Severity::warning, "marker-not-visible",
-      fmt::format("world marker {} is {} visible in {}", id, count == 0 ? "never" : "rarely",
+      fmt::format("world marker {} is {} visible in {}", id, count == 0 ? "never" : "not always",
                   sensor.name),
       fmt::format("{} of {} frames", count, sensor.images),
       "turn the camera or move the marker until every camera sees all of it; check its id and "
@@ -141,7 +143,11 @@ void check_marker_sizes(Diagnosis& setup, const SensorSurvey& sensor) {
 }  // namespace
 
 void check_markers(Diagnosis& setup) {
-  if (setup.sizes.empty()) return;
+  const int world = setup.scene.world_marker.id;
+  const bool has_world = setup.scene.world_marker.size_m > 0;
+  const bool needs_world = has_world && setup.rig.pose_source == "marker";
+  const bool only_world = has_world && setup.sizes.size() == 1;
+  if (setup.sizes.empty() || (only_world && !needs_world)) return;
   const auto all = setup.sensors();
   const bool any = std::any_of(all.begin(), all.end(), [&](const SensorSurvey* sensor) {
     return sees_known_markers(*sensor);
@@ -156,14 +162,13 @@ void check_markers(Diagnosis& setup) {
     for (std::size_t s = 0; s < all.size(); ++s) setup.mark_unusable(s);
     if (check_dictionary(setup)) return;
   }
-  const bool needs_world = setup.rig.pose_source == "marker" && setup.scene.world_marker.size_m > 0;
   for (std::size_t s = 0; s < all.size(); ++s) {
     if (all[s]->images == 0 || mirrored.count(s) > 0) continue;
     if (needs_world) check_world_marker(setup, *all[s], s);
     check_marker_sizes(setup, *all[s]);
   }
   for (const auto& [id, size] : setup.sizes) {
-    if (needs_world && id == setup.scene.world_marker.id) continue;
+    if (has_world && id == world) continue;
     const bool seen = std::any_of(all.begin(), all.end(), [&, marker = id](const auto* sensor) {
       return sensor->markers.count(marker) > 0;
     });

@@ -22,6 +22,7 @@ SetupReport check_setup(const Rig& rig, const Scene& scene, FrameSource& source,
   check_focal_length(setup);
   check_clocks(setup);
   if (!fixed) check_between_cameras(setup);
+  check_pose_bias(setup);
   std::vector<Finding>& findings = setup.report.findings;
   std::stable_sort(findings.begin(), findings.end(),
                    [](const Finding& a, const Finding& b) { return a.severity > b.severity; });

@@ -255,6 +255,19 @@ TEST(CheckSetup, WarnsOfImagesThatAreTooDarkOrTooBright) {
   EXPECT_THAT(codes, ::testing::Contains("overexposed"));
 }
 
+// In a quarter of the frames: often enough to stop the picture, not often enough to be noticed.
+TEST(CheckSetup, WarnsOfAWorldMarkerThatIsHiddenNowAndThen) {
+  const Copy copy("calendar");
+  int image = 0;
+  copy.change("rgbd0/color", [&](cv::Mat& picture) {
+    if (++image % 4 == 0) picture.setTo(cv::Scalar(90, 90, 90));
+  });
+  const SetupReport report = copy.check();
+  ASSERT_EQ(report.findings.size(), 1U) << describe(report);
+  EXPECT_EQ(report.findings[0].code, "marker-not-visible");
+  EXPECT_THAT(report.findings[0].what, HasSubstr("not always visible in rgbd0"));
+}
+
 TEST(CheckProgram, SaysItOnTheTerminalAndAsJson) {
   const Copy copy("ball");
   const std::string json = (copy.path() / "report.json").string();

@@ -18,5 +18,8 @@ void check_between_cameras(Diagnosis& setup);
 /// pictures agree only with the right focal length.
 void check_focal_length(Diagnosis& setup);
 void check_clocks(Diagnosis& setup);
+/// Whether the refinement of poses moves the colour camera the same way in every frame: that is a
+/// wrong calibration, not noise.
+void check_pose_bias(Diagnosis& setup);
 
 }  // namespace diminish
