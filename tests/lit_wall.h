@@ -14,18 +14,20 @@ struct LitWall {
   LitWall() {
     plane = {(color_from_world.rotation * Eigen::Vector3d::UnitZ()).cast<float>(), 0};
     plane.distance_m = plane.normal.dot(color_from_world.translation.cast<float>());
-    for (double x = -0.9; x < 0.9; x += 0.04) {
-      for (double y = -0.7; y < 0.7; y += 0.04) add_sample({x, y, 0});
+    for (int x = 0; x < 45; ++x) {
+      for (int y = 0; y < 35; ++y) add_sample({0.04 * x - 0.9, 0.04 * y - 0.7, 0});
     }
     const Eigen::Vector3d size = scene.box_max - scene.box_min;
-    for (double u = 0; u <= 1; u += 0.1) {
-      for (double v = 0; v <= 1; v += 0.1) {
+    for (int i = 0; i <= 10; ++i) {
+      for (int j = 0; j <= 10; ++j) {
+        const double u = 0.1 * i;
+        const double v = 0.1 * j;
         // The faces that cameras in front of it may see.
         for (const Eigen::Vector3d& at :
              {Eigen::Vector3d(u, v, 1), Eigen::Vector3d(0, u, v), Eigen::Vector3d(1, u, v),
               Eigen::Vector3d(u, 1, v), Eigen::Vector3d(u, 0, v)}) {
           const Eigen::Vector3d point = scene.box_min + size.cwiseProduct(at);
-          box_points.push_back((color_from_world * point).cast<float>());
+          box_points.emplace_back((color_from_world * point).cast<float>());
         }
       }
     }
