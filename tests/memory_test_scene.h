@@ -69,7 +69,7 @@ class MemoryTest : public ::testing::Test {
     OccluderReport report;
     if (moment.is_lost) report.message = "board: not found";
     const RecallInputs inputs{now.frame, now.poses, masks, moment.object, region, options};
-    memory.recall(inputs, samples, {report}, memory_report = {});
+    memory.recall(inputs, samples, {report}, nullptr, memory_report = {});
     memory.merge(inputs, maps, result, memory_report);
     return result;
   }

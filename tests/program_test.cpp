@@ -195,7 +195,8 @@ TEST_F(ProgramTest, ScansAPlaceAndShowsItLater) {
   ASSERT_EQ(Program::run({"run", room, "--out", recording.path("itself").string()}).exit_code, 0);
 
   const std::string without_rgbd = lone(calendar);
-  const auto refused = Program::run({"run", without_rgbd, "--out", recording.out()});
+  const auto refused =
+      Program::run({"run", without_rgbd, "--out", recording.out(), "--memory", "off"});
   EXPECT_EQ(refused.exit_code, 1);
   EXPECT_THAT(refused.err, HasSubstr("memory: expected 'on', and a background"));
   EXPECT_FALSE(fs::exists(recording.out()));

@@ -5,18 +5,15 @@
 namespace diminish {
 
 void Background::add_flag(CLI::App& command, Options& options) {
-  const CLI::Option* memory = command.get_option("--memory");
   command
       .add_option_function<std::string>(
           "--background",
-          [this, &options, memory](const std::string& folder) {
+          [this, &options](const std::string& folder) {
             folder_ = folder;
-            if (memory->count() == 0) options.memory = "on";
             if (options.memory == "off")
               throw CLI::ValidationError("--background", "needs --memory on");
           },
-          "What was seen of the place before: a folder that `diminish scan` made. Switches "
-          "--memory on")
+          "What was seen of the place before: a folder that `diminish scan` made")
       ->type_name("FOLDER");
 }
 

@@ -31,7 +31,7 @@ struct Options {
   int surroundings_px = 16;
   bool whole_view = false;
   std::string color_correct = "field_membrane";
-  std::string memory = "off";
+  std::string memory = "on";
   double memory_max_age_s = 60;
   std::string inpaint = "structure";
   int inpaint_radius_px = 5;

@@ -51,8 +51,9 @@ constexpr std::array<Step, QualityLadder::last_level> steps = {{
        o.merge_cameras = "choose";
      }},
     {"shadows not lifted", [](Options& o) { o.lift_shadows = false; }},
-    {"poses not refined, depth not cleaned",
+    {"poses not refined, depth not cleaned, nothing remembered",
      [](Options& o) {
+       o.memory = "off";
        o.refine_poses = false;
        o.smooth_depth = false;
        o.remove_flying = false;

@@ -2,7 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 #include "diminish/frame_source.h"
 #include "expect_error.h"
@@ -43,6 +45,15 @@ class Writer : public ::testing::TestWithParam<const char*> {
                                              source_ / "scene.yaml", recording_.scene);
   }
 
+  /// No frame comes before the last one is written, so that none is dropped, however slow the disk.
+  static void offer_and_wait(RecordingWriter& writer, const std::shared_ptr<LiveFrame>& frame) {
+    const std::size_t before = writer.status().frames;
+    writer.offer(frame);
+    while (writer.status().frames == before && writer.status().problem.empty()) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  }
+
   std::filesystem::path source_ = recordings / GetParam();
   Recording recording_ = load_recording(source_);
   TemporaryFolder folder_;
@@ -56,12 +67,12 @@ TEST_P(Writer, WhatIsWrittenIsReadAgain) {
     for (const FrameSet& frame : original) {
       auto live = std::make_shared<LiveFrame>();
       live->input = frame;
-      writer->offer(live);
-      writer->offer(live);  // as when two frames share an RGB-D image
+      offer_and_wait(*writer, live);
+      offer_and_wait(*writer, live);  // as when two frames share an RGB-D image
     }
     writer->finish();
     EXPECT_EQ(writer->status().problem, "");
-    EXPECT_EQ(writer->status().frames + writer->status().dropped, 2 * original.size());
+    EXPECT_EQ(writer->status().frames, 2 * original.size());
   }
   const std::vector<FrameSet> read = frames_of(copy);  // with what scene.yaml names
   ASSERT_EQ(read.size(), original.size());

@@ -52,7 +52,8 @@ auto MemoryStage::in_turn(const Work& work) {
 }
 
 void MemoryStage::recall(const RecallInputs& inputs, const SceneSamples& samples,
-                         const std::vector<OccluderReport>& objects, MemoryReport& report) {
+                         const std::vector<OccluderReport>& objects,
+                         const std::function<void()>& sample, MemoryReport& report) {
   recalled_ = 0;
   poses_ = anchored(inputs.poses);
   if (!poses_.color_from_world) return;
@@ -62,7 +63,11 @@ void MemoryStage::recall(const RecallInputs& inputs, const SceneSamples& samples
     SceneMemory& memory = *shared_->memory;
     const bool is_anchored = !inputs.poses.color_from_world;
     const std::size_t recalled = memory.recall(anchored_inputs, is_anchored, recollections_);
-    memory.learn(anchored_inputs, samples, objects);
+    const std::function<void()> sample_and_anchor = [&] {
+      sample();
+      poses_ = anchored(inputs.poses);
+    };
+    memory.learn(anchored_inputs, samples, objects, sample ? sample_and_anchor : nullptr);
     report.keyframes = memory.keyframes();
     report.bytes = memory.bytes();
     return recalled;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -24,10 +25,12 @@ class MemoryStage {
   void end_turn() { turn_.end(); }
 
   /// Recalls and learns when it is this frame's turn, and ends it. Then draws what it recalls, at
-  /// the same time as other frames. samples, objects: of this frame, to learn from. report: comes
-  /// empty.
+  /// the same time as other frames. samples, objects: of this frame, to learn from. sample: makes
+  /// the samples and refines inputs.poses; called if this frame is learnt from. Empty: that is
+  /// done. report: comes empty.
   void recall(const RecallInputs& inputs, const SceneSamples& samples,
-              const std::vector<OccluderReport>& objects, MemoryReport& report);
+              const std::vector<OccluderReport>& objects, const std::function<void()>& sample,
+              MemoryReport& report);
   /// Stage::merging. inputs: as in recall(). color_maps: of the RGB-D cameras.
   void merge(const RecallInputs& inputs, ColorMapsBySource color_maps,
              Reconstruction& reconstruction, MemoryReport& report);

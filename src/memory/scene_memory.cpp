@@ -167,7 +167,8 @@ void SceneMemory::leave_out_objects(Keyframe& keyframe) {
 }
 
 void SceneMemory::learn(const RecallInputs& inputs, const SceneSamples& samples,
-                        const std::vector<OccluderReport>& objects) {
+                        const std::vector<OccluderReport>& objects,
+                        const std::function<void()>& sample) {
   const FrameSet& frame = inputs.frame;
   const bool lost = has_just_lost(objects, frame.stamp_s);
   if (lost || has_jumped_ || !is_worth_a_keyframe(inputs)) return;
@@ -175,6 +176,7 @@ void SceneMemory::learn(const RecallInputs& inputs, const SceneSamples& samples,
   const bool sees = std::any_of(testimonies_.begin(), testimonies_.end(),
                                 [](const Testimony& testimony) { return testimony.is_given; });
   if (!sees) return;
+  if (sample) sample();
   last_keyframe_s_ = frame.stamp_s;
   last_keyframe_from_world_ = inputs.poses.color_from_world;
   last_objects_ = inputs.objects;

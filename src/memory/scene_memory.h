@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -28,9 +29,9 @@ class SceneMemory {
   /// Takes a keyframe if there is something new; what that costs is spread over this frame and the
   /// next two, after which the keyframe is used. (They recall, so that the result does not depend
   /// on threads; within 0.1 s, however few frames come.) objects: the reports about the objects to
-  /// remove.
+  /// remove. sample: as in MemoryStage::recall.
   void learn(const RecallInputs& inputs, const SceneSamples& samples,
-             const std::vector<OccluderReport>& objects);
+             const std::vector<OccluderReport>& objects, const std::function<void()>& sample);
 
   /// All, the background too.
   void forget();

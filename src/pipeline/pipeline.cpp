@@ -3,6 +3,7 @@
 
 #include <oneapi/tbb/task_arena.h>
 
+#include <functional>
 #include <vector>
 
 #include "composite/compositor.h"
@@ -95,10 +96,9 @@ struct Pipeline::Implementation {
     if (options.whole_view) return whole;
     return intersect(grow(occluders.objects(), options.surroundings_px), whole);
   }
-  /// Whether anything is to be drawn, or learnt. A shadow may be in view without its object.
+  /// Whether anything is to be drawn. A shadow may be in view without its object.
   bool looks_at_scene() const {
-    return options.whole_view || options.remove_shadows || methods.remembers ||
-           !occluders.objects().empty();
+    return options.whole_view || options.remove_shadows || !occluders.objects().empty();
   }
   Background::Wanted wanted_background() const {
     const bool shadows = options.lift_shadows || options.remove_shadows;
@@ -267,12 +267,20 @@ void Pipeline::Implementation::process(const FrameSet& frame, DiminishedFrame& r
   const auto draw = [&] { stage(Stage::drawing, [&] { backend.draw(drawing, result); }); };
   // Not in the paper: what the colour camera saw earlier
   const RecallInputs recalling{frame, report.poses, masks, objects, region, options};
+  const bool looks = looks_at_scene();
+  const auto sample = [&] {
+    stage(Stage::samples, [&] { sampler.sample(frame, measured_poses, masks, samples); });
+    stage(Stage::refinement, [&] { refine_poses(frame, report.poses); });
+  };
   const auto recall = [&] {
     stage(Stage::memory, [&] {
-      if (methods.remembers) memory.recall(recalling, samples, report.occluders, report.memory);
+      if (!methods.remembers) return;
+      // Where nothing is drawn, samples are taken only for a keyframe.
+      const std::function<void()> sample_now = [&sample] { sample(); };
+      memory.recall(recalling, samples, report.occluders, looks ? nullptr : sample_now,
+                    report.memory);
     });
   };
-  const bool looks = looks_at_scene();
   // What is learnt of the scene may be needed only after the drawing: then both are done together.
   const bool learns_while_drawing = looks && backend.only_draws() && !options.remove_shadows;
   if (looks) {
@@ -284,8 +292,7 @@ void Pipeline::Implementation::process(const FrameSet& frame, DiminishedFrame& r
           });
         },
         [&] {
-          stage(Stage::samples, [&] { sampler.sample(frame, measured_poses, masks, samples); });
-          stage(Stage::refinement, [&] { refine_poses(frame, report.poses); });
+          sample();
           if (!learns_while_drawing) learn();
         });
   }

@@ -126,7 +126,10 @@ TEST_P(PipelineOnRecordings, RemovingShadowsDoesNotHarmThePicture) {
 
 // Then colours are looked up only where a stage needs them.
 TEST_P(PipelineOnRecordings, ShowsTheSameWhereNobodyLooksAtTheReconstruction) {
-  BundledRecording looked_at(GetParam().recording), not_looked_at(GetParam().recording);
+  Options options;
+  options.memory = "off";
+  BundledRecording looked_at(GetParam().recording, options);
+  BundledRecording not_looked_at(GetParam().recording, options);
   not_looked_at.want_reconstruction(false);
   ASSERT_TRUE(looked_at.next() && not_looked_at.next());
   EXPECT_EQ(not_looked_at.result.picture, looked_at.result.picture);
@@ -136,6 +139,23 @@ TEST_P(PipelineOnRecordings, ShowsTheSameWhereNobodyLooksAtTheReconstruction) {
     return std::count_if(color.begin(), color.end(), [](const Bgra& c) { return c.a != 0; });
   };
   EXPECT_LT(count_colors(not_looked_at), count_colors(looked_at));
+}
+
+// Nothing is to be drawn: what the memory does not need is not made.
+TEST(Pipeline, WithoutObjectsSamplesAreTakenForKeyframesOnly) {
+  Options options;
+  options.keep = "calendar";
+  BundledRecording recording("calendar", options);
+  const auto samples_ms = [&] {
+    return recording.result.report.milliseconds[static_cast<std::size_t>(Stage::samples)];
+  };
+  ASSERT_TRUE(recording.next());
+  EXPECT_EQ(recording.result.report.mask_pixels, 0U);
+  EXPECT_GT(samples_ms(), 0);
+  EXPECT_EQ(recording.result.report.memory.keyframes, 1U);
+  ASSERT_TRUE(recording.next());
+  EXPECT_EQ(samples_ms(), 0);
+  EXPECT_EQ(recording.result.report.memory.keyframes, 1U);
 }
 
 // From one marker of 20 cm, 150 pixels wide in the colour camera, which faces it: there a tenth of

@@ -18,6 +18,9 @@ constexpr std::size_t least_frames = 3;
 /// What is less does no harm: the refinement takes it away.
 constexpr double most_turned_deg = 0.5;
 constexpr double most_moved_m = 0.01;
+/// One marker leaves that much open, the same way in every frame where nothing moves.
+constexpr double most_turned_by_marker_deg = 1;
+constexpr double most_moved_by_marker_m = 0.024;
 /// A mean that is fewer standard errors long may be noise of each frame's pose.
 constexpr double least_standard_errors = 3;
 
@@ -112,8 +115,11 @@ void check_pose_bias(Diagnosis& setup) {
   const double moved_m = mean.tail<3>().norm();
   setup.note("refinement turns the colour camera, in every frame alike", turned_deg, "degrees");
   setup.note("refinement moves the colour camera, in every frame alike", moved_m * 1000, "mm");
-  const bool turns = turned_deg > most_turned_deg && is_bias(mean.head<3>().norm(), turn_variance);
-  const bool moves = moved_m > most_moved_m && is_bias(moved_m, move_variance);
+  const bool by_marker = setup.rig.pose_source == "marker";
+  const bool turns = turned_deg > (by_marker ? most_turned_by_marker_deg : most_turned_deg) &&
+                     is_bias(mean.head<3>().norm(), turn_variance);
+  const bool moves = moved_m > (by_marker ? most_moved_by_marker_m : most_moved_m) &&
+                     is_bias(moved_m, move_variance);
   if (!turns && !moves) return;
 
   // A turn looks much like a shift of the principal point.
