@@ -54,14 +54,14 @@ void Recollection::move(const std::optional<RigidTransform>& motion) {
   if (motion) coarse_.apply(*motion, poses_, samples_);
 }
 
-std::optional<RigidTransform> Recollection::find_motion(const RecallInputs& inputs) {
-  return coarse_.refine(frame_, inputs.masks.color, samples_);
+std::optional<RigidTransform> Recollection::align(const RecallInputs& inputs) {
+  const std::optional<RigidTransform> motion = coarse_.refine(frame_, inputs.masks.color, samples_);
+  move(motion);
+  return motion;
 }
 
-void Recollection::prepare(const std::optional<RigidTransform>& motion, const RecallInputs& inputs,
-                           const std::vector<Testimony>& now) {
+void Recollection::prepare(const RecallInputs& inputs, const std::vector<Testimony>& now) {
   const Keyframe& keyframe = *keyframe_;
-  move(motion);
   move(fine_.refine(frame_, inputs.masks.color, samples_));
   // A gain and an offset do not need all.
   constexpr std::size_t samples_apart = 3;

@@ -32,13 +32,14 @@ class Recollection {
 
   /// Begins with a keyframe, where the frame's pose says.
   void begin(const KeyframeStore::Choice& choice, const RecallInputs& inputs);
-  /// How the keyframe must be moved so that it about matches the frame's picture: mostly the error
-  /// of the frame's pose, so that other keyframes must be, too. Nothing if that is not known.
-  std::optional<RigidTransform> find_motion(const RecallInputs& inputs);
-  /// Aligns the keyframe with the frame's picture (the same camera: to a tenth of a pixel), finds
-  /// its gain, and what has changed since. motion: of all keyframes. now: this frame's testimonies.
-  void prepare(const std::optional<RigidTransform>& motion, const RecallInputs& inputs,
-               const std::vector<Testimony>& now);
+  /// Moves the keyframe so that it about matches the frame's picture. Returns how: mostly the error
+  /// of the frame's pose, so that other keyframes are moved likewise before. Nothing if that is not
+  /// known.
+  std::optional<RigidTransform> align(const RecallInputs& inputs);
+  void move(const std::optional<RigidTransform>& motion);
+  /// Aligns it further (the same camera: to a tenth of a pixel), finds its gain, and what has
+  /// changed since. now: this frame's testimonies.
+  void prepare(const RecallInputs& inputs, const std::vector<Testimony>& now);
   /// Draws what has not changed.
   void draw(const RecallInputs& inputs);
 
@@ -65,7 +66,6 @@ class Recollection {
   const std::vector<Eigen::Vector3f>& gone() const { return gone_; }
 
  private:
-  void move(const std::optional<RigidTransform>& motion);
   void find_levels(const ColorMap& map);
   void find_beside(const RecallInputs& inputs);
   /// Adds those of some of the grid's places, of every so many rows, in a part of the picture.

@@ -97,8 +97,14 @@ std::size_t SceneMemory::recall(const RecallInputs& inputs, bool is_anchored,
   look(inputs);
   while (recollections.size() < count) recollections.emplace_back(rig_, grid_);
   for_tasks(count, [&](std::size_t i) { recollections[i].begin(chosen_[i], inputs); });
-  const std::optional<RigidTransform> motion = recollections[0].find_motion(inputs);
-  for_tasks(count, [&](std::size_t i) { recollections[i].prepare(motion, inputs, testimonies_); });
+  const std::optional<RigidTransform> motion = recollections[0].align(inputs);
+  for_tasks(count, [&](std::size_t i) {
+    if (i > 0) {
+      recollections[i].move(motion);
+      recollections[i].align(inputs);  // its own pose is wrong, too
+    }
+    recollections[i].prepare(inputs, testimonies_);
+  });
   for (std::size_t i = 0; i < count; ++i) {
     store_.remove(recollections[i].gone(), chosen_[i].keyframe->color_from_world);
   }
