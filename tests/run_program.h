@@ -35,6 +35,7 @@ class Program {
     if (process_ < 0) throw std::runtime_error("cannot fork");
     if (process_ > 0) return;
     std::vector<char*> pointers;
+    pointers.reserve(arguments.size() + 1);
     for (std::string& argument : arguments) pointers.push_back(argument.data());
     pointers.push_back(nullptr);
     dup2(open(out.c_str(), O_WRONLY | O_CREAT, 0600), STDOUT_FILENO);

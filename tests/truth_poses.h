@@ -28,9 +28,9 @@ class TruthPoses {
     Poses poses;
     poses.color_from_world = read(frames_[index]["color_from_world"]);
     for (const RgbdCamera& camera : rig.rgbd) {
-      poses.depth_from_world.push_back(read(frames_[index][camera.name + "_depth_from_world"]));
-      poses.color_from_depth.push_back(*poses.color_from_world *
-                                       poses.depth_from_world.back()->inverse());
+      poses.depth_from_world.emplace_back(read(frames_[index][camera.name + "_depth_from_world"]));
+      poses.color_from_depth.emplace_back(*poses.color_from_world *
+                                          poses.depth_from_world.back()->inverse());
     }
     return poses;
   }

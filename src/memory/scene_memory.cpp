@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/rows.h"
 #include "core/tasks.h"
@@ -212,7 +213,7 @@ void SceneMemory::take_step() {
   if (--pending_.steps > 0) return depth_.complete(pending_.objects, keyframe);
   leave_out_objects(keyframe);
   novelty_.filter(pending_.is_uncertain, keyframe);
-  store_.add(std::move(pending_.keyframe));
+  store_.add(std::exchange(pending_.keyframe, nullptr));
 }
 
 Poses anchored(const Poses& poses) {

@@ -59,9 +59,10 @@ void PoseRefinement::collect(const FrameSet& frame, const std::vector<SceneSampl
     int green = 0;
     int red = 0;
     for (int j = -reach; j <= reach; ++j) {
-      const Bgr* const row = image.row(v + j * spacing) + u;
+      const Bgr* const row = image.row(v + j * spacing);
       for (int k = -reach; k <= reach; ++k) {
-        const Bgr& color = row[k * spacing];
+        const int x = u + k * spacing;
+        const Bgr& color = row[x];
         blue += color.b;
         green += color.g;
         red += color.r;
@@ -94,7 +95,8 @@ std::size_t PoseRefinement::linearise(const RigidTransform& correction) {
   const Projection& lens = projection_;
   const float scale = 1 / static_cast<float>(level_.shrinkage);
   // Of the four pixels that make one of the small picture.
-  const float center = static_cast<float>(level_.shrinkage / 2) / 2;
+  const int half = level_.shrinkage / 2;
+  const float center = static_cast<float>(half) / 2;
   const auto last_column = static_cast<float>(small_.width() - 2);
   const auto last_row = static_cast<float>(small_.height() - 2);
   const auto linearise_some = [&](Points& points) {

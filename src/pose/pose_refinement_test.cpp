@@ -9,7 +9,6 @@ namespace diminish {
 namespace {
 
 using testing::AnalyticFrame;
-using testing::AnalyticScene;
 
 RigidTransform small_motion() {
   RigidTransform motion;

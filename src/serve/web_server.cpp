@@ -27,7 +27,7 @@ using std::chrono::milliseconds;
 constexpr milliseconds picture_wait{500};
 constexpr milliseconds event_period{200};
 constexpr int write_timeout_s = 5;
-constexpr std::size_t most_request_bytes = 64 * 1024;
+constexpr std::size_t most_request_bytes = 1 << 16;
 
 std::string text_of(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -170,7 +170,7 @@ void WebServer::Implementation::add_routes() {
     lower_priority_of_this_thread();
     return check_access(request, response);
   });
-  server.set_exception_handler([](const auto&, auto& response, std::exception_ptr error) {
+  server.set_exception_handler([](const auto&, auto& response, const std::exception_ptr& error) {
     try {
       std::rethrow_exception(error);
     } catch (const Error& wrong) {
@@ -185,7 +185,7 @@ void WebServer::Implementation::add_routes() {
     const std::string path = name == "index.html" ? "/" : "/" + name;
     server.Get(path, [name = name, content = content](const auto&, auto& response) {
       response.set_header("Cache-Control", "no-cache");
-      response.set_content(std::string(content), content_type(name).c_str());
+      response.set_content(std::string(content), content_type(name));
     });
   }
   server.Get("/api/stream.mjpg",
@@ -336,7 +336,7 @@ void WebServer::Implementation::change_recording(const httplib::Request& request
   const Json json = Json::parse(request.body, nullptr, false);
   if (!json.is_object() || json.size() != 1 || !json.contains("active") ||
       !json["active"].is_boolean()) {
-    throw Error("recording: expected {\"active\": true} or {\"active\": false}");
+    throw Error(R"(recording: expected {"active": true} or {"active": false})");
   }
   if (json["active"].get<bool>()) {
     start_recording();

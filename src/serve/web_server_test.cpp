@@ -254,7 +254,7 @@ TEST_F(Web, SaysWhatIsRememberedAndForgetsOnRequest) {
   post(server, "/api/settings", {{"memory", "on"}});
   const auto wait_for_memory = [&](const auto& is_there) {
     while (true) {
-      const json status = get(server, "/api/status");
+      json status = get(server, "/api/status");
       if (is_there(status["memory"]["keyframes"].get<int>())) return status;
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
@@ -284,7 +284,7 @@ TEST_F(Web, RefusesOtherSites) {
   EXPECT_EQ(status_from("http://" + own), 200);
   EXPECT_EQ(status_from("http://" + own + ".evil.example"), 403);
   EXPECT_EQ(status_from("null"), 403);
-  const auto form = client(server).Post("/api/settings", "{\"mode\":\"half\"}", "text/plain");
+  const auto form = client(server).Post("/api/settings", R"({"mode":"half"})", "text/plain");
   EXPECT_EQ(form->status, 415);
   EXPECT_EQ(session_.options().mode, "remove");
 }
