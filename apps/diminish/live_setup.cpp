@@ -41,6 +41,13 @@ void LiveSetup::add_flags(CLI::App& command) {
       ->check(CLI::Range(0, 1024))
       ->type_name("N");
   command
+      .add_option("--frames-in-flight", live_options.frames_in_flight,
+                  "Frames that are worked on at the same time; 0: two with four threads or more, "
+                  "else one")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 16))
+      ->type_name("N");
+  command
       .add_option(
           "--sync-wait", live_options.sync_wait_s,
           "How long a colour image waits for its RGB-D images; 0: about as long as the last "

@@ -92,6 +92,10 @@ struct LiveStatus {
 struct LiveOptions {
   /// Threads to use inside a frame; 0: one per core.
   int threads = 0;
+  /// How many frames are worked on at the same time. Two raise the rate where a frame takes longer
+  /// than the cameras' period; on few cores they delay each other. 0: two with four threads or
+  /// more.
+  int frames_in_flight = 0;
   /// Time budget of a frame. Quality steps down when frames take longer (docs/live.md lists the
   /// steps). 0: no budget.
   double budget_ms = 0;
@@ -102,10 +106,10 @@ struct LiveOptions {
   std::shared_ptr<const Scan> background;
 };
 
-/// Cameras in, pictures out, until stopped. Each camera has a thread, and so does the pipeline. The
-/// newest images are processed and older ones skipped, so nothing queues up. A camera that fails is
-/// opened again and again; meanwhile the session continues without it. All functions may be called
-/// from any thread.
+/// Cameras in, pictures out, until stopped. Each camera has a thread, and so has each frame in
+/// flight. The newest images are processed and older ones skipped, so nothing queues up. A camera
+/// that fails is opened again and again; meanwhile the session continues without it. All functions
+/// may be called from any thread.
 class DIMINISH_EXPORT LiveSession {
  public:
   /// Starts the session. Throws Error on a configuration that cannot work. A camera that cannot be
@@ -136,12 +140,14 @@ class DIMINISH_EXPORT LiveSession {
   std::shared_ptr<const LiveFrame> wait_for_frame(std::size_t after,
                                                   std::chrono::milliseconds timeout) const;
 
-  /// Registers `call` for every frame, in order. The pipeline's thread calls it, so it must return
-  /// at once and not throw. Destroying the result removes it.
+  /// Registers `call` for every frame, in order. A pipeline's thread calls it, so it must return at
+  /// once and not throw. Destroying the result removes it; it is not running any more then, unless
+  /// it is `call` itself that destroys it.
   std::shared_ptr<void> on_frame(std::function<void(const std::shared_ptr<const LiveFrame>&)> call);
 
-  /// Ends the pipeline's thread and tells the cameras' threads to end; the destructor waits for
-  /// those. `wait_for_frame` returns null from now on.
+  /// Ends the frames' threads and tells the cameras' threads to end; the destructor waits for
+  /// those. `wait_for_frame` returns null from now on. From within a frame's `call`, it returns
+  /// before that frame's thread has ended.
   void stop();
 
  private:

@@ -23,8 +23,12 @@ class Turns {
   void end(std::size_t turn) {
     {
       const std::lock_guard lock(mutex_);
-      ended_.insert(turn);
-      while (ended_.erase(next_) > 0) ++next_;
+      if (turn != next_) {
+        ended_.insert(turn);
+        return;
+      }
+      do ++next_;
+      while (ended_.erase(next_) > 0);
     }
     changed_.notify_all();
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "core/bilinear.h"
 #include "core/channels.h"
@@ -250,8 +251,11 @@ const std::vector<RimLine>& RimLines::find(const Image<Bgr>& picture, const Mask
       if (!is_known(line) && collect_profile(picture, line)) lines_.push_back(line);
     });
   }
-  std::stable_sort(lines_.begin(), lines_.end(),
-                   [](const RimLine& a, const RimLine& b) { return a.strength() > b.strength(); });
+  // Ends with what tells any two lines apart, so that the order does not depend on the library.
+  std::sort(lines_.begin(), lines_.end(), [](const RimLine& a, const RimLine& b) {
+    return std::tuple(b.strength(), a.entry.y(), a.entry.x()) <
+           std::tuple(a.strength(), b.entry.y(), b.entry.x());
+  });
   if (lines_.size() > most) lines_.resize(most);
   return lines_;
 }

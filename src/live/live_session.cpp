@@ -7,23 +7,25 @@
 #include <numeric>
 #include <thread>
 
+#include "core/turns.h"
 #include "diminish/error.h"
 #include "diminish/live.h"
 #include "diminish/pipeline.h"
 #include "live/camera_feed.h"
 #include "live/frame_assembler.h"
+#include "live/frame_listeners.h"
 #include "live/pool.h"
 #include "live/quality_ladder.h"
+#include "live/session_status.h"
 #include "sink/distribution.h"
-#include "sink/shares.h"
 #include "source/find_camera.h"
 
 namespace diminish {
 namespace {
 
 constexpr std::size_t window_frames = 150;
-/// Without a picture for this long, the status says so.
-constexpr double no_picture_after_s = 1;
+/// With fewer, a second frame would only delay the first.
+constexpr int threads_for_two_frames = 4;
 
 void check_cameras(const Rig& rig, const std::vector<LiveCamera>& cameras) {
   const auto is_used = [&](const std::string& name) {
@@ -43,6 +45,18 @@ void check_cameras(const Rig& rig, const std::vector<LiveCamera>& cameras) {
   }
 }
 
+/// A frame in flight: a pipeline and the thread that works on it.
+struct Lane {
+  Lane(const Rig& rig, const Scene& scene, const Options& options) : pipeline(rig, scene, options) {
+    pipeline.want_reconstruction(false);
+  }
+
+  Pipeline pipeline;
+  Turn publishing;
+  std::size_t options_version = 0;  ///< of those that the pipeline has
+  std::thread thread;
+};
+
 }  // namespace
 
 struct LiveSession::Implementation {
@@ -52,12 +66,18 @@ struct LiveSession::Implementation {
         scene(scene_),
         options(options_),
         live_options(live_options_),
-        pipeline(rig, scene, options),
+        last_good_options(options_),
         assembler{make_inboxes(), rgbd_inboxes()} {  // braces: evaluated from left to right
     check_cameras(rig, cameras);
-    pipeline.want_reconstruction(false);
-    if (live_options.background) pipeline.set_background(*live_options.background);
-    last_good_options = options;
+    const int lane_count = frames_in_flight();
+    for (int i = 0; i < lane_count; ++i) {
+      lanes.push_back(std::make_unique<Lane>(rig, scene, options));
+      if (i > 0) lanes.back()->pipeline.share_memory(lanes.front()->pipeline);
+    }
+    if (live_options.background) {
+      lanes.front()->pipeline.set_background(*live_options.background);
+    }
+    arena.initialize(std::max(threads(), lane_count), static_cast<unsigned>(lane_count));
     const double epoch_s = monotonic_now_s();
     for (const LiveCamera& camera : cameras) {
       CameraInbox& inbox = **std::find_if(inboxes.begin(), inboxes.end(), [&](const auto& box) {
@@ -66,7 +86,7 @@ struct LiveSession::Implementation {
       feeds.push_back(std::make_unique<CameraFeed>(
           camera, CameraRequest{camera.name, &rig, epoch_s}, inbox, arrived));
     }
-    worker = std::thread([this] { work(); });
+    for (const auto& lane : lanes) lane->thread = std::thread([this, &lane] { work(*lane); });
   }
 
   ~Implementation() { stop(); }
@@ -84,31 +104,39 @@ struct LiveSession::Implementation {
     return rgbd;
   }
 
+  int threads() const {
+    return live_options.threads > 0 ? live_options.threads
+                                    : oneapi::tbb::this_task_arena::max_concurrency();
+  }
+  int frames_in_flight() const {
+    if (live_options.frames_in_flight > 0) return live_options.frames_in_flight;
+    return threads() >= threads_for_two_frames ? 2 : 1;
+  }
+
   void stop() {
     stopped = true;
     arrived.notify();
     published.notify();
     for (const auto& feed : feeds) feed->stop();
-    if (worker.joinable()) worker.join();
+    const auto is_this_thread = [](const auto& lane) {
+      return lane->thread.get_id() == std::this_thread::get_id();
+    };
+    // A listener's call: its thread ends when the call has returned.
+    if (std::any_of(lanes.begin(), lanes.end(), is_this_thread)) return;
+    const std::lock_guard lock(ending);
+    for (const auto& lane : lanes) {
+      if (lane->thread.joinable()) lane->thread.join();
+    }
   }
 
-  void work() {
-    const int threads =
-        live_options.threads > 0 ? live_options.threads : oneapi::tbb::task_arena::automatic;
-    oneapi::tbb::task_arena arena(threads);
+  void work(Lane& lane) {
     std::shared_ptr<LiveFrame> frame = pool.take();
     while (!stopped) {
-      const std::size_t seen = arrived.count();
       try {
-        if (!make_frame(*frame)) {
-          const auto deadline_s = assembler.next_deadline_s(sync_settings());
-          if (!deadline_s) nothing_new_at = seen;
-          arrived.wait(seen, waiting_time(deadline_s));
-          continue;
-        }
-        apply_options();
-        if (forget_wanted.exchange(false)) pipeline.forget();
-        arena.execute([&] { pipeline.process(frame->input, frame->result); });
+        if (!begin_frame(lane, *frame)) continue;
+        apply_options(lane);
+        arena.execute([&] { lane.pipeline.process(frame->input, frame->result); });
+        lane.publishing.wait(publishing);
         publish(frame);
         frame = pool.take();
       } catch (const std::exception& error) {
@@ -116,7 +144,26 @@ struct LiveSession::Implementation {
       } catch (...) {
         note_failure("an unknown error");
       }
+      lane.pipeline.pass_turn();
+      lane.publishing.end();
     }
+  }
+
+  /// Waits for the next frame's images, for a while, and gives the frame its place in the order.
+  bool begin_frame(Lane& lane, LiveFrame& frame) {
+    const std::lock_guard lock(intake);
+    if (stopped) return false;
+    const std::size_t seen = arrived.count();
+    if (!make_frame(frame)) {
+      const auto deadline_s = assembler.next_deadline_s(sync_settings());
+      if (!deadline_s) nothing_new_at = seen;
+      arrived.wait(seen, waiting_time(deadline_s));
+      return false;
+    }
+    if (forget_wanted.exchange(false)) lane.pipeline.forget();
+    lane.pipeline.take_turn();
+    lane.publishing.take(publishing);
+    return true;
   }
 
   FrameAssembler::Settings sync_settings() const {
@@ -145,18 +192,29 @@ struct LiveSession::Implementation {
     return true;
   }
 
-  void apply_options() {
-    const std::lock_guard lock(mutex);
-    if (!options_changed) return;
-    options_changed = false;
+  /// Without the mutex while the pipeline takes them: that may compile shaders.
+  void apply_options(Lane& lane) {
+    std::unique_lock lock(mutex);
+    if (lane.options_version == options_version) return;
+    lane.options_version = options_version;
+    const Options wanted = options;
+    const int level = ladder.level();
+    lock.unlock();
     try {
-      pipeline.set_options(QualityLadder::simplified(options, ladder.level()));
+      lane.pipeline.set_options(QualityLadder::simplified(wanted, level));
+      lock.lock();
+      last_good_options = wanted;
     } catch (const Error& error) {  // a backend that does not work here
+      lock.lock();
       settings_problem = error.what();
-      options = last_good_options;
-      pipeline.set_options(QualityLadder::simplified(options, ladder.level()));
+      const Options good = last_good_options;
+      if (lane.options_version == options_version) {
+        options = good;
+        lane.options_version = ++options_version;
+      }
+      lock.unlock();
+      lane.pipeline.set_options(QualityLadder::simplified(good, level));
     }
-    last_good_options = options;
   }
 
   void publish(const std::shared_ptr<LiveFrame>& frame) {
@@ -170,16 +228,10 @@ struct LiveSession::Implementation {
       publish_times_s.add(frame->published_s);
       const int level = ladder.level();
       const double frame_ms = frame->result.report.frame_ms;
-      if (ladder.next_level(frame_ms, live_options.budget_ms, options) != level) {
-        options_changed = true;
-      }
+      if (ladder.next_level(frame_ms, live_options.budget_ms, options) != level) ++options_version;
       failure.clear();
     }
-    const std::lock_guard lock(listeners_mutex);
-    std::erase_if(listeners, [](const auto& listener) { return listener.expired(); });
-    for (const auto& weak : listeners) {
-      if (const auto listener = weak.lock()) (*listener)(frame);
-    }
+    listeners.call(frame);
     published.notify();
   }
 
@@ -190,9 +242,6 @@ struct LiveSession::Implementation {
   }
 
   LiveStatus status() const;
-  void describe_cameras(LiveStatus& status, double now_s) const;
-
-  using Listener = std::function<void(const std::shared_ptr<const LiveFrame>&)>;
 
   const Rig rig;
   const Scene scene;
@@ -206,43 +255,35 @@ struct LiveSession::Implementation {
   std::size_t skipped = 0, failed = 0;
   std::string failure, settings_problem;
   Options last_good_options;
-  bool options_changed = true;
+  std::size_t options_version = 1;
 
-  Pipeline pipeline;
-  Pool<LiveFrame> pool;
+  std::mutex intake;  ///< guards the assembler, and the order of frames
   std::vector<std::unique_ptr<CameraInbox>> inboxes;  ///< "color" and each RGB-D camera's
   FrameAssembler assembler;
+  Turns publishing;
+
+  Pool<LiveFrame> pool;
   ArrivalSignal arrived, published;
-  std::mutex listeners_mutex;
-  std::vector<std::weak_ptr<Listener>> listeners;
+  FrameListeners listeners;
   std::atomic<bool> stopped = false, forget_wanted = false;
   std::atomic<std::size_t> nothing_new_at =
       0;  ///< the count of `arrived` up to which everything is shown
   std::vector<std::unique_ptr<CameraFeed>> feeds;
-  std::thread worker;
+  oneapi::tbb::task_arena arena;
+  std::mutex ending;
+  std::vector<std::unique_ptr<Lane>> lanes;
 };
-
-void LiveSession::Implementation::describe_cameras(LiveStatus& status, double now_s) const {
-  for (const auto& feed : feeds) status.cameras.push_back(feed->status());
-  for (const CameraStatus& camera : status.cameras) {
-    if (camera.state == CameraState::lost) {
-      status.problems.push_back(camera.name + ": camera lost: " + camera.problem);
-    } else if (camera.state == CameraState::silent) {
-      status.problems.push_back(camera.name + ": the camera is silent: " + camera.problem);
-    } else if (camera.state == CameraState::ended && camera.name == "color") {
-      status.ended = nothing_new_at == arrived.count();
-    }
-  }
-  if (!status.ended && (!latest || now_s - latest->published_s > no_picture_after_s)) {
-    status.problems.push_back("no new picture");
-  }
-}
 
 LiveStatus LiveSession::Implementation::status() const {
   LiveStatus status;
   status.running = !stopped;
   const std::lock_guard lock(mutex);
-  describe_cameras(status, monotonic_now_s());
+  for (const auto& feed : feeds) status.cameras.push_back(feed->status());
+  status.ended = describe_problems_of_cameras(status) && nothing_new_at == arrived.count();
+  const double now_s = monotonic_now_s();
+  if (!status.ended && (!latest || now_s - latest->published_s > no_picture_after_s)) {
+    status.problems.emplace_back("no new picture");
+  }
   status.skipped = skipped;
   status.failed = failed;
   status.frames_per_second = publish_times_s.rate();
@@ -253,32 +294,7 @@ LiveStatus LiveSession::Implementation::status() const {
   status.quality = QualityLadder::description(options, ladder.level());
   if (!settings_problem.empty()) status.problems.push_back(settings_problem);
   if (!failure.empty()) status.problems.push_back("the last frame failed: " + failure);
-  if (!latest) return status;
-  const FrameReport& report = latest->result.report;
-  status.frames = latest->number;
-  status.stage_ms = report.milliseconds;
-  status.frame_ms = report.frame_ms;
-  for (const auto& pose : report.poses.color_from_depth) status.posed.push_back(pose.has_value());
-  status.markers.push_back(report.markers.color.size());
-  for (const auto& markers : report.markers.rgbd) status.markers.push_back(markers.size());
-  status.occluders = report.occluders;
-  const double pixels = static_cast<double>(latest->result.mask.size());
-  if (pixels > 0) status.mask_share = static_cast<double>(report.mask_pixels) / pixels;
-  const Shares shares = shares_of(report.mask_pixels, report.valid_pixels, report.witnessed_pixels,
-                                  report.remembered_pixels);
-  status.seen_share = shares.seen;
-  status.witnessed_share = shares.witnessed;
-  status.remembered_share = shares.remembered;
-  status.invented_share = shares.invented;
-  status.evidence = to_text(shares);
-  status.memory = report.memory;
-  for (const std::string& message : report.messages) {
-    const bool is_said =
-        std::any_of(status.cameras.begin(), status.cameras.end(), [&](const auto& c) {
-          return c.state != CameraState::running && message.starts_with(c.name + ":");
-        });
-    if (!is_said) status.problems.push_back(message);
-  }
+  if (latest) describe_last_frame(*latest, status);
   return status;
 }
 
@@ -302,7 +318,7 @@ void LiveSession::set_options(const Options& options) {
   check(options, implementation_->rig, implementation_->scene);
   const std::lock_guard lock(implementation_->mutex);
   implementation_->options = options;
-  implementation_->options_changed = true;
+  ++implementation_->options_version;
   implementation_->settings_problem.clear();
 }
 LiveOptions LiveSession::live_options() const {
@@ -338,10 +354,7 @@ std::shared_ptr<const LiveFrame> LiveSession::wait_for_frame(
 
 std::shared_ptr<void> LiveSession::on_frame(
     std::function<void(const std::shared_ptr<const LiveFrame>&)> call) {
-  auto listener = std::make_shared<Implementation::Listener>(std::move(call));
-  const std::lock_guard lock(implementation_->listeners_mutex);
-  implementation_->listeners.push_back(listener);
-  return listener;
+  return implementation_->listeners.add(std::move(call));
 }
 
 void LiveSession::stop() {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <atomic>
+#include <mutex>
 #include <thread>
 
 #include "diminish/frame_source.h"
@@ -55,6 +56,7 @@ TEST_F(Live, ShowsWhatThePipelineMakesOfTheRecordingsFrames) {
   const auto source = open_recording(recording_, options_);
   for (FrameSet frame; source->next(frame);) recorded.push_back(frame);
 
+  options_.memory = "off";           // which would need every frame in between
   options_.sync_tolerance_s = 0.01;  // also when the machine is so slow that images are left out
   const auto session = start(cameras());
   Pipeline pipeline(recording_.rig, recording_.scene, options_);
@@ -88,6 +90,74 @@ TEST_F(Live, ShowsWhatThePipelineMakesOfTheRecordingsFrames) {
   }
   EXPECT_GT(status.frame_ms, 0);
   EXPECT_GE(status.latency_ms.p99, status.latency_ms.p50);
+}
+
+// What is remembered depends on every frame before.
+TEST_F(Live, FramesInFlightMakeWhatOnePipelineMakes) {
+  LiveOptions live_options;
+  live_options.threads = 2;
+  live_options.frames_in_flight = 3;
+  std::mutex mutex;
+  std::vector<std::shared_ptr<const LiveFrame>> frames;
+  // Again where the first frame was there before the listener.
+  while (frames.empty() || frames.front()->number != 1) {
+    frames.clear();
+    const auto session = start(cameras(), live_options);
+    const auto listener = session->on_frame([&](const auto& frame) {
+      const std::lock_guard lock(mutex);
+      frames.push_back(frame);
+    });
+    ASSERT_TRUE(eventually([&] {
+      const std::lock_guard lock(mutex);
+      return frames.size() >= 12;
+    }));
+    session->stop();
+  }
+
+  Pipeline pipeline(recording_.rig, recording_.scene, options_);
+  DiminishedFrame expected;
+  double stamp_s = -1;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    SCOPED_TRACE(i);
+    const LiveFrame& frame = *frames[i];
+    EXPECT_EQ(frame.number, i + 1);
+    EXPECT_GT(frame.input.stamp_s, stamp_s);
+    stamp_s = frame.input.stamp_s;
+    pipeline.process(frame.input, expected);
+    EXPECT_EQ(frame.result.picture, expected.picture);
+    EXPECT_EQ(frame.result.provenance, expected.provenance);
+  }
+}
+
+TEST_F(Live, StopsFromItsOwnCallAndFromManyThreads) {
+  const auto session = start(cameras());
+  std::atomic<int> calls = 0;
+  std::shared_ptr<void> stopping = session->on_frame([&](const auto&) {
+    ++calls;
+    stopping.reset();
+    session->stop();
+  });
+  EXPECT_TRUE(eventually([&] { return calls > 0; }));
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 3; ++i) threads.emplace_back([&] { session->stop(); });
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(calls, 1);
+  EXPECT_FALSE(session->status().running);
+}
+
+TEST_F(Live, ARemovedCallDoesNotRunAnyMore) {
+  const auto session = start(cameras());
+  std::atomic<bool> is_there = true, ran = false, ran_after = false;
+  auto listener = session->on_frame([&](const auto&) {
+    ran = true;
+    std::this_thread::sleep_for(milliseconds(50));
+    if (!is_there) ran_after = true;
+  });
+  EXPECT_TRUE(eventually([&] { return ran.load(); }));
+  listener.reset();
+  is_there = false;
+  std::this_thread::sleep_for(milliseconds(100));
+  EXPECT_FALSE(ran_after);
 }
 
 TEST_F(Live, SettingsTakeEffectAndWrongOnesChangeNothing) {

@@ -55,7 +55,7 @@ void MemoryStage::recall(const RecallInputs& inputs, const SceneSamples& samples
                          const std::vector<OccluderReport>& objects,
                          const std::function<void()>& sample, MemoryReport& report) {
   recalled_ = 0;
-  poses_ = anchored(inputs.poses);
+  anchor(inputs.poses, poses_);
   if (!poses_.color_from_world) return;
   const RecallInputs anchored_inputs = with_poses(inputs, poses_);
   recalled_ = in_turn([&] {
@@ -63,11 +63,13 @@ void MemoryStage::recall(const RecallInputs& inputs, const SceneSamples& samples
     SceneMemory& memory = *shared_->memory;
     const bool is_anchored = !inputs.poses.color_from_world;
     const std::size_t recalled = memory.recall(anchored_inputs, is_anchored, recollections_);
-    const std::function<void()> sample_and_anchor = [&] {
+    const auto sample_and_anchor = [&] {
       sample();
-      poses_ = anchored(inputs.poses);
+      anchor(inputs.poses, poses_);
     };
-    memory.learn(anchored_inputs, samples, objects, sample ? sample_and_anchor : nullptr);
+    std::function<void()> sample_first;
+    if (sample) sample_first = std::ref(sample_and_anchor);
+    memory.learn(anchored_inputs, samples, objects, sample_first);
     report.keyframes = memory.keyframes();
     report.bytes = memory.bytes();
     return recalled;

@@ -216,19 +216,20 @@ void SceneMemory::take_step() {
   store_.add(std::exchange(pending_.keyframe, nullptr));
 }
 
-Poses anchored(const Poses& poses) {
-  Poses result = poses;
+void anchor(const Poses& poses, Poses& result) {
+  result.color_from_world = poses.color_from_world;
+  result.depth_from_world = poses.depth_from_world;
+  result.color_from_depth = poses.color_from_depth;
   result.messages.clear();
-  if (result.color_from_world || result.color_from_depth.empty()) return result;
+  if (result.color_from_world || result.color_from_depth.empty()) return;
   const auto& first = result.color_from_depth.front();
-  if (!first) return result;
+  if (!first) return;
   result.color_from_world = first;
   for (std::size_t k = 0; k < result.color_from_depth.size(); ++k) {
     const auto& color_from_depth = result.color_from_depth[k];
     result.depth_from_world[k].reset();
     if (color_from_depth) result.depth_from_world[k] = color_from_depth->inverse() * *first;
   }
-  return result;
 }
 
 }  // namespace diminish

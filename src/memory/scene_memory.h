@@ -89,8 +89,8 @@ class SceneMemory {
   std::vector<double> found_s_;                             ///< when each object was last found
 };
 
-/// The poses with a world: if none is known, it is where the first RGB-D camera's depth sensor is,
-/// which then must stand still.
-Poses anchored(const Poses& poses);
+/// result: the poses with a world: if none is known, it is where the first RGB-D camera's depth
+/// sensor is, which then must stand still.
+void anchor(const Poses& poses, Poses& result);
 
 }  // namespace diminish
