@@ -21,7 +21,9 @@ class Composing {
                                     smoothing_share};
     Compositor::sort(inputs, result);
     compositor_.correct_colors(inputs, maps_.by_source(), corrector, result);
-    compositor_.inpaint(inputs, inpainters_.get(options.inpaint), result);
+    Inpainter& inpainter = inpainters_.get(options.inpaint);
+    inpainter.prepare(camera, occlusion, inputs.objects);
+    compositor_.inpaint(inputs, inpainter, result);
     compositor_.finish(inputs, modes_.get(options.mode), result);
   }
 

@@ -43,6 +43,11 @@ class DIMINISH_EXPORT Inpainter {
 
   virtual Declaration declaration() const { return {}; }
 
+  /// Looks at what surrounds the objects, before inpaint() and while other stages run: once for
+  /// each frame. camera: the camera's picture. occlusion, objects: the mask and its box.
+  virtual void prepare(ImageView<Bgr> /*camera*/, const Mask& /*occlusion*/,
+                       const Rect& /*objects*/) {}
+
   /// Writes a colour to every pixel of `picture` where `holes.missing` is not 0, using the other
   /// pixels, none of which shows an object to remove. Leaves those unchanged. Returns whether the
   /// pixels were filled ("none" leaves them black and returns false).

@@ -13,7 +13,7 @@ class BlurredGrey {
   static constexpr float scale = 256;  ///< times the level
 
   /// Begins with another picture, which must live as long as it is looked at.
-  void begin(const Image<Bgr>& picture, const Rect& part);
+  void begin(ImageView<Bgr> picture, const Rect& part);
   /// Makes pixels readable. pixels: counted from the part's first; those beyond are left out.
   void look_at(const Rect& pixels);
   /// A row of the part.
@@ -23,7 +23,7 @@ class BlurredGrey {
  private:
   void blur(const Rect& tile);
 
-  const Image<Bgr>* picture_ = nullptr;
+  ImageView<Bgr> picture_;
   Rect part_;
   Image<std::uint16_t> levels_;
   Mask is_blurred_;  ///< by tile

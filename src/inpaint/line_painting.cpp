@@ -60,10 +60,11 @@ bool bounds_foreground(const RimLine& line, const Surfaces& surfaces) {
 }
 
 /// Between two entries.
-Eigen::Array3f profile_at(const RimLine& line, float position) {
+template <class Profile>
+Eigen::Array4f profile_at(const Profile& profile, float position) {
   const auto i = static_cast<std::size_t>(position);
   const float share = position - static_cast<float>(i);
-  return line.profile[i] + share * (line.profile[i + 1] - line.profile[i]);
+  return profile[i] + share * (profile[i + 1] - profile[i]);
 }
 
 }  // namespace
@@ -107,6 +108,22 @@ void LinePainting::match(const std::vector<RimLine>& lines) {
   }
 }
 
+/// The colours of a line that joins another, or what a line that just ends adds to its share of the
+/// smooth filling's.
+LinePainting::Profile LinePainting::colors_of(const RimLine& line, bool joins) {
+  const auto& profile = line.profile;
+  constexpr std::size_t last = RimLine::profile_size - 1;
+  const Eigen::Array3f dark = (profile[0] + profile[1] + profile[2]) / 3;
+  const Eigen::Array3f bright = (profile[last] + profile[last - 1] + profile[last - 2]) / 3;
+  Profile colors;
+  for (std::size_t i = 0; i <= last; ++i) {
+    const Eigen::Array3f without = dark + static_cast<float>(i) / last * (bright - dark);
+    colors[i].head<3>() = profile[i] - (joins ? 0 : 1 - own_colors) * without;
+    colors[i][3] = 0;
+  }
+  return colors;
+}
+
 /// How far a line runs into the mask that has no second end.
 float LinePainting::free_length(const RimLine& line, const Holes& holes) const {
   const int most = static_cast<int>(reach * static_cast<float>(line.length));
@@ -144,12 +161,15 @@ void LinePainting::lay_out(const std::vector<RimLine>& lines, const Holes& holes
       Eigen::Vector2f normal(-along.y(), along.x());
       if (normal.dot(line.normal) < 0) normal = -normal;
       strokes_.push_back({&line, &lines[mate], line.entry, along, normal, length});
+      strokes_.back().end_colors = colors_of(lines[mate], true);
+      strokes_.back().begin_colors = colors_of(line, true);
       continue;
     }
     if (bounds_foreground(line, holes.surfaces)) continue;
     const float length = free_length(line, holes);
     if (length < 2) continue;
     strokes_.push_back({&line, nullptr, line.entry, -line.outward, line.normal, length});
+    strokes_.back().begin_colors = colors_of(line, false);
   }
   for (Stroke& stroke : strokes_) {
     stroke.has_company = std::any_of(strokes_.begin(), strokes_.end(), [&](const Stroke& other) {
@@ -256,23 +276,17 @@ void LinePainting::color(int column, int row, Bgr& pixel) const {
   const float position = std::min(across + half_width, 2 * half_width - 0.001F);
   float weight =
       claim.is_between ? 1.F : std::clamp((half_width - std::abs(across)) / feather, 0.F, 1.F);
-  const Eigen::Array3f smooth = to_channels(pixel);
-  Eigen::Array3f color = profile_at(*stroke.begin, position);
+  const Eigen::Array4f smooth(pixel.b, pixel.g, pixel.r, 0);
+  Eigen::Array4f color = profile_at(stroke.begin_colors, position);
   if (stroke.end != nullptr) {
     const float share = std::clamp(offset.dot(stroke.along) / stroke.length, 0.F, 1.F);
-    color += share * (profile_at(*stroke.end, position) - color);
+    color += share * (profile_at(stroke.end_colors, position) - color);
   } else {
-    const auto& profile = stroke.begin->profile;
-    const Eigen::Array3f dark = (profile[0] + profile[1] + profile[2]) / 3;
-    const Eigen::Array3f bright =
-        (profile[profile.size() - 3] + profile[profile.size() - 2] + profile[profile.size() - 1]) /
-        3;
-    const Eigen::Array3f without = dark + position / (2 * half_width) * (bright - dark);
-    color = own_colors * color + (1 - own_colors) * (smooth + color - without);
+    color += (1 - own_colors) * smooth;
     const float whole = reach * static_cast<float>(stroke.begin->length);
     weight *= std::clamp((1 - offset.dot(stroke.along) / whole) / fading, 0.F, 1.F);
   }
-  pixel = to_color(smooth + weight * (color - smooth));
+  pixel = to_color((smooth + weight * (color - smooth)).head<3>());
 }
 
 void LinePainting::paint(const std::vector<RimLine>& lines, const Holes& holes, const Rect& objects,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -21,6 +22,8 @@ class LinePainting {
              Image<Bgr>& picture);
 
  private:
+  /// Colours across a stroke, in four channels for the sake of vector instructions.
+  using Profile = std::array<Eigen::Array4f, RimLine::profile_size>;
   /// A line, or two that meet, through the mask.
   struct Stroke {
     const RimLine* begin;
@@ -28,6 +31,7 @@ class LinePainting {
     Eigen::Vector2f start, along, normal;
     float length;
     bool has_company = false;  ///< others run beside it
+    Profile begin_colors{}, end_colors{};
   };
   /// Of the stroke that is nearest to a pixel.
   struct Claim {
@@ -35,6 +39,7 @@ class LinePainting {
     bool is_between;  ///< two that run side by side: inside a pipe
   };
 
+  static Profile colors_of(const RimLine& line, bool joins);
   void match(const std::vector<RimLine>& lines);
   void lay_out(const std::vector<RimLine>& lines, const Holes& holes);
   float free_length(const RimLine& line, const Holes& holes) const;

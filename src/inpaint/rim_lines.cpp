@@ -202,7 +202,7 @@ bool RimLines::is_known(const RimLine& line) const {
   });
 }
 
-bool RimLines::collect_profile(const Image<Bgr>& picture, RimLine& line) const {
+bool RimLines::collect_profile(ImageView<Bgr> picture, RimLine& line) const {
   for (int i = 0; i < RimLine::profile_size; ++i) {
     Eigen::Array3f sum = Eigen::Array3f::Zero();
     int count = 0;
@@ -221,12 +221,11 @@ bool RimLines::collect_profile(const Image<Bgr>& picture, RimLine& line) const {
   return true;
 }
 
-const std::vector<RimLine>& RimLines::find(const Image<Bgr>& picture, const Mask& occlusion,
-                                           const Rect& objects) {
+void RimLines::find(ImageView<Bgr> picture, const Mask& occlusion, const Rect& objects) {
   lines_.clear();
   occlusion_ = &occlusion;
   part_ = intersect(grow(objects, ring_end + longest), picture.bounds());
-  if (part_.empty()) return lines_;
+  if (part_.empty()) return;
   grey_.begin(picture, part_);
   const Rect box = intersect(grow(objects, ring_end), part_);
   find_ring(box);
@@ -257,7 +256,6 @@ const std::vector<RimLine>& RimLines::find(const Image<Bgr>& picture, const Mask
            std::tuple(a.strength(), b.entry.y(), b.entry.x());
   });
   if (lines_.size() > most) lines_.resize(most);
-  return lines_;
 }
 
 }  // namespace diminish

@@ -33,10 +33,11 @@ class RimLines {
  public:
   static constexpr std::size_t most = 48;
 
-  /// Returns the lines, the strongest first; valid until the next call. Reads nothing inside the
-  /// mask. objects: the mask's box. Cost: that of blurring all within 166 pixels.
-  const std::vector<RimLine>& find(const Image<Bgr>& picture, const Mask& occlusion,
-                                   const Rect& objects);
+  /// Finds the lines. Reads nothing inside the mask. objects: the mask's box. Cost: that of
+  /// blurring all within 166 pixels.
+  void find(ImageView<Bgr> picture, const Mask& occlusion, const Rect& objects);
+  /// The strongest first.
+  const std::vector<RimLine>& lines() const { return lines_; }
 
  private:
   struct Track;
@@ -48,7 +49,7 @@ class RimLines {
   bool is_inside(const Eigen::Vector2f& at) const;
   bool start(int x, int y, Track& track);
   bool follow(Track& track);
-  bool collect_profile(const Image<Bgr>& picture, RimLine& line) const;
+  bool collect_profile(ImageView<Bgr> picture, RimLine& line) const;
   bool is_known(const RimLine& line) const;
 
   const Mask* occlusion_ = nullptr;

@@ -13,17 +13,21 @@ class StructureInpainting : public Inpainter {
     return {.uses_surfaces = true, .simpler = "surfaces"};
   }
 
+  void prepare(ImageView<Bgr> camera, const Mask& occlusion, const Rect& objects) override {
+    objects_ = objects;
+    lines_.find(camera, occlusion, objects);
+  }
+
   bool inpaint(const Holes& holes, const Options& options, Image<Bgr>& picture) override {
-    const Rect objects = bounding_box(holes.occlusion);
-    const std::vector<RimLine>& lines = lines_.find(picture, holes.occlusion, objects);
     if (!surfaces_->inpaint(holes, options, picture)) return false;
-    painting_.paint(lines, holes, objects, picture);
+    painting_.paint(lines_.lines(), holes, objects_, picture);
     return true;
   }
 
  private:
   std::unique_ptr<Inpainter> surfaces_ = Registry<Inpainter>::get("surfaces")();
   RimLines lines_;
+  Rect objects_;
   LinePainting painting_;
 };
 

@@ -55,8 +55,9 @@ struct Scene {
   }
   Image<Bgr> fill(const char* method = "structure") const {
     Image<Bgr> filled = picture;
-    EXPECT_TRUE(
-        Registry<Inpainter>::get(method)()->inpaint({missing, occlusion, surfaces}, {}, filled));
+    const auto inpainter = Registry<Inpainter>::get(method)();
+    inpainter->prepare(picture, occlusion, bounding_box(occlusion));
+    EXPECT_TRUE(inpainter->inpaint({missing, occlusion, surfaces}, {}, filled));
     return filled;
   }
   /// Root mean square, in grey levels, where `part` is missing.

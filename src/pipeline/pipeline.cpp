@@ -281,6 +281,11 @@ void Pipeline::Implementation::process(const FrameSet& frame, DiminishedFrame& r
                     report.memory);
     });
   };
+  const auto prepare = [&] {
+    stage(Stage::inpainting, [&] {
+      if (!objects.empty()) inpainter->prepare(frame.color, masks.color, objects);
+    });
+  };
   // What is learnt of the scene may be needed only after the drawing: then both are done together.
   const bool learns_while_drawing = looks && backend.only_draws() && !options.remove_shadows;
   if (looks) {
@@ -298,13 +303,14 @@ void Pipeline::Implementation::process(const FrameSet& frame, DiminishedFrame& r
   }
   choose_region();
   if (learns_while_drawing) {
-    do_all(recall, draw, learn);
+    do_all(recall, draw, learn, prepare);
   } else {
     drawing.planes = background.planes();
     drawing.shadows = background.shadows();
     drawing.color_maps = color_maps.by_source();
     drawing.smoothing_share = smoothing;
     do_all(recall, draw);
+    prepare();
   }
   stage(Stage::merging, [&] {
     if (!methods.remembers) return;
