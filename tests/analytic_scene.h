@@ -51,7 +51,10 @@ struct AnalyticScene {
   Eigen::Vector3d color(const Hit& hit) const {
     const Eigen::Vector3d& p = hit.point;
     const double wave = 2 * std::numbers::pi / wave_m;
-    if (hit.on_box) return {30, 40 + 15 * std::sin(wave * (p.x() + p.z())), 220};
+    if (hit.on_box) {
+      const double x = p.x() - (box_min.x() + box_max.x()) / 2;
+      return {30, 40 + 15 * std::sin(wave * (x + p.z())), 220};
+    }
     return {128 + 60 * std::sin(wave * p.x()), 128 + 60 * std::sin(wave * p.y()), 90};
   }
 

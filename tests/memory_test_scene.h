@@ -21,6 +21,7 @@ class MemoryTest : public ::testing::Test {
   struct Moment {
     double stamp_s = 0;
     bool has_box = true;
+    double box_m = 0;           ///< how far the box has moved sidewards
     Rect object = {};           ///< to remove, in the picture
     Rect hole = {};             ///< in the object
     bool is_witnessed = true;   ///< the RGB-D camera delivers
@@ -36,6 +37,8 @@ class MemoryTest : public ::testing::Test {
   const Reconstruction& show(const Moment& moment) {
     AnalyticScene scene;
     scene.has_box = moment.has_box;
+    scene.box_min.x() += moment.box_m;
+    scene.box_max.x() += moment.box_m;
     if (moment.is_elsewhere) scene.wave_m = 0.1;
     const Eigen::Vector3d moved{moment.moved_m, 0, 0};
     AnalyticFrame now(scene, {Eigen::Vector3d(-0.25, 0.05, 1.1) + moved}, LensModel::plumb_bob,
@@ -65,6 +68,7 @@ class MemoryTest : public ::testing::Test {
     }
     TiledRegion region(intersect(grow(moment.object, 16), now.rig.color.bounds()));
     drawer->reconstruct(now.frame, depths_of(now.frame), now.poses, masks, region, options, result);
+    live = result;
     sampler.sample(now.frame, now.poses, masks, samples);
     OccluderReport report;
     if (moment.is_lost) report.message = "board: not found";
@@ -117,7 +121,8 @@ class MemoryTest : public ::testing::Test {
   SceneSamples samples;
   MemoryStage memory{rig};
   std::vector<ColorMap> maps = std::vector<ColorMap>(256);
-  Reconstruction result;
+  Reconstruction live;    ///< the last moment's, without memory
+  Reconstruction result;  ///< with it
   MemoryReport memory_report;
   Image<Bgr> truth;
   static constexpr std::size_t pixels = hidden.width * hidden.height;

@@ -98,7 +98,8 @@ TEST_P(AtAngle, FindsBothEdgesOfABarOnBothSides) {
   const Scene scene = with_bar(GetParam());
   const Edge middle(GetParam());
   RimLines finder;
-  const auto& lines = finder.find(scene.picture, scene.occlusion, {90, 70, 140, 120});
+  finder.find(scene.picture, scene.occlusion, {90, 70, 140, 120});
+  const std::vector<RimLine>& lines = finder.lines();
   ASSERT_EQ(lines.size(), 4U);
   for (const RimLine& line : lines) {
     EXPECT_NEAR(std::abs(middle.height(line.entry.x(), line.entry.y())), 7, 0.3);

@@ -55,7 +55,7 @@ void Recollection::move(const std::optional<RigidTransform>& motion) {
 }
 
 std::optional<RigidTransform> Recollection::align(const RecallInputs& inputs) {
-  const std::optional<RigidTransform> motion = coarse_.refine(frame_, inputs.masks.color, samples_);
+  std::optional<RigidTransform> motion = coarse_.refine(frame_, inputs.masks.color, samples_);
   move(motion);
   return motion;
 }
