@@ -60,6 +60,7 @@ int LiveCommand::execute() const {
   while (!stop_requested() && !status.ended &&
          (seconds <= 0 || monotonic_now_s() < start_s + seconds)) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    run.say_output_problem();
     status = run.session->status();
     if (monotonic_now_s() < next_line_s) continue;
     print_line(status);

@@ -1,5 +1,7 @@
 #include "live_setup.h"
 
+#include <fmt/format.h>
+
 #include <atomic>
 #include <csignal>
 
@@ -106,6 +108,12 @@ void LiveSetup::add_output_flags(CLI::App& command) {
       .add_option("--virtual-camera", virtual_camera,
                   "Send the result to this v4l2loopback device, for programs that read a camera")
       ->type_name("DEVICE");
+}
+
+void LiveRun::say_output_problem() {
+  if (!virtual_camera || virtual_camera->problem().empty()) return;
+  fmt::print(stderr, "diminish: {}\n", virtual_camera->problem());
+  virtual_camera.reset();
 }
 
 LiveRun LiveSetup::start() const {

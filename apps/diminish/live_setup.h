@@ -19,6 +19,9 @@ struct LiveRun {
   std::shared_ptr<RecordingWriter> recording;  ///< null: none is made
   std::shared_ptr<void> recording_listener;
   std::unique_ptr<VirtualCamera> virtual_camera;
+
+  /// Once, if the virtual camera no longer works.
+  void say_output_problem();
 };
 
 /// What the live commands (live, serve, view, latency-test) have in common: set-up, cameras,

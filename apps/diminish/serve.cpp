@@ -24,11 +24,14 @@ int ServeCommand::execute() {
   server.rig_file = setup.rig_file();
   server.scene_file = setup.scene_file();
   stop_on_signals();
-  const LiveRun run = setup.start();
+  LiveRun run = setup.start();
   const WebServer web(*run.session, server);
   fmt::print("Open {}\n", web.url());
   std::fflush(stdout);
-  while (!stop_requested()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  while (!stop_requested()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    run.say_output_problem();
+  }
   return 0;
 }
 

@@ -83,12 +83,13 @@ int ViewCommand::execute() const {
     throw Error("view: there is no display to open a window on; try `diminish serve`");
   }
   stop_on_signals();
-  const LiveRun run = setup.start();
+  LiveRun run = setup.start();
   cv::namedWindow(window, cv::WINDOW_NORMAL);
   fmt::print("{}\n", keys);
   Viewer viewer(*run.session);
   std::size_t number = 0;
   while (!stop_requested() && !run.session->status().ended) {
+    run.say_output_problem();
     const auto frame = run.session->wait_for_frame(number, std::chrono::milliseconds(30));
     if (frame) {
       number = frame->number;

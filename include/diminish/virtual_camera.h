@@ -19,6 +19,9 @@ class DIMINISH_EXPORT VirtualCamera {
   VirtualCamera(const VirtualCamera&) = delete;
   VirtualCamera& operator=(const VirtualCamera&) = delete;
 
+  /// Why it no longer writes; empty if it does.
+  std::string problem() const;
+
  private:
   struct Implementation;
   std::unique_ptr<Implementation> implementation_;

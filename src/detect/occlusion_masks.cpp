@@ -41,6 +41,7 @@ void OccluderStage::draw_by(const std::string& drawer) {
   if (drawer == drawer_name_) return;
   drawer_name_ = drawer;
   drawer_.reset();
+  attempts_ = {};
 }
 
 void OccluderStage::detect(const Observation& observation, std::vector<OccluderReport>& reports) {
@@ -128,13 +129,22 @@ void OccluderStage::list_drawings(const Options& options) {
 
 void OccluderStage::draw_by_chosen() {
   message_.clear();
+  if (attempts_.is_due() && try_drawer()) return;
+  message_ = failure_ + "; masks were drawn by the CPU instead";
+  cpu_->draw(drawings_);
+}
+
+bool OccluderStage::try_drawer() {
   try {
     if (!drawer_) drawer_ = Registry<MaskDrawer>::get(drawer_name_)();
     drawer_->draw(drawings_);
+    attempts_.succeed();
+    return true;
   } catch (const Error& error) {
+    attempts_.fail();
+    failure_ = error.what();
     drawer_.reset();
-    message_ = std::string(error.what()) + "; masks were drawn by the CPU instead";
-    cpu_->draw(drawings_);
+    return false;
   }
 }
 

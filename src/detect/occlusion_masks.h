@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/backoff.h"
 #include "core/turns.h"
 #include "detect/shape_detector.h"
 #include "detect/silhouette/mask_drawer.h"
@@ -22,8 +23,8 @@ class OccluderStage {
   /// Whether the observation must hold the markers of the colour images.
   bool needs_markers() const;
 
-  /// drawer: a registered MaskDrawer's name; "cpu" at first. If it fails, the CPU draws, and the
-  /// next frame tries again.
+  /// drawer: a registered MaskDrawer's name; "cpu" at first. If it fails, the CPU draws; the
+  /// next frame tries again, then ever later ones.
   void draw_by(const std::string& drawer);
 
   void share(OccluderStage& other) { shared_ = other.shared_; }
@@ -52,6 +53,8 @@ class OccluderStage {
   void draw(const Options& options, std::vector<OccluderReport>& reports);
   void list_drawings(const Options& options);
   void draw_by_chosen();
+  /// False if the chosen drawer fails.
+  bool try_drawer();
 
   Rig rig_;
   std::vector<std::unique_ptr<OccluderDetector>> detectors_;
@@ -66,6 +69,8 @@ class OccluderStage {
   Rect objects_;
   std::string drawer_name_ = "cpu";
   std::unique_ptr<MaskDrawer> drawer_, cpu_;
+  Backoff attempts_;
+  std::string failure_;  ///< the drawer's last one
   std::string message_;
 };
 

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cmath>
 #include <sstream>
 #include <string>
 #include <string_view>
 
+#include "core/limits.h"
 #include "core/text.h"
 #include "diminish/error.h"
 
@@ -32,6 +34,9 @@ Eigen::Vector3d read_vertex(const std::vector<std::string_view>& words, const Pl
     const std::string_view word = words[static_cast<std::size_t>(axis) + 1];
     const auto number = parse_number(word);
     if (!number) place.fail("expected a number, got '" + printable(word) + "'");
+    if (std::abs(*number) > largest_coordinate_m) {
+      place.fail("expected metres, got more than a kilometre: '" + printable(word) + "'");
+    }
     vertex[axis] = *number;
   }
   return vertex;

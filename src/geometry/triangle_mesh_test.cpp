@@ -55,6 +55,7 @@ TEST(TriangleMesh, MalformedLinesAreNamed) {
       {"f 1 2 /1\n", "a.obj:5: expected a vertex's index, got '/1'"},
       {"v 1 2\n", "a.obj:5: expected three coordinates"},
       {"v 1 2 nan\n", "a.obj:5: expected a number, got 'nan'"},
+      {"v 1 -1e308 0\n", "a.obj:5: expected metres, got more than a kilometre: '-1e308'"},
       {"", "a.obj: expected at least one face"},
   };
   for (const auto& [lines, message] : cases) {

@@ -48,6 +48,7 @@ void Backend::choose(const std::string& name) {
   if (meant == name_) return;
   chosen_ = Registry<Reconstructor>::get(meant)(rig_);
   name_ = meant;
+  attempts_ = {};
 }
 
 Reconstructor& Backend::chosen() {
@@ -57,17 +58,26 @@ Reconstructor& Backend::chosen() {
 
 void Backend::draw(const FrameInputs& inputs, DiminishedFrame& result) {
   const ScopedTimer timer(result.report.drawing.milliseconds);
+  if (attempts_.is_due() && try_chosen(inputs, result)) return;
+  message_ = failure_ + "; drawn by the CPU instead";
+  if (!fallback_) fallback_ = Registry<Reconstructor>::get(best_suited(Suited::always))(rig_);
+  reconstruct(*fallback_, inputs, result);
+}
+
+bool Backend::try_chosen(const FrameInputs& inputs, DiminishedFrame& result) {
   try {
     draw_by_chosen(inputs, result);
+    attempts_.succeed();
+    return true;
   } catch (const Error& error) {
     if (Registry<Reconstructor>::get(name_).suited() == Suited::always) throw;
-    // The next frame begins anew, and so does this one: what was drawn may be in any state.
+    attempts_.fail();
+    failure_ = error.what();
+    // All begins anew: what was drawn may be in any state.
     chosen_.reset();
     last_ = Stage::drawing;
     result.reconstruction.color.resize(0, 0);
-    message_ = std::string(error.what()) + "; drawn by the CPU instead";
-    if (!fallback_) fallback_ = Registry<Reconstructor>::get(best_suited(Suited::always))(rig_);
-    reconstruct(*fallback_, inputs, result);
+    return false;
   }
 }
 

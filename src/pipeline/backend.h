@@ -4,11 +4,12 @@
 #include <string>
 
 #include "composite/composing_reconstructor.h"
+#include "core/backoff.h"
 
 namespace diminish {
 
 /// The reconstruction backend that Options::backend names. If a GPU fails in a frame, the CPU draws
-/// it, and the next frame starts with a new context.
+/// it, and the next frame starts with a new context; if that fails, too, ever later ones.
 class Backend {
  public:
   explicit Backend(const Rig& rig) : rig_(rig) {}
@@ -39,6 +40,8 @@ class Backend {
 
  private:
   Reconstructor& chosen();
+  /// False if the chosen backend fails.
+  bool try_chosen(const FrameInputs& inputs, DiminishedFrame& result);
   void draw_by_chosen(const FrameInputs& inputs, DiminishedFrame& result);
   void reconstruct(Reconstructor& reconstructor, const FrameInputs& inputs,
                    DiminishedFrame& result) const;
@@ -47,6 +50,8 @@ class Backend {
   std::string name_;
   std::unique_ptr<Reconstructor> chosen_, fallback_;
   Stage last_ = Stage::drawing;  ///< done in this frame
+  Backoff attempts_;
+  std::string failure_;  ///< the last one
   std::string message_;
 };
 

@@ -3,14 +3,30 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "sink/distribution.h"
 
 namespace diminish {
 
+namespace {
+
+/// Without its digits.
+std::string words_of(const std::string& message) {
+  std::string words;
+  std::copy_if(message.begin(), message.end(), std::back_inserter(words),
+               [](char c) { return c < '0' || c > '9'; });
+  return words;
+}
+
+}  // namespace
+
 void RunStatistics::add(const FrameReport& report) {
   if (!report.faults.empty() || report.skipped) ++faulty_;
-  for (const std::string& message : report.messages) ++messages_[message];
+  for (const std::string& text : report.messages) {
+    Message& message = messages_[words_of(text)];
+    if (message.frames++ == 0) message.first = text;
+  }
   if (report.skipped) {
     ++skipped_;
     return;
@@ -48,6 +64,12 @@ std::optional<RunStatistics::Ages> RunStatistics::remembered_ages() const {
   return Ages{distribution_of(median_ages_s_).p50, oldest_age_s_};
 }
 
+std::map<std::string, std::size_t> RunStatistics::messages() const {
+  std::map<std::string, std::size_t> counts;
+  for (const auto& [words, message] : messages_) counts[message.first] += message.frames;
+  return counts;
+}
+
 std::string RunStatistics::table() const {
   std::string text;
   for (const TimeGroup& group : time_groups) {
@@ -71,7 +93,7 @@ std::string RunStatistics::table() const {
         100 * static_cast<double>(background_pixels_) / static_cast<double>(remembered_pixels_));
   }
   if (skipped_ > 0) text += fmt::format("{} frames skipped: no colour image\n", skipped_);
-  for (const auto& [message, count] : messages_) {
+  for (const auto& [message, count] : messages()) {
     text += fmt::format("{} of {} frames: {}\n", count, frames_ + skipped_, message);
   }
   return text;

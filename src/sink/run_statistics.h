@@ -42,8 +42,10 @@ class RunStatistics {
   /// By row of the table of times.
   double average_ms(std::size_t row) const;
   const std::array<Times, time_row_count>& times() const { return times_; }
-  /// Messages about what was not found or could not be done, with the number of frames.
-  const std::map<std::string, std::size_t>& messages() const { return messages_; }
+  /// Messages about what was not found or could not be done, with the number of frames. Those that
+  /// differ in numbers only (times, files) count as the first of them, so that an endless run's do
+  /// not grow.
+  std::map<std::string, std::size_t> messages() const;
 
   /// The times of the stages, the paper's Table 2 beside its own figures, then the messages with
   /// the number of frames.
@@ -56,7 +58,11 @@ class RunStatistics {
   std::vector<double> median_ages_s_;  ///< of frames with something remembered
   double oldest_age_s_ = 0;
   std::array<Times, time_row_count> times_{};
-  std::map<std::string, std::size_t> messages_;
+  struct Message {
+    std::string first;
+    std::size_t frames = 0;
+  };
+  std::map<std::string, Message> messages_;  ///< by their words
 };
 
 }  // namespace diminish

@@ -44,6 +44,20 @@ TEST(RunStatistics, AddsUpFramesAndLeavesSkippedOnesOutOfTheTimes) {
   EXPECT_THAT(table, HasSubstr("1 frames skipped"));
 }
 
+TEST(RunStatistics, CountsMessagesThatDifferInNumbersTogether) {
+  RunStatistics statistics;
+  for (int i = 0; i < 1000; ++i) {
+    FrameReport report;
+    report.messages = {"rgbd0: no depth image within 0.02 s of " + std::to_string(1000 + i),
+                       "ball: not found"};
+    statistics.add(report);
+  }
+  const std::map<std::string, std::size_t> expected{
+      {"ball: not found", 1000}, {"rgbd0: no depth image within 0.02 s of 1000", 1000}};
+  EXPECT_EQ(statistics.messages(), expected);
+  EXPECT_THAT(statistics.table(), HasSubstr("1000 of 1000 frames: rgbd0: no depth image"));
+}
+
 TEST(RunStatistics, SaysHowOldWhatIsRememberedIs) {
   RunStatistics statistics;
   FrameReport report;

@@ -3,33 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <fstream>
-#include <iterator>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <system_error>
 
 #include "core/mat.h"
 #include "diminish/error.h"
+#include "source/image_damage.h"
 #include "source/image_header.h"
+#include "source/jpeg_decoder.h"
 
 namespace diminish {
 namespace {
-
-/// Whether a JPEG ends before its end-of-image marker: decoders fill up what is missing with grey
-/// and say nothing. Neither marker can occur inside of coded pixels.
-bool is_cut_short(const std::vector<std::uint8_t>& bytes) {
-  constexpr std::array<std::uint8_t, 2> image_start = {0xff, 0xd8};
-  constexpr std::array<std::uint8_t, 2> scan_start = {0xff, 0xda};
-  constexpr std::array<std::uint8_t, 2> image_end = {0xff, 0xd9};
-  const auto last = [&](const std::array<std::uint8_t, 2>& marker) {
-    return std::find_end(bytes.begin(), bytes.end(), marker.begin(), marker.end());
-  };
-  const bool is_jpeg =
-      bytes.size() > 2 && std::equal(image_start.begin(), image_start.end(), bytes.begin());
-  return is_jpeg && (last(image_end) == bytes.end() || last(image_end) < last(scan_start));
-}
 
 /// More than any camera has.
 constexpr std::int64_t most_pixels = 1 << 28;
@@ -38,13 +24,17 @@ std::int64_t pixels_of(const cv::Size& size) {
   return static_cast<std::int64_t>(size.width) * size.height;
 }
 
-cv::Mat decode_with(const std::vector<std::uint8_t>& bytes, int flags) {
+/// Throws Error.
+void check(const std::vector<std::uint8_t>& bytes) {
   if (bytes.empty()) throw Error(Error::input, "the file is empty");
-  if (is_cut_short(bytes)) throw Error(Error::input, "the file is cut short");
   if (const auto size = declared_size(bytes); size && pixels_of(*size) > most_pixels) {
     throw Error(Error::input, fmt::format("expected at most {} million pixels, got {}x{}",
                                           most_pixels / 1'000'000, size->width, size->height));
   }
+  if (const char* const damage = damage_of(bytes)) throw Error(Error::input, damage);
+}
+
+cv::Mat decode_checked(const std::vector<std::uint8_t>& bytes, int flags) {
   cv::Mat image;
   try {
     image = cv::imdecode(bytes, flags);
@@ -83,12 +73,17 @@ std::vector<std::uint8_t> read_bytes(const std::filesystem::path& file) {
 
 template <>
 cv::Mat decode<Bgr>(const std::vector<std::uint8_t>& bytes) {
-  return decode_with(bytes, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
+  check(bytes);
+  if (is_jpeg(bytes)) {
+    if (cv::Mat image = decode_jpeg(bytes); !image.empty()) return image;
+  }
+  return decode_checked(bytes, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
 }
 
 template <>
 cv::Mat decode<std::uint16_t>(const std::vector<std::uint8_t>& bytes) {
-  return decode_with(bytes, cv::IMREAD_UNCHANGED);
+  check(bytes);
+  return decode_checked(bytes, cv::IMREAD_UNCHANGED);
 }
 
 template <>
@@ -106,7 +101,7 @@ void expect_format<std::uint16_t>(const cv::Mat& image, const Intrinsics& camera
 }
 
 void read_mask(const std::filesystem::path& file, const Intrinsics& camera, Mask& mask) {
-  const cv::Mat image = decode_with(read_bytes(file), cv::IMREAD_UNCHANGED);
+  const cv::Mat image = decode<std::uint16_t>(read_bytes(file));
   if (image.cols != camera.width || image.rows != camera.height) {
     throw Error(Error::input, fmt::format("expected {}x{}, got {}", camera.width, camera.height,
                                           size_text(image)));

@@ -9,11 +9,14 @@ namespace {
 
 using Bytes = std::span<const std::uint8_t>;
 
-/// The big-endian number of `count` bytes at `offset`, which are there.
+/// Of `count` bytes at `offset`, which are there.
 std::uint32_t number_at(Bytes bytes, std::size_t offset, std::size_t count) {
-  std::uint32_t number = 0;
-  for (const std::uint8_t byte : bytes.subspan(offset, count)) number = number << 8 | byte;
-  return number;
+  return big_endian(bytes.subspan(offset, count));
+}
+
+template <std::size_t size>
+bool starts_with(Bytes bytes, const std::array<std::uint8_t, size>& magic) {
+  return bytes.size() >= size && std::equal(magic.begin(), magic.end(), bytes.begin());
 }
 
 std::optional<cv::Size> size_of(std::uint32_t width, std::uint32_t height) {
@@ -51,14 +54,23 @@ std::optional<cv::Size> size_of_jpeg(Bytes bytes) {
 
 }  // namespace
 
+bool is_png(std::span<const std::uint8_t> bytes) {
+  return starts_with<8>(bytes, {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'});
+}
+
+bool is_jpeg(std::span<const std::uint8_t> bytes) {
+  return starts_with<2>(bytes, {0xff, 0xd8});
+}
+
+std::uint32_t big_endian(std::span<const std::uint8_t> bytes) {
+  std::uint32_t number = 0;
+  for (const std::uint8_t byte : bytes) number = number << 8 | byte;
+  return number;
+}
+
 std::optional<cv::Size> declared_size(std::span<const std::uint8_t> bytes) {
-  constexpr std::array<std::uint8_t, 8> png = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
-  constexpr std::array<std::uint8_t, 2> jpeg = {0xff, 0xd8};
-  const auto starts_with = [&](const auto& magic) {
-    return bytes.size() >= magic.size() && std::equal(magic.begin(), magic.end(), bytes.begin());
-  };
-  if (starts_with(png)) return size_of_png(bytes);
-  if (starts_with(jpeg)) return size_of_jpeg(bytes);
+  if (is_png(bytes)) return size_of_png(bytes);
+  if (is_jpeg(bytes)) return size_of_jpeg(bytes);
   return std::nullopt;
 }
 

@@ -3,6 +3,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 
+#include "core/limits.h"
 #include "core/text.h"
 #include "source/configuration_checks.h"
 #include "source/find_camera.h"
@@ -10,11 +11,18 @@
 namespace diminish {
 namespace {
 
+void check_point(const Eigen::Vector3d& point_m, const Config& place) {
+  if (!point_m.allFinite()) place.fail("expected three numbers");
+  if (point_m.cwiseAbs().maxCoeff() > largest_coordinate_m) {
+    place.fail("expected metres, got more than a kilometre");
+  }
+}
+
 void check_vertices(const std::vector<Eigen::Vector3d>& vertices, const Config& place) {
   if (vertices.size() < 4) place.fail("expected at least 4 points");
   Eigen::Matrix3Xd edges(3, vertices.size());
   for (std::size_t i = 0; i < vertices.size(); ++i) {
-    if (!vertices[i].allFinite()) item_of(place, i).fail("expected three numbers");
+    check_point(vertices[i], item_of(place, i));
     edges.col(static_cast<Eigen::Index>(i)) = vertices[i] - vertices[0];
   }
   if (edges.colPivHouseholderQr().rank() < 2) {
@@ -61,8 +69,9 @@ void MaskSettings::check(const Config& place, const Rig* rig) const {
 }
 
 void BoxSettings::check(const Config& place, const Rig* rig) const {
-  if (!min_m.allFinite()) place.find("min").fail("expected three numbers");
-  if (!max_m.allFinite() || (min_m.array() >= max_m.array()).any()) {
+  check_point(min_m, place.find("min"));
+  check_point(max_m, place.find("max"));
+  if ((min_m.array() >= max_m.array()).any()) {
     place.find("max").fail("expected three numbers, each above min's");
   }
   if (rig == nullptr || frame == "world" || find_rgbd_camera(*rig, frame) != nullptr) return;

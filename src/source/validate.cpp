@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "core/limits.h"
 #include "core/text.h"
 #include "diminish/occluder_detector.h"
 #include "diminish/pose_source.h"
@@ -16,8 +17,6 @@ namespace {
 
 /// A pixel's provenance has this many values for RGB-D cameras.
 constexpr std::size_t max_rgbd_cameras = 253;
-/// Metres; larger numbers are most likely millimetres.
-constexpr double largest_translation_m = 1000;
 
 void check_integer(int value, int min, int max, const Config& place) {
   if (value >= min && value <= max) return;
@@ -113,7 +112,7 @@ void check_rigid_transform(const RigidTransform& transform, const Config& place)
     rotation.fail("expected a rotation, got a matrix whose rows are not orthonormal");
   }
   if (matrix.determinant() < 0) rotation.fail("expected a rotation, got a reflection");
-  if (!(transform.translation.cwiseAbs().maxCoeff() <= largest_translation_m)) {
+  if (!(transform.translation.cwiseAbs().maxCoeff() <= largest_coordinate_m)) {
     place.find("translation").fail("expected metres, got more than a kilometre");
   }
 }

@@ -118,6 +118,8 @@ TEST(Validate, SaysOfAProgramsSceneWhatIsSaidOfAFile) {
        [](Scene& scene) {
          change<MarkerSettings>(scene, 0).vertices = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}};
        }},
+      {"[0, 1, 0], [0, 0, 1]", "[0, 1, 0], [0, 0, 1e308]",
+       [](Scene& scene) { change<MarkerSettings>(scene, 0).vertices[3].z() = 1e308; }},
       {" vertices", " mesh: a.obj, vertices",
        [](Scene& scene) { change<MarkerSettings>(scene, 0).mesh = "a.obj"; }},
       {"max: [1", "max: [-1", [](Scene& scene) { change<BoxSettings>(scene, 1).max_m.x() = -1; }},
