@@ -155,13 +155,13 @@ TEST_F(ProgramTest, ReportsOnOnePage) {
   const auto outcome = Program::run({"report", recording.folder(), recording.out()});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const std::string page = read_text_file(out("report.html"), 1 << 24);
-  // Three frames; input and result twice each, and the truth.
+  // Three frames; input, result and truth.
   std::size_t pictures = 0;
   for (std::size_t at = page.find("data:image"); at != std::string::npos;
        at = page.find("data:image", at + 1)) {
     ++pictures;
   }
-  EXPECT_EQ(pictures, 15U);
+  EXPECT_EQ(pictures, 9U);
   EXPECT_THAT(page, ::testing::Not(HasSubstr("http"))) << "it must need nothing else";
   ASSERT_EQ(Program::run({"score", recording.folder(), recording.out()}).exit_code, 0);
   const auto score = nlohmann::json::parse(read_text_file(out("score.json"), 1 << 20));
@@ -244,10 +244,54 @@ TEST_F(ProgramTest, SaysWhatIsWrongWithABackground) {
   EXPECT_THAT(fixed.err, HasSubstr("rig.yaml:8: pose.source: expected marker or file"));
 }
 
+TEST_F(ProgramTest, ComparesTwoRunsOnOnePage) {
+  fs::create_directories(recording.path("truth/background"));
+  fs::create_directories(recording.path("truth/mask"));
+  for (const char* name : {"0", "1", "2"}) {
+    const std::string file = std::string(name) + ".png";
+    fs::copy_file(recording.path("color/" + file), recording.path("truth/background/" + file));
+    fs::copy_file(recording.path("masks/color/" + file), recording.path("truth/mask/" + file));
+  }
+  ASSERT_EQ(run().exit_code, 0);
+  const std::string other = recording.path("other").string();
+  ASSERT_EQ(
+      Program::run({"run", recording.folder(), "--out", other, "--inpaint", "none"}).exit_code, 0);
+  const auto compare = [&](const std::string& second, const std::string& page) {
+    return Program::run({"compare", recording.out(), second, "--against", recording.folder(),
+                         "--out", page, "--frames", "2"});
+  };
+  const std::string file = recording.path("page.html").string();
+  const auto outcome = compare(other, file);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const std::string page = read_text_file(file, 1 << 24);
+  // Of each frame both runs, the truth, the input, and three differences.
+  std::size_t pictures = 0;
+  for (std::size_t at = page.find("data:image"); at != std::string::npos;
+       at = page.find("data:image", at + 1)) {
+    ++pictures;
+  }
+  EXPECT_EQ(pictures, 14U);
+  EXPECT_THAT(page, ::testing::Not(HasSubstr("http")));
+  EXPECT_THAT(page, HasSubstr("<tr><td>inpaint<td>&quot;structure&quot;<td>&quot;none&quot;"));
+  const auto psnr_of = [&](const std::string& folder) {
+    EXPECT_EQ(Program::run({"score", recording.folder(), folder}).exit_code, 0);
+    const auto score = nlohmann::json::parse(read_text_file(folder + "/score.json", 1 << 20));
+    return score["mean"]["inside"]["psnr_db"].get<double>();
+  };
+  const double first = psnr_of(recording.out());
+  const double second = psnr_of(other);
+  EXPECT_THAT(page, HasSubstr(fmt::format("PSNR inside, dB<td>{:.3f}<td>{:.3f}<td>{:+.3f}", first,
+                                          second, second - first)));
+
+  const auto failed = compare(recording.path("nowhere").string(), file);
+  EXPECT_EQ(failed.exit_code, 1);
+  EXPECT_THAT(failed.err, HasSubstr("nowhere"));
+}
+
 TEST_F(ProgramTest, ExplainsItself) {
   const auto help = Program::run({"--help"});
   EXPECT_EQ(help.exit_code, 0);
-  for (const char* command : {"run", "scan", "score", "report", "train-color"}) {
+  for (const char* command : {"run", "scan", "score", "report", "compare", "train-color"}) {
     EXPECT_THAT(help.out, HasSubstr(command));
   }
   const auto run_help = Program::run({"run", "--help"});

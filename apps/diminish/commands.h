@@ -10,6 +10,7 @@ namespace diminish {
 void add_bench(CLI::App& program, int& exit_code);
 void add_calibrate(CLI::App& program, int& exit_code);
 void add_check(CLI::App& program, int& exit_code);
+void add_compare(CLI::App& program, int& exit_code);
 void add_devices(CLI::App& program, int& exit_code);
 void add_latency_test(CLI::App& program, int& exit_code);
 void add_live(CLI::App& program, int& exit_code);

@@ -32,6 +32,7 @@ int main(int argc, char** argv) {
     diminish::add_scan(program, exit_code);
     diminish::add_score(program, exit_code);
     diminish::add_report(program, exit_code);
+    diminish::add_compare(program, exit_code);
     diminish::add_bench(program, exit_code);
     diminish::add_markers(program, exit_code);
     diminish::add_calibrate(program, exit_code);

@@ -14,4 +14,12 @@ DIMINISH_EXPORT void write_report(const std::filesystem::path& recording,
                                   const std::filesystem::path& run,
                                   const std::filesystem::path& file);
 
+/// Writes one HTML page about two runs on the same recording, which has truth/: figures side by
+/// side, the options that differ, and the frames whose results differ most, with a slider between
+/// them. most_frames: with pictures. Throws Error if a folder lacks something.
+DIMINISH_EXPORT void write_comparison(const std::filesystem::path& recording,
+                                      const std::filesystem::path& first,
+                                      const std::filesystem::path& second,
+                                      const std::filesystem::path& file, int most_frames = 8);
+
 }  // namespace diminish

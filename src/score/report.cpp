@@ -13,6 +13,7 @@
 #include "score/csv_table.h"
 #include "score/html.h"
 #include "score/run_folder.h"
+#include "score/run_summary.h"
 #include "sink/partial_file.h"
 #include "sink/shares.h"
 #include "sink/time_table.h"
@@ -21,32 +22,6 @@ namespace diminish {
 namespace {
 
 constexpr std::size_t most_pictures = 8;
-
-constexpr const char* head = R"(<!doctype html>
-<html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width">
-<title>diminish report</title>
-<style>
-body { font: 15px/1.5 system-ui, sans-serif; margin: 2em auto; max-width: 1000px; padding: 0 1em; color: #222 }
-table { border-collapse: collapse } td, th { padding: .2em .8em; text-align: right; border-bottom: 1px solid #ddd }
-td:first-child, th:first-child { text-align: left }
-.plots { display: flex; flex-wrap: wrap; gap: 1em } figure { margin: 0; width: 300px }
-figcaption span { color: #888; float: right } svg { width: 100%; background: #f6f6f6 }
-polyline { fill: none; stroke: #06c; stroke-width: 1.5 } circle { fill: #06c }
-.slider { position: relative; line-height: 0 } .slider img { width: 100% }
-.slider img + img { position: absolute; left: 0; top: 0; clip-path: inset(0 0 0 50%) }
-input[type=range] { width: 100% } .bar { display: flex; height: 1.6em; color: #fff; text-align: center }
-</style>
-)";
-
-constexpr const char* script = R"(<script>
-document.querySelectorAll('.compare').forEach(c => {
-  const left = c.querySelector('img'), right = c.querySelector('img + img');
-  c.querySelector('input').oninput = e => right.style.clipPath = `inset(0 0 0 ${e.target.value}%)`;
-  c.querySelectorAll('select').forEach((s, i) => s.onchange = () =>
-    (i ? right : left).src = c.querySelector(`[data-name=${s.value}]`).src);
-});
-</script>
-)";
 
 using Figure = std::function<std::optional<double>(const FrameScore&)>;
 
@@ -182,39 +157,18 @@ std::string provenance_bar(const nlohmann::json& summary) {
   return text + ".</p>\n";
 }
 
-std::string comparison(const RunFolder& folder, const FrameScore& frame) {
+std::string before_and_after(const RunFolder& folder, const FrameScore& frame) {
   const auto pictures = folder.object_pictures(frame.name);
   if (!pictures) return {};
-  std::string text = fmt::format("<h3>{}</h3><div class=compare>", html::escaped(frame.name));
-  const std::string before = html::data_uri(pictures->input);
-  const std::string after = html::data_uri(pictures->result);
-  text += fmt::format("<div class=slider><img alt='' src='{}'><img alt='' src='{}'></div>", before,
-                      after);
-  text += "<input type=range value=50 aria-label='before and after'>";
-  for (const char* selected : {"input", "result"}) {
-    text += "<select>";
-    for (const std::string name : {"input", "result", "truth"}) {
-      text += fmt::format("<option{}>{}</option>", name == selected ? " selected" : "", name);
-    }
-    text += "</select> ";
-  }
-  const auto hidden = [&](const char* name, const std::string& source) {
-    text += fmt::format("<img hidden alt='' data-name={} src='{}'>", name, source);
-  };
-  hidden("input", before);
-  hidden("result", after);
-  hidden("truth", html::data_uri(pictures->truth));
+  std::string text = fmt::format("<h3>{}</h3>", html::escaped(frame.name));
+  text += html::slider(
+      {{"input", pictures->input}, {"result", pictures->result}, {"truth", pictures->truth}},
+      "input", "result");
   if (frame.inside) {
-    text += fmt::format("PSNR {:.2f} dB, SSIM {:.3f}", frame.inside->psnr_db, frame.inside->ssim);
+    text += fmt::format("<p>PSNR {:.2f} dB, SSIM {:.3f}</p>\n", frame.inside->psnr_db,
+                        frame.inside->ssim);
   }
-  return text + "</div>\n";
-}
-
-nlohmann::json read_summary(const std::filesystem::path& file) {
-  constexpr std::size_t most_bytes = 1 << 24;
-  nlohmann::json summary = nlohmann::json::parse(read_text_file(file, most_bytes), nullptr, false);
-  if (summary.is_discarded()) throw Error(Error::input, file.string() + ": is not JSON");
-  return summary;
+  return text;
 }
 
 }  // namespace
@@ -223,8 +177,8 @@ void write_report(const std::filesystem::path& recording, const std::filesystem:
                   const std::filesystem::path& file) {
   const Score score = score_run(recording, run);
   const RunFolder folder(recording, run);
-  const nlohmann::json summary = read_summary(run / "summary.json");
-  std::string page = head;
+  const nlohmann::json summary = read_run_summary(run);
+  std::string page;
   page += fmt::format("<h1>{}</h1>\n", html::escaped(recording.filename().string()));
   try {
     if (score.mean.inside) {
@@ -243,7 +197,7 @@ void write_report(const std::filesystem::path& recording, const std::filesystem:
     page += "<h2>Before and after</h2>\n";
     const std::size_t step = (score.frames.size() + most_pictures - 1) / most_pictures;
     for (std::size_t i = 0; i < score.frames.size(); i += step) {
-      page += comparison(folder, score.frames[i]);
+      page += before_and_after(folder, score.frames[i]);
     }
     page += "<h2>Figures by frame</h2>\n" + plots(score.frames);
     page += "<h2>Times</h2>\n" + time_table(summary);
@@ -255,7 +209,7 @@ void write_report(const std::filesystem::path& recording, const std::filesystem:
                 fmt::format("{}: expected the summary that `diminish run` writes: {}",
                             (run / "summary.json").string(), printable(error.what())));
   }
-  write_file(file, page + script);
+  write_file(file, html::page("diminish report", page));
 }
 
 }  // namespace diminish
