@@ -125,7 +125,7 @@ class MemoryTest : public ::testing::Test {
   Reconstruction result;  ///< with it
   MemoryReport memory_report;
   Image<Bgr> truth;
-  static constexpr std::size_t pixels = hidden.width * hidden.height;
+  static constexpr std::size_t pixels = std::size_t{hidden.width} * hidden.height;
 };
 
 }  // namespace diminish::testing

@@ -29,7 +29,7 @@ void describe_last_frame(const LiveFrame& frame, LiveStatus& status) {
   status.markers.push_back(report.markers.color.size());
   for (const auto& markers : report.markers.rgbd) status.markers.push_back(markers.size());
   status.occluders = report.occluders;
-  const double pixels = static_cast<double>(frame.result.mask.size());
+  const auto pixels = static_cast<double>(frame.result.mask.size());
   if (pixels > 0) status.mask_share = static_cast<double>(report.mask_pixels) / pixels;
   const Shares shares = shares_of(report.mask_pixels, report.valid_pixels, report.witnessed_pixels,
                                   report.remembered_pixels);

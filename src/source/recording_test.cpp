@@ -258,6 +258,7 @@ TEST(Recording, SeveralFramesAreReadAtATimeAsOneAfterAnother) {
   EXPECT_FALSE(source->begin(none));
   {
     std::vector<std::jthread> readers;
+    readers.reserve(frames.size());
     for (FrameSet& frame : frames) readers.emplace_back([&] { source->read_images(frame); });
   }
   for (std::size_t i = 0; i < frames.size(); ++i) {
