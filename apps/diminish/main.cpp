@@ -1,5 +1,8 @@
+#include <oneapi/tbb/global_control.h>
+
 #include <cstdio>
 #include <exception>
+#include <new>
 #include <opencv2/core.hpp>
 
 #include "commands.h"
@@ -46,12 +49,16 @@ int run_command(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  int exit_code = failed;
   try {
+    oneapi::tbb::task_scheduler_handle workers{oneapi::tbb::attach{}};
     // Threads are given by --threads: a frame each.
     cv::setNumThreads(1);
-    return run_command(argc, argv);
+    exit_code = run_command(argc, argv);
+    // Threads that end only after main() may meet what is gone by then.
+    oneapi::tbb::finalize(workers, std::nothrow);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "diminish: %s\n", error.what());
-    return failed;
   }
+  return exit_code;
 }
