@@ -1,6 +1,8 @@
 #include "diminish/membrane.h"
 
 #include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
@@ -295,6 +297,34 @@ TEST(Membrane, SaysWhichViewDoesNotFit) {
         membrane.clone({view(8, 6, 3), view(8, 6, 4), view(8, 6, 1), view(8, 5, 1)}, view(8, 6, 3));
       }),
       "layers: expected 8x6, channels: 1; got 8x5, channels: 1");
+}
+
+// Threads share a grid by bands of 64 rows; the last one may have a single row.
+TEST(Membrane, FillsTheSameWhateverTheThreads) {
+  namespace tbb = oneapi::tbb;
+  const tbb::global_control enough(tbb::global_control::max_allowed_parallelism, 4);
+  std::mt19937 random(11);
+  std::uniform_int_distribution<int> level(0, 255);
+  for (const int height : {129, 130, 193, 257}) {
+    Image<Bgr> picture(90, height);
+    for (Bgr& pixel : picture) {
+      for (std::uint8_t* c : {&pixel.b, &pixel.g, &pixel.r}) {
+        *c = static_cast<std::uint8_t>(level(random));
+      }
+    }
+    Mask missing(90, height, 0);
+    for (std::uint8_t& pixel : missing) pixel = level(random) < 235 ? 255 : 0;
+    const auto fill = [&](int threads) {
+      Image<Bgr> filled = picture;
+      tbb::task_arena(threads).execute([&] {
+        Membrane().fill({missing.data(), 90, height, 90, 1},
+                        {reinterpret_cast<std::uint8_t*>(filled.data()), 90, height, 270, 3});
+      });
+      return filled;
+    };
+    const Image<Bgr> alone = fill(1);
+    for (int i = 0; i < 20; ++i) ASSERT_EQ(fill(4), alone) << height << " rows";
+  }
 }
 
 }  // namespace

@@ -94,7 +94,10 @@ HWY_INLINE void RelaxRows(const MembraneLevel& level, const float* right_side, f
     const bool above_is_seam = y - 1 == rows.first && rows.first > 0;
     if (y > rows.first && !above_is_seam) RelaxBlack<start>(level, right_side, values, y - 1);
   }
-  if (rows.last == level.height) RelaxBlack<start>(level, right_side, values, rows.last - 1);
+  const bool last_is_seam = rows.last - 1 == rows.first && rows.first > 0;
+  if (rows.last == level.height && !last_is_seam) {
+    RelaxBlack<start>(level, right_side, values, rows.last - 1);
+  }
 }
 
 void Relax(const MembraneLevel& level, const float* right_side, float* values, bool from_zero,
