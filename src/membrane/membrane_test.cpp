@@ -29,7 +29,7 @@ class Padded {
       : width_(image.width()), height_(image.height()), bottom_up_(bottom_up) {
     bytes_.assign(2 * margin + static_cast<std::size_t>(stride() * height_), untouched);
     for (int y = 0; y < height_; ++y) {
-      std::memcpy(row(y), image.row(y), static_cast<std::size_t>(channels * width_));
+      std::memcpy(row(y), image.row(y), std::size_t{channels} * static_cast<std::size_t>(width_));
     }
   }
 
@@ -39,7 +39,7 @@ class Padded {
   Image<Pixel> image() {
     Image<Pixel> result(width_, height_);
     for (int y = 0; y < height_; ++y) {
-      std::memcpy(result.row(y), row(y), static_cast<std::size_t>(channels * width_));
+      std::memcpy(result.row(y), row(y), std::size_t{channels} * static_cast<std::size_t>(width_));
     }
     return result;
   }
@@ -267,7 +267,7 @@ TEST(Membrane, CopiesWhereThereIsNoTarget) {
 }
 
 TEST(Membrane, SaysWhichViewDoesNotFit) {
-  std::vector<std::uint8_t> bytes(4 * 8 * 6);
+  std::vector<std::uint8_t> bytes(std::size_t{4} * 8 * 6);
   const auto view = [&](int width, int height, int channels) {
     return Membrane::View{bytes.data(), width, height, std::ptrdiff_t{width} * channels, channels};
   };
