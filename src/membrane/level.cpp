@@ -59,7 +59,7 @@ void MembraneLevel::begin(int width_, int height_) {
   height = height_;
   tile_columns = columns;
   tile_rows = tiles_high;
-  pitch = (tile_columns + 2) * lanes;
+  pitch = std::ptrdiff_t{lanes} * (tile_columns + 2);
   const std::size_t size =
       static_cast<std::size_t>(rows() + 2) * 2 * static_cast<std::size_t>(pitch);
   for (AlignedFloats* values : {&right, &down, &inverse}) values->require(size);

@@ -64,7 +64,8 @@ struct MembraneLevel {
     void append(int columns, const Wanted& wanted);
     int rows() const { return static_cast<int>(begin_.size() - 1) / parts * tile_height; }
     std::span<const Span> row(int y) const {
-      const auto at = static_cast<std::size_t>(y / tile_height * parts + part(y));
+      const std::size_t at =
+          static_cast<std::size_t>(y / tile_height) * parts + static_cast<std::size_t>(part(y));
       return {spans_.data() + begin_[at], spans_.data() + begin_[at + 1]};
     }
 
@@ -118,14 +119,15 @@ struct MembraneLevel {
   std::ptrdiff_t channel_row_step() const { return 2 * pitch * channels; }
 
   int rows() const { return tile_rows * tile_height; }
-  std::uint32_t* rough_row(int y) { return rough.data() + y * (tile_columns + 2) + 1; }
-  const std::uint32_t* rough_row(int y) const { return rough.data() + y * (tile_columns + 2) + 1; }
+  std::uint32_t* rough_row(int y) { return rough.data() + rough_index(y); }
+  const std::uint32_t* rough_row(int y) const { return rough.data() + rough_index(y); }
   Block& block(int y, int column) { return blocks[block_index(y, column)]; }
   Block block(int y, int column) const { return blocks[block_index(y, column)]; }
   Tile& state(int column, int row) { return tiles[tile_index(column, row)]; }
   Tile state(int column, int row) const { return tiles[tile_index(column, row)]; }
 
  private:
+  std::ptrdiff_t rough_index(int y) const { return std::ptrdiff_t{y} * (tile_columns + 2) + 1; }
   std::size_t block_index(int y, int column) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(tile_columns) +
            static_cast<std::size_t>(column);
