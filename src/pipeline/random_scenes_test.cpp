@@ -82,7 +82,16 @@ class RandomScene {
   }
 
   Intrinsics sensor() {
-    const auto side = [&] { return smallest_px + (below(5) == 0 ? below(3) : below(150)); };
+    const auto side = [&] {
+      switch (below(6)) {
+        case 0:
+          return smallest_px + below(3);
+        case 1:
+          return 64 * (1 + below(4)) + 1;  // threads share rows in bands: the last has one
+        default:
+          return smallest_px + below(150);
+      }
+    };
     Intrinsics sensor{side(), side(), 0, 0, 0, 0, {}};
     const double focal_px = uniform(0.4, 3) * std::max(sensor.width, sensor.height);
     sensor.fx = sensor.fy = focal_px;
