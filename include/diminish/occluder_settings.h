@@ -60,4 +60,14 @@ class DIMINISH_EXPORT BoxSettings : public OccluderSettings {
   bool needs_world() const override { return frame == "world"; }
 };
 
+/// For the detector `difference`: whatever stands free in front of what the RGB-D cameras see.
+class DIMINISH_EXPORT DifferenceSettings : public OccluderSettings {
+ public:
+  /// Of the distance from the colour camera to what an object hides: the share that is at least
+  /// between the two, somewhere. What stands closer to its background is part of the scene.
+  double clearance = 0.3;
+
+  void check(const Config& place, const Rig* rig) const override;
+};
+
 }  // namespace diminish

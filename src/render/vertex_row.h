@@ -54,7 +54,7 @@ class VertexRows {
   VertexRows(const RgbdCamera& camera, const Intrinsics& color);
 
   struct Frame {
-    const Image<std::uint16_t>& depth;
+    ImageView<std::uint16_t> depth;
     const Mask& depth_mask;
     const Mask& color_mask;
     FloatTransform to_color;

@@ -80,4 +80,13 @@ void BoxSettings::check(const Config& place, const Rig* rig) const {
   place.find("frame").fail("expected one of " + join(known) + ", got '" + printable(frame) + "'");
 }
 
+void DifferenceSettings::check(const Config& place, const Rig* rig) const {
+  if (!(clearance >= 0.05 && clearance <= 0.95)) {
+    place.find("clearance").fail("expected a number from 0.05 to 0.95");
+  }
+  if (rig != nullptr && rig->rgbd.empty()) {
+    place.find("detector").fail("difference needs an RGB-D camera in rig.yaml");
+  }
+}
+
 }  // namespace diminish

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <vector>
+
+#include "detect/difference/free_space.h"
+#include "detect/difference/seen_layers.h"
+#include "diminish/image.h"
+#include "diminish/intrinsics.h"
+#include "scene/background_planes.h"
+
+namespace diminish {
+
+/// What a pixel of the small picture shows, as far as RGB-D cameras tell.
+enum class Shown : std::uint8_t {
+  unknown,  ///< no RGB-D camera sees anything there
+  unlike,   ///< something else than they see
+  scene,    ///< what an RGB-D camera sees there, and it does not stand free
+  object,   ///< something that stands free, as RGB-D cameras see it
+  unseen_object  ///< something that no RGB-D camera sees, where they see that nothing else can be
+};
+inline bool is_object(Shown what) {
+  return what == Shown::object || what == Shown::unseen_object;
+}
+
+/// Tells objects from the scene. A pixel shows an object where
+/// - the picture looks like a surface that is nearer than `clearance` allows, and an RGB-D camera
+///   sees another one behind it, or where that surface goes on, down to what it stands on; or
+/// - the picture looks like nothing that the RGB-D cameras see there, and they see that nothing can
+///   be there unless it is nearer.
+class ObjectEvidence {
+ public:
+  /// color: the user's camera. shrinkage: of the small picture.
+  ObjectEvidence(const Intrinsics& color, int shrinkage);
+
+  struct Inputs {
+    const Image<Bgr>& picture;  ///< the small one
+    const SeenLayers& layers;
+    const FreeSpace& free_space;
+    const std::vector<BackgroundPlane>& planes;
+    /// An object's distance is at most 1 - clearance of that of what it hides.
+    float clearance;
+  };
+  /// Cost: about 20 ns a pixel.
+  void find(const Inputs& inputs, Image<Shown>& shown);
+
+  /// Whether a point of the colour camera's frame lies on one of the planes. x, y: pixel of the
+  /// small picture.
+  bool is_on_plane(const std::vector<BackgroundPlane>& planes, int x, int y, float depth_m) const;
+
+ private:
+  /// How far the picture is from the colours of the nearest and of the farthest surface, in levels.
+  struct Difference {
+    float nearest = 0, farthest = 0;
+    float either = 0;  ///< the lesser one, within a larger neighbourhood
+  };
+  struct Component {
+    int pixels = 0, free = 0;
+    int like_nearest = 0, compared = 0;
+  };
+  void compare(const Inputs& inputs);
+  float find_threshold(const SeenLayers& layers);
+  void mark(const Inputs& inputs, float threshold);
+  void collect(const SeenLayers& layers, int x, int y);
+  void open(Mask& mask, int reach);
+
+  Image<Eigen::Vector2f> rays_;
+  Image<Bgr> least_, greatest_, least_around_, greatest_around_, scratch_;
+  Image<Difference> difference_;
+  std::vector<float> values_;
+  Mask kind_, object_, unexplained_, scene_, first_, second_;
+  std::vector<Eigen::Vector2i> component_, open_ends_;
+};
+
+}  // namespace diminish
