@@ -29,8 +29,7 @@ class DifferenceOccluder : public OccluderDetector {
         rig_(rig),
         clearance_(static_cast<float>(settings_of<DifferenceSettings>(spec).clearance)),
         sampler_(rig),
-        refinement_(rig.color, PoseRefinement::usual_width, PoseRefinement::usual_last_step, false,
-                    PoseRefinement::usual_coarser),
+        refinement_(rig.color, SeenLayersDrawer::usual_width / 2, PoseRefinement::usual_last_step, false, 1),
         planes_(rig.color),
         drawer_(rig),
         free_space_(rig),
@@ -77,21 +76,23 @@ class DifferenceOccluder : public OccluderDetector {
   void learn(const Observation& observation) {
     const FrameSet& frame = observation.frame;
     poses_ = observation.poses;
-    sampler_.sample(frame, poses_, no_masks_, samples_);
-    if (observation.options.refine_poses) {
-      const auto correction = refinement_.refine(frame, no_masks_.color, samples_);
-      if (correction) refinement_.apply(*correction, poses_, samples_);
-    }
     do_all(
         [&] {
-          maps_.fit(frame.color, no_masks_.color, samples_.surfaces, ColorMapModel::field);
+          sampler_.sample(frame, poses_, no_masks_, samples_);
+          if (!observation.options.refine_poses) return;
+          const auto correction = refinement_.refine(frame, no_masks_.color, samples_);
+          if (correction) refinement_.apply(*correction, poses_, samples_);
         },
-        [&] { planes_.find(rig_.color.bounds(), samples_.surfaces); },
         [&] {
           const Rect small = shrunk_bounds(frame.color, drawer_.shrinkage());
           picture_.resize(small.width, small.height);
           shrink(frame.color, drawer_.shrinkage(), small, scratch_, picture_);
         });
+    do_all(
+        [&] {
+          maps_.fit(frame.color, no_masks_.color, samples_.surfaces, ColorMapModel::field);
+        },
+        [&] { planes_.find(rig_.color.bounds(), samples_.surfaces); });
   }
 
   void find_regions() {

@@ -16,6 +16,10 @@ constexpr float largest_step = 0.03F;
 /// Relative distance of two layers from which on they are two surfaces.
 constexpr float two_surfaces = 0.03F;
 
+/// Between colours of the same surface, in levels.
+constexpr float least_threshold = 18;
+constexpr float greatest_threshold = 48;
+
 /// Values of `kind_`.
 constexpr std::uint8_t nothing = 0;   ///< no RGB-D camera sees anything
 constexpr std::uint8_t plane = 1;     ///< the nearest surface is a wall or a table
@@ -88,11 +92,14 @@ void ObjectEvidence::find(const Inputs& inputs, Image<Shown>& shown) {
         if (d.nearest < d.farthest) ++all.like_nearest;
         if (apart > inputs.clearance && d.farthest > threshold) ++all.free;
       }
-      if (all.free < fewest || 10 * all.free < all.pixels ||
-          10 * all.like_nearest < 6 * all.compared) {
-        continue;
+      const bool is_object = all.free >= fewest && 10 * all.free >= all.pixels &&
+                             10 * all.like_nearest >= 6 * all.compared;
+      // The picture shows what is behind it: it is elsewhere by now, and proves nothing.
+      const bool is_elsewhere = 10 * all.like_nearest < 4 * all.compared;
+      for (const Eigen::Vector2i& at : component_) {
+        if (is_object) object_(at.x(), at.y()) = 255;
+        if (is_elsewhere) unexplained_(at.x(), at.y()) = 0;
       }
-      for (const Eigen::Vector2i& at : component_) object_(at.x(), at.y()) = 255;
     }
   }
   // What looks like nothing that is seen there
@@ -106,33 +113,47 @@ void ObjectEvidence::find(const Inputs& inputs, Image<Shown>& shown) {
       }
     }
   }
-  scene_.resize(width, height, 0);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      const SeenSurface& nearest = layers.nearest(x, y);
-      if (nearest.source == 0) continue;
-      const Difference& d = difference_(x, y);
-      const bool like_scene = std::min(d.nearest, d.farthest) < threshold;
-      if (object_(x, y) == 0 && unexplained_(x, y) == 0 && like_scene) scene_(x, y) = 255;
-      if (object_(x, y) != 0 && gap(nearest, layers.farthest(x, y)) > 0.05F &&
-          d.farthest < 0.5F * threshold && d.farthest < d.nearest) {
-        object_(x, y) = 0;
+  decide(inputs, threshold, shown);
+}
+
+/// What is certain, from the object's pixels and from what is unexplained.
+void ObjectEvidence::decide(const Inputs& inputs, float threshold, Image<Shown>& shown) {
+  const int width = inputs.picture.width();
+  const int height = inputs.picture.height();
+  scene_.resize(width, height);
+  for_rows(height, [&](Rows rows) {
+    for (int y = rows.first; y < rows.last; ++y) {
+      for (int x = 0; x < width; ++x) {
+        const SeenSurface& nearest = inputs.layers.nearest(x, y);
+        std::uint8_t& object = object_(x, y);
+        const Difference& d = difference_(x, y);
+        const bool is_free = unexplained_(x, y) != 0;
+        scene_(x, y) = 0;
+        if (nearest.source == 0) continue;
+        const bool like_scene = std::min(d.nearest, d.farthest) < threshold;
+        if (object == 0 && !is_free && like_scene) scene_(x, y) = 255;
+        if (object != 0 && gap(nearest, inputs.layers.farthest(x, y)) > two_surfaces &&
+            d.farthest < 0.5F * threshold && d.farthest < d.nearest) {
+          object = 0;
+        }
+        if (is_free) object = in_free_space;
       }
-      if (unexplained_(x, y) != 0) object_(x, y) = in_free_space;
     }
-  }
+  });
   open(object_, 1);
   erode(scene_, {1, 1}, first_, second_);
   shown.resize(width, height);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      shown(x, y) = object_(x, y) == 255                   ? Shown::object
-                    : object_(x, y) != 0                   ? Shown::unseen_object
-                    : second_(x, y) != 0                   ? Shown::scene
-                    : difference_(x, y).either > threshold ? Shown::unlike
-                                                           : Shown::unknown;
+  for_rows(height, [&](Rows rows) {
+    for (int y = rows.first; y < rows.last; ++y) {
+      for (int x = 0; x < width; ++x) {
+        shown(x, y) = object_(x, y) == 255                   ? Shown::object
+                      : object_(x, y) != 0                   ? Shown::unseen_object
+                      : second_(x, y) != 0                   ? Shown::scene
+                      : difference_(x, y).either > threshold ? Shown::unlike
+                                                             : Shown::unknown;
+      }
     }
-  }
+  });
 }
 
 void ObjectEvidence::compare(const Inputs& inputs) {
@@ -150,11 +171,16 @@ void ObjectEvidence::compare(const Inputs& inputs) {
         Difference& d = difference_(x, y);
         d = {};
         if (nearest.source == 0) continue;
+        const bool is_one = gap(nearest, farthest) < two_surfaces;
         d.nearest = difference(nearest.color, least_(x, y), greatest_(x, y));
-        d.farthest = difference(farthest.color, least_(x, y), greatest_(x, y));
-        d.either = std::min(
-            difference(nearest.color, least_around_(x, y), greatest_around_(x, y)),
-            difference(farthest.color, least_around_(x, y), greatest_around_(x, y)));
+        d.farthest = is_one ? d.nearest
+                            : difference(farthest.color, least_(x, y), greatest_(x, y));
+        d.either = std::min(d.nearest, d.farthest);
+        if (d.either < least_threshold) continue;
+        d.either = difference(nearest.color, least_around_(x, y), greatest_around_(x, y));
+        if (is_one) continue;
+        d.either = std::min(d.either, difference(farthest.color, least_around_(x, y),
+                                                 greatest_around_(x, y)));
       }
     }
   });
@@ -171,9 +197,11 @@ float ObjectEvidence::find_threshold(const SeenLayers& layers) {
       values_.push_back(difference_(x, y).nearest);
     }
   }
-  constexpr float least = 18;
-  if (values_.empty()) return least;
-  return std::max(least, 5 * median(values_));
+  if (values_.empty()) return least_threshold;
+  // An object may cover most of what the RGB-D cameras see: a quarter of it is in view.
+  const auto quarter = values_.begin() + static_cast<std::ptrdiff_t>(values_.size() / 4);
+  std::nth_element(values_.begin(), quarter, values_.end());
+  return std::clamp(8 * *quarter, least_threshold, greatest_threshold);
 }
 
 void ObjectEvidence::mark(const Inputs& inputs, float threshold) {

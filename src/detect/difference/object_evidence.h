@@ -61,6 +61,7 @@ class ObjectEvidence {
   float find_threshold(const SeenLayers& layers);
   void mark(const Inputs& inputs, float threshold);
   void collect(const SeenLayers& layers, int x, int y);
+  void decide(const Inputs& inputs, float threshold, Image<Shown>& shown);
   void open(Mask& mask, int reach);
 
   Image<Eigen::Vector2f> rays_;

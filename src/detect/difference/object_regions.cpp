@@ -1,6 +1,7 @@
 #include "detect/difference/object_regions.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/rows.h"
 
@@ -40,31 +41,43 @@ void ObjectRegions::find(const Image<Shown>& evidence, const Image<Shown>& shown
 }
 
 bool add_enlarged(const Mask& small, int shrinkage, Mask& mask) {
-  const Rect box = bounding_box(small);
+  const Rect box = intersect(grow(bounding_box(small), 1), small.bounds());
   if (box.empty()) return false;
-  const Rect around = grow(box, 1);
-  const Rect part = intersect({around.x * shrinkage, around.y * shrinkage,
-                               around.width * shrinkage, around.height * shrinkage},
+  const auto scale = static_cast<float>(shrinkage);
+  const auto center = [scale](float at) { return (at + 0.5F) * scale - 0.5F; };
+  const Rect part = intersect({box.x * shrinkage, box.y * shrinkage, box.width * shrinkage,
+                               box.height * shrinkage},
                               mask.bounds());
-  const float scale = 1.F / static_cast<float>(shrinkage);
-  const auto at = [&](int x, int y) {
-    return static_cast<float>(
-        small(std::clamp(x, 0, small.width() - 1), std::clamp(y, 0, small.height() - 1)));
-  };
-  for_rows(part.height, [&](Rows rows) {
+  // What the small mask leaves over at the picture's right and lower sides belongs to its last
+  // column and row.
+  const int right = box.right() == small.width() ? mask.width() : part.right();
+  const int bottom = box.bottom() == small.height() ? mask.height() : part.bottom();
+  for_rows(bottom - part.y, [&](Rows rows) {
     for (int y = part.y + rows.first; y < part.y + rows.last; ++y) {
-      const float small_y = (static_cast<float>(y) + 0.5F) * scale - 0.5F + 1;
-      const int row = static_cast<int>(small_y) - 1;
-      const float below = small_y - static_cast<float>(row + 1);
-      for (int x = part.x; x < part.right(); ++x) {
-        const float small_x = (static_cast<float>(x) + 0.5F) * scale - 0.5F + 1;
-        const int column = static_cast<int>(small_x) - 1;
-        const float right = small_x - static_cast<float>(column + 1);
-        const float above_value =
-            (1 - right) * at(column, row) + right * at(column + 1, row);
-        const float below_value =
-            (1 - right) * at(column, row + 1) + right * at(column + 1, row + 1);
-        if ((1 - below) * above_value + below * below_value >= 127.5F) mask(x, y) = 255;
+      const float at = std::max(0.F, (static_cast<float>(y) + 0.5F) / scale - 0.5F);
+      const int above = std::min(static_cast<int>(at), small.height() - 1);
+      const int below = std::min(above + 1, small.height() - 1);
+      const float share = at - static_cast<float>(above);
+      const auto value = [&](int x) {
+        return (1 - share) * static_cast<float>(small(x, above)) +
+               share * static_cast<float>(small(x, below));
+      };
+      // Runs between the places where the interpolated value becomes one half.
+      constexpr float half = 127.5F;
+      std::uint8_t* const row = mask.row(y);
+      float left = value(box.x);
+      int from = part.x;
+      for (int x = box.x; x < box.right(); ++x) {
+        const float next = value(std::min(x + 1, small.width() - 1));
+        const bool is_last = x + 1 == box.right();
+        if ((left >= half) != (next >= half)) {
+          const float edge = center(static_cast<float>(x) + (half - left) / (next - left));
+          const int to = static_cast<int>(std::ceil(edge));
+          if (left >= half) std::fill(row + from, row + to, std::uint8_t{255});
+          from = to;
+        }
+        if (is_last && next >= half) std::fill(row + from, row + right, std::uint8_t{255});
+        left = next;
       }
     }
   });

@@ -36,11 +36,11 @@ bool RgbdObject::add(const Inputs& inputs, const Image<LayerVertex>& vertices, i
                            static_cast<int>(std::lrint(vertex.y)));
   };
   const auto may_be_object = [&](const LayerVertex& vertex, int error) {
-    if (!(vertex.surface.depth_m > 0)) return false;
+    if (!(vertex.depth_m > 0)) return false;
     const Eigen::Vector2i at = pixel(vertex);
     if (!picture.contains(at.x(), at.y())) return false;
     return any_set(regions, intersect(square_around(at.x(), at.y(), error), picture)) &&
-           !inputs.evidence.is_on_plane(inputs.planes, at.x(), at.y(), vertex.surface.depth_m);
+           !inputs.evidence.is_on_plane(inputs.planes, at.x(), at.y(), vertex.depth_m);
   };
   visited_.resize(vertices.width(), vertices.height(), 0);
   open_ends_.clear();
@@ -51,7 +51,7 @@ bool RgbdObject::add(const Inputs& inputs, const Image<LayerVertex>& vertices, i
       const Eigen::Vector2i at = pixel(vertex);
       if (inputs.shown(at.x(), at.y()) != Shown::object) continue;
       const float nearest_m = inputs.layers.nearest(at.x(), at.y()).depth_m;
-      if (vertex.surface.depth_m > (1 + same_surface) * nearest_m) continue;
+      if (vertex.depth_m > (1 + same_surface) * nearest_m) continue;
       visited_(x, y) = 255;
       open_ends_.emplace_back(x, y);
     }

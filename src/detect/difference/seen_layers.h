@@ -30,10 +30,16 @@ struct SeenLayers {
 
 /// A depth pixel in the small picture.
 struct LayerVertex {
-  float x = 0, y = 0;   ///< pixels
-  SeenSurface surface;  ///< depth_m 0: none
+  float x = 0, y = 0;     ///< pixels
+  float depth_m = 0;      ///< z in the colour camera's frame; 0: none
   float own_depth_m = 0;  ///< z in the depth sensor's frame
   float u = 0, v = 0;     ///< place in the RGB-D camera's colour image
+};
+
+/// The pixels [left, right) x [top, bottom) between four vertices.
+struct DrawnCell {
+  int left = 0, right = 0, top = 0, bottom = 0;
+  SeenSurface surface;
 };
 
 /// Draws SeenLayers. Coarse: each cell of four depth pixels that SDCT joins (sdct.h) fills its
@@ -58,16 +64,21 @@ class SeenLayersDrawer {
 
  private:
   struct Camera {
-    VertexRows rows;
     int step;  ///< between the depth pixels that are used
-    BlockSet all_blocks;
+    VertexRows rows;
+    VisibleBlocks visible;
     Mask no_depth_mask, no_color_mask;
-    VertexRow row[most_bands];
-    Image<LayerVertex> vertices;
+    Image<std::uint16_t> depth = {};
+    VertexRow row[most_bands] = {};
+    Image<LayerVertex> vertices = {};
+    std::vector<DrawnCell> cells[most_bands] = {};
   };
   void find_vertices(const RgbdFrame& images, const RigidTransform& color_from_depth,
-                     const ColorMap& map, std::uint8_t source, Camera& camera) const;
+                     Camera& camera) const;
+  void find_cells(ImageView<Bgr> picture, const ColorMap& map, std::uint8_t source,
+                  const sdct::Threshold& threshold, Camera& camera) const;
 
+  Rect color_bounds_;
   int width_, height_, shrinkage_;
   std::vector<Camera> cameras_;
 };
