@@ -26,6 +26,24 @@ TEST(LiveProgram, RunsAndRecordsWhatCanBeRunAgain) {
   EXPECT_EQ(run.exit_code, 0) << run.err;
 }
 
+/// From cameras to a picture without writing a line of YAML.
+TEST(LiveProgram, BeginsASetUp) {
+  const TemporaryFolder folder;
+  const std::string desk = (folder.path() / "desk").string();
+  const std::string replay = "recording:" + calendar + "?loop&rate=0.3";
+  const std::vector<std::string> init = {"init", desk, "--color", replay, "--rgbd", replay};
+  const auto begun = Program::run(init);
+  EXPECT_EQ(begun.exit_code, 0) << begun.err;
+  EXPECT_THAT(begun.out, AllOf(ContainsRegex("rgbd0 .*color 1920x1080.*depth 512x424"),
+                               HasSubstr("diminish serve " + desk)));
+  const auto live = Program::run({"live", desk, "--seconds", "4"});
+  EXPECT_EQ(live.exit_code, 0) << live.err;
+  EXPECT_THAT(live.out, HasSubstr("frames/s"));
+  const auto again = Program::run(init);
+  EXPECT_EQ(again.exit_code, 1);
+  EXPECT_THAT(again.err, HasSubstr("rig.yaml: exists already"));
+}
+
 TEST(LiveProgram, AFrameBudgetAndFaultyCamerasAreShown) {
   const std::string faulty = "faults:torn=0.3;recording:" + calendar + "?loop";
   const auto live = Program::run(

@@ -94,6 +94,8 @@ INSTANTIATE_TEST_SUITE_P(
                {"color/0.png", "40x30", "20x20"}),
         images("DepthOf8Bit", "rgbd0_depth", cv::Mat(24, 32, CV_8UC1, cv::Scalar(9)),
                {"rgbd0_depth/0.png", "16-bit", "8-bit"}),
+        flags("UnknownDetectorFlag", {"--detector", "nose"}, {"--detector", "difference", "nose"}),
+        flags("DetectorThatNeedsSettings", {"--detector", "marker"}, {"--detector", "marker"}),
         flags("UnknownMethod", {"--inpaint", "magic"}, {"inpaint", "telea", "magic"}),
         flags("OptionOutOfRange", {"--mask-margin-px", "-1"}, {"mask_margin_px", "-1"})),
     [](const auto& test) { return std::string(test.param.name); });

@@ -14,6 +14,7 @@
 
 #include "allocations.h"
 #include "commands.h"
+#include "detector_flag.h"
 #include "diminish/diminish.h"
 #include "diminish/runner.h"
 #include "frame_trace.h"
@@ -60,6 +61,7 @@ struct BenchCommand {
   std::size_t frames = 0;
   double seconds = 3;
   Options options;
+  DetectorFlag detector;
 
   int execute() const;
 
@@ -382,7 +384,8 @@ void write_json(const BenchCommand& command, const Figures& figures) {
 }
 
 int BenchCommand::execute() const {
-  const Recording input = load_recording(recording);
+  Recording input = load_recording(recording);
+  detector.apply(input.scene);
   check(options, input.rig, input.scene);
   Figures figures;
   std::vector<FrameSet> loaded = load(input, figures);
@@ -431,6 +434,7 @@ void add_bench(CLI::App& program, int& exit_code) {
                   "Also write who did what, when, to this file (a Chrome trace, for Perfetto)")
       ->type_name("FILE");
   add_option_flags(*sub, command->options);
+  command->detector.add_flag(*sub);
   sub->callback([command, &exit_code] { exit_code = command->execute(); });
 }
 

@@ -23,7 +23,7 @@ struct CheckCommand {
 
   SetupReport look() const {
     const Recording input = load_recording(setup.folder);
-    if (!setup.color.empty() || !setup.rgbd.empty()) {
+    if (setup.has_live_cameras(input.rig)) {
       const LiveRun run = setup.start();
       LiveFrameSource source(*run.session, seconds);
       return check_setup(input.rig, input.scene, source, frames);
@@ -47,7 +47,7 @@ void add_check(CLI::App& program, int& exit_code) {
   CLI::App* sub =
       program.add_subcommand("check", "Checks a set-up and says in plain words what is wrong");
   sub->add_option("recording", command->setup.folder,
-                  "A recording; or, with --color and --rgbd, a folder with rig.yaml and scene.yaml")
+                  "A recording; or, with live cameras, a folder with rig.yaml and scene.yaml")
       ->required();
   command->setup.add_camera_flags(*sub);
   sub->add_option("--seconds", command->seconds, "How long to watch live cameras")

@@ -59,11 +59,20 @@ void LiveSetup::add_flags(CLI::App& command) {
       ->type_name("SECONDS");
   add_option_flags(command, options);
   background.add_flag(command, options);
+  detector.add_flag(command);
+}
+
+bool LiveSetup::has_live_cameras(const Rig& rig) const {
+  if (!color.empty() || !rgbd.empty()) return true;
+  // A recording that was made with live cameras names them, too.
+  std::error_code ignored;
+  return !rig.live.empty() && !std::filesystem::exists(folder / "color.txt", ignored);
 }
 
 std::vector<LiveCamera> LiveSetup::cameras(const Rig& rig) const {
   std::vector<LiveCamera> result;
   if (color.empty() && rgbd.empty()) {
+    if (has_live_cameras(rig)) return rig.live;
     const std::string replay = "recording:" + folder.string() + "?loop";
     result.push_back({"color", replay});
     for (const RgbdCamera& camera : rig.rgbd) result.push_back({camera.name, replay});
@@ -118,7 +127,8 @@ void LiveRun::say_output_problem() {
 
 LiveRun LiveSetup::start() const {
   const Rig rig = load_rig(rig_file());
-  const Scene scene = load_scene(scene_file());
+  Scene scene = load_scene(scene_file());
+  detector.apply(scene);
   std::vector<LiveCamera> all = cameras(rig);
   if (draw_clock) all.front().uri = "clock:" + all.front().uri;
   LiveOptions with_background = live_options;

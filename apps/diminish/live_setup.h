@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "background.h"
+#include "detector_flag.h"
 #include "diminish/live.h"
 #include "diminish/recording_writer.h"
 #include "diminish/virtual_camera.h"
@@ -35,6 +36,7 @@ struct LiveSetup {
   bool draw_clock = false;  ///< into the colour camera's pictures
   Options options;
   Background background;
+  DetectorFlag detector;
   LiveOptions live_options;
 
   void add_flags(CLI::App& command);
@@ -47,8 +49,9 @@ struct LiveSetup {
   std::filesystem::path scene_file() const { return folder / "scene.yaml"; }
   /// Loads the set-up and starts. Throws Error.
   LiveRun start() const;
-  /// The cameras that the flags name; without flags the folder as a recording. The first is the
-  /// user's view. Throws Error.
+  /// Whether cameras are named, by flags or by a set-up that is no recording.
+  bool has_live_cameras(const Rig& rig) const;
+  /// Those; without any the folder as a recording. The first is the user's view. Throws Error.
   std::vector<LiveCamera> cameras(const Rig& rig) const;
 };
 

@@ -22,6 +22,7 @@ int run_command(int argc, char** argv) {
   program.require_subcommand(1);
   program.footer("Try: diminish run demo/recordings/calendar --out /tmp/calendar");
   int exit_code = 0;
+  diminish::add_init(program, exit_code);
   diminish::add_run(program, exit_code);
   diminish::add_serve(program, exit_code);
   diminish::add_view(program, exit_code);

@@ -78,7 +78,7 @@ void ScanCommand::scan(const std::filesystem::path& recording) const {
 }
 
 int ScanCommand::execute() {
-  if (setup.color.empty() && setup.rgbd.empty()) {
+  if (!setup.has_live_cameras(load_rig(setup.rig_file()))) {
     if (!setup.record.empty()) throw Error("--record: expected live cameras (--color, --rgbd)");
     scan(setup.folder);
     return 0;

@@ -20,12 +20,6 @@
 
 namespace diminish {
 
-/// A camera of a live session. An RGB-D camera with two devices has two.
-struct LiveCamera {
-  std::string name;  ///< "color", or an RGB-D camera's name in the rig
-  std::string uri;
-};
-
 enum class CameraState { opening, running, silent, lost, ended };
 inline constexpr std::array<const char*, 5> camera_state_names = {"opening", "running", "silent",
                                                                   "lost", "ended"};

@@ -22,6 +22,12 @@ struct RgbdCamera {
   RigidTransform color_from_depth;
 };
 
+/// A camera of a live session. An RGB-D camera with two devices has two.
+struct LiveCamera {
+  std::string name;  ///< "color", or an RGB-D camera's name in the rig
+  std::string uri;
+};
+
 /// The cameras and the source of their poses: a recording's `rig.yaml`. "The colour camera" is
 /// always the user's view; an RGB-D camera's colour sensor is called that.
 struct Rig {
@@ -30,6 +36,8 @@ struct Rig {
   /// The name of a registered `PoseSource`, and its own settings (the file's `pose` key).
   std::string pose_source = "marker";
   Config pose;
+  /// Where live cameras are found, if the set-up says so; the user's view first.
+  std::vector<LiveCamera> live = {};
 };
 
 /// Reads `rig.yaml`. Throws Error that names file and key.

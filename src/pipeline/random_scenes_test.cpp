@@ -38,6 +38,11 @@ class RandomScene {
     auto settings = std::make_shared<MaskSettings>();
     settings->color = "masks/color";
     scene.occluders = {{"object", "mask", settings}};
+    if (below(3) == 0) {
+      auto difference = std::make_shared<DifferenceSettings>();
+      difference->clearance = uniform(0.05, 0.95);
+      scene.occluders.push_back({"anything", "difference", difference});
+    }
   }
 
   FrameSet frame(std::size_t index) {

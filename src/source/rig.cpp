@@ -6,6 +6,7 @@
 
 #include "core/text.h"
 #include "source/configuration_checks.h"
+#include "source/find_camera.h"
 #include "source/read_rigid_transform.h"
 
 namespace diminish {
@@ -57,6 +58,18 @@ RgbdCamera read_rgbd_camera(const Config& config) {
   return camera;
 }
 
+LiveCamera read_live_camera(const Config& config, const Rig& rig) {
+  config.expect_keys({"camera", "uri"});
+  LiveCamera camera{config.at("camera").text(), config.at("uri").text()};
+  if (camera.name != "color" && find_rgbd_camera(rig, camera.name) == nullptr) {
+    std::vector<std::string> known = {"color"};
+    for (const RgbdCamera& rgbd : rig.rgbd) known.push_back(rgbd.name);
+    config.at("camera").fail("expected one of " + join(known) + ", got '" +
+                             printable(camera.name) + "'");
+  }
+  return camera;
+}
+
 }  // namespace
 
 Rig load_rig(const std::filesystem::path& file) {
@@ -64,13 +77,20 @@ Rig load_rig(const std::filesystem::path& file) {
 }
 
 Rig read_rig(const Config& config) {
-  config.expect_keys({"color", "rgbd", "pose"});
+  config.expect_keys({"live", "color", "rgbd", "pose"});
   Rig rig;
   rig.color = read_intrinsics(config.at("color"));
   for (const Config& item : config.at("rgbd").items()) rig.rgbd.push_back(read_rgbd_camera(item));
   rig.pose = config.find("pose");
   const Config source = rig.pose.find("source");
   if (source.exists()) rig.pose_source = source.text();
+  const Config live = config.find("live");
+  if (live.exists()) {
+    for (const Config& item : live.items()) rig.live.push_back(read_live_camera(item, rig));
+    // The first camera of a session is the user's view.
+    std::stable_partition(rig.live.begin(), rig.live.end(),
+                          [](const LiveCamera& camera) { return camera.name == "color"; });
+  }
   check_rig(rig, config);
   return rig;
 }
