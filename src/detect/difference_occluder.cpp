@@ -109,12 +109,9 @@ class DifferenceOccluder : public OccluderDetector {
       extend(objects, last, y);
     }
     shown_ = evidence;
-    fill_.fill(picture_, intersect(grow(objects, guessed_px), evidence.bounds()), shown_);
+    fill_.fill(picture_, intersect(grow(objects, ObjectEvidence::guessed_px), evidence.bounds()), shown_);
     find_.find(evidence, shown_, regions_);
   }
-
-  /// How far beyond the evidence an object may go on, in pixels of the small picture.
-  static constexpr int guessed_px = 24;
 
   std::string name_;
   Rig rig_;

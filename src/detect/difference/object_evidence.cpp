@@ -41,6 +41,14 @@ float difference(const Bgr& color, const Bgr& least, const Bgr& greatest) {
                                       beyond(color.r, least.r, greatest.r)));
 }
 
+/// How far a colour is from all shades of another.
+float chroma_difference(const Bgr& color, const Bgr& other) {
+  const Eigen::Array3f a = to_channels(color);
+  const Eigen::Array3f b = to_channels(other);
+  const float shade = (a * b).sum() / std::max(1.F, b.square().sum());
+  return std::sqrt((a - std::min(shade, 1.F) * b).square().sum());
+}
+
 float gap(const SeenSurface& nearest, const SeenSurface& farthest) {
   return 1 - nearest.depth_m / farthest.depth_m;
 }
@@ -142,6 +150,7 @@ void ObjectEvidence::decide(const Inputs& inputs, float threshold, Image<Shown>&
   });
   open(object_, 1);
   erode(scene_, {1, 1}, first_, second_);
+  const Rect near_objects = grow(bounding_box(object_), guessed_px);
   shown.resize(width, height);
   for_rows(height, [&](Rows rows) {
     for (int y = rows.first; y < rows.last; ++y) {
@@ -151,9 +160,36 @@ void ObjectEvidence::decide(const Inputs& inputs, float threshold, Image<Shown>&
                       : second_(x, y) != 0                   ? Shown::scene
                       : difference_(x, y).either > threshold ? Shown::unlike
                                                              : Shown::unknown;
+        if (shown(x, y) == Shown::unknown && near_objects.contains(x, y) &&
+            is_unlike_around(inputs, x, y, threshold)) {
+          shown(x, y) = Shown::unlike;
+        }
       }
     }
   });
+}
+
+/// Whether no RGB-D camera sees anything in a pixel, and it is quite unlike what they see on its
+/// left and right, above and below.
+bool ObjectEvidence::is_unlike_around(const Inputs& inputs, int x, int y, float threshold) const {
+  if (inputs.layers.nearest(x, y).source != 0) return false;
+  constexpr int reach = 16;
+  constexpr float quite = 2;
+  bool any = false;
+  for (const auto& [dx, dy] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
+    for (int i = 1; i <= reach; ++i) {
+      const int column = x + i * dx;
+      const int row = y + i * dy;
+      if (!kind_.bounds().contains(column, row)) break;
+      const SeenSurface& seen = inputs.layers.farthest(column, row);
+      if (seen.source == 0) continue;
+      if (object_(column, row) != 0) break;
+      if (chroma_difference(inputs.picture(x, y), seen.color) < quite * threshold) return false;
+      any = true;
+      break;
+    }
+  }
+  return any;
 }
 
 void ObjectEvidence::compare(const Inputs& inputs) {

@@ -40,6 +40,9 @@ class ObjectEvidence {
     /// An object's distance is at most 1 - clearance of that of what it hides.
     float clearance;
   };
+  /// How far beyond the evidence an object may go on, in pixels of the small picture.
+  static constexpr int guessed_px = 24;
+
   /// Cost: about 20 ns a pixel.
   void find(const Inputs& inputs, Image<Shown>& shown);
 
@@ -62,6 +65,7 @@ class ObjectEvidence {
   void mark(const Inputs& inputs, float threshold);
   void collect(const SeenLayers& layers, int x, int y);
   void decide(const Inputs& inputs, float threshold, Image<Shown>& shown);
+  bool is_unlike_around(const Inputs& inputs, int x, int y, float threshold) const;
   void open(Mask& mask, int reach);
 
   Image<Eigen::Vector2f> rays_;
