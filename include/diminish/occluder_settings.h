@@ -60,6 +60,27 @@ class DIMINISH_EXPORT BoxSettings : public OccluderSettings {
   bool needs_world() const override { return frame == "world"; }
 };
 
+/// For the detector `onnx`: what a segmentation network finds. Its input is a batch of one picture
+/// of 3 channels: scale * (level - mean). Its output is one picture, of one channel (from which
+/// value on a pixel shows the object, `threshold` says) or of one channel for each class, of which
+/// the greatest wins.
+class DIMINISH_EXPORT OnnxSettings : public OccluderSettings {
+ public:
+  enum class Layout { nchw, nhwc };  ///< of input and output
+
+  std::filesystem::path model;  ///< an ONNX file
+  int width = 0, height = 0;    ///< of the input, pixels
+  double scale = 1 / 255.;
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();  ///< levels of red, green, blue
+  bool is_bgr = false;                             ///< the input's channels; else RGB
+  Layout layout = Layout::nchw;
+  std::vector<int> classes = {1};  ///< the object's; of no meaning with one channel
+  double threshold = 0.5;
+
+  void check(const Config& place, const Rig* rig) const override;
+  std::vector<std::filesystem::path> files() const override { return {model}; }
+};
+
 /// For the detector `difference`: whatever stands free in front of what the RGB-D cameras see.
 class DIMINISH_EXPORT DifferenceSettings : public OccluderSettings {
  public:

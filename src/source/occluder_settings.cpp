@@ -2,6 +2,7 @@
 
 #include <Eigen/QR>
 #include <algorithm>
+#include <cmath>
 
 #include "core/limits.h"
 #include "core/text.h"
@@ -78,6 +79,22 @@ void BoxSettings::check(const Config& place, const Rig* rig) const {
   std::vector<std::string> known = {"world"};
   for (const RgbdCamera& camera : rig->rgbd) known.push_back(camera.name);
   place.find("frame").fail("expected one of " + join(known) + ", got '" + printable(frame) + "'");
+}
+
+void OnnxSettings::check(const Config& place, const Rig*) const {
+  constexpr int least_side = 16;
+  constexpr int greatest_side = 4096;
+  for (const int side : {width, height}) {
+    if (side < least_side || side > greatest_side) {
+      place.find("size").fail("expected the width and height of the network's input, 16 to 4096");
+    }
+  }
+  if (!(std::isfinite(scale) && scale > 0)) place.find("scale").fail("expected a number above 0");
+  if (!mean.allFinite()) place.find("mean").fail("expected three numbers");
+  if (classes.empty() || *std::min_element(classes.begin(), classes.end()) < 0) {
+    place.find("classes").fail("expected numbers from 0 on");
+  }
+  if (!std::isfinite(threshold)) place.find("threshold").fail("expected a number");
 }
 
 void DifferenceSettings::check(const Config& place, const Rig* rig) const {
