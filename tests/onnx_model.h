@@ -21,7 +21,8 @@ class OnnxModel {
     const auto inputs = static_cast<int>(weights.front().size());
     std::vector<float> all;
     for (const auto& row : weights) all.insert(all.end(), row.begin(), row.end());
-    const std::string shape = field(1, "kernel_shape") + number(8, 1) + number(8, 1) + number(20, 7);
+    const std::string shape =
+        field(1, "kernel_shape") + number(8, 1) + number(8, 1) + number(20, 7);
     const std::string node = field(1, "in") + field(1, "w") + field(1, "b") + field(2, "out") +
                              field(4, "Conv") + field(5, shape);
     const std::string graph = field(1, node) + field(2, "g") +
@@ -39,10 +40,10 @@ class OnnxModel {
     for (; value >= 128; value /= 128) bytes += static_cast<char>(value % 128 + 128);
     return bytes + static_cast<char>(value);
   }
-  static std::string number(unsigned key, std::uint64_t value) {
+  static std::string number(std::uint64_t key, std::uint64_t value) {
     return varint(key * 8) + varint(value);
   }
-  static std::string field(unsigned key, const std::string& bytes) {
+  static std::string field(std::uint64_t key, const std::string& bytes) {
     return varint(key * 8 + 2) + varint(bytes.size()) + bytes;
   }
   static std::string tensor(const std::string& name, const std::vector<int>& sizes,

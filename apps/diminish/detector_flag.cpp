@@ -12,8 +12,8 @@ void DetectorFlag::add_flag(CLI::App& command) {
 
 void DetectorFlag::apply(Scene& scene) const {
   if (detector_.empty()) return;
-  const Config object =
-      Config::parse("occluders:\n  - name: object\n    detector: \"" + detector_ + "\"", "--detector");
+  const Config object = Config::parse(
+      "occluders:\n  - name: object\n    detector: \"" + detector_ + "\"", "--detector");
   scene.occluders = read_scene(object).occluders;
 }
 

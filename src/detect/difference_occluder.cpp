@@ -29,7 +29,8 @@ class DifferenceOccluder : public OccluderDetector {
         rig_(rig),
         clearance_(static_cast<float>(settings_of<DifferenceSettings>(spec).clearance)),
         sampler_(rig),
-        refinement_(rig.color, SeenLayersDrawer::usual_width / 2, PoseRefinement::usual_last_step, false, 1),
+        refinement_(rig.color, SeenLayersDrawer::usual_width / 2, PoseRefinement::usual_last_step,
+                    false, 1),
         planes_(rig.color),
         drawer_(rig),
         free_space_(rig),
@@ -64,8 +65,8 @@ class DifferenceOccluder : public OccluderDetector {
     in_rgbd_.assign(rig_.rgbd.size(), 0);
     for_tasks(rig_.rgbd.size(), [&](std::size_t k) {
       in_rgbd_[k] = rgbd_objects_[k].add(
-          {regions_, evidence_shown_, layers_, evidence_, planes_.planes(), threshold}, drawer_.vertices(k),
-          drawer_.step(k), masks.rgbd_depth[k], masks.rgbd_color[k]);
+          {regions_, evidence_shown_, layers_, evidence_, planes_.planes(), threshold},
+          drawer_.vertices(k), drawer_.step(k), masks.rgbd_depth[k], masks.rgbd_color[k]);
     });
     report.in_rgbd.assign(in_rgbd_.begin(), in_rgbd_.end());
     return report;
@@ -89,9 +90,7 @@ class DifferenceOccluder : public OccluderDetector {
           shrink(frame.color, drawer_.shrinkage(), small, scratch_, picture_);
         });
     do_all(
-        [&] {
-          maps_.fit(frame.color, no_masks_.color, samples_.surfaces, ColorMapModel::field);
-        },
+        [&] { maps_.fit(frame.color, no_masks_.color, samples_.surfaces, ColorMapModel::field); },
         [&] { planes_.find(rig_.color.bounds(), samples_.surfaces); });
   }
 
@@ -109,7 +108,8 @@ class DifferenceOccluder : public OccluderDetector {
       extend(objects, last, y);
     }
     shown_ = evidence;
-    fill_.fill(picture_, intersect(grow(objects, ObjectEvidence::guessed_px), evidence.bounds()), shown_);
+    fill_.fill(picture_, intersect(grow(objects, ObjectEvidence::guessed_px), evidence.bounds()),
+               shown_);
     find_.find(evidence, shown_, regions_);
   }
 

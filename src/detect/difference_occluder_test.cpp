@@ -13,9 +13,9 @@
 namespace diminish {
 namespace {
 
-using ::testing::HasSubstr;
 using testing::AnalyticFrame;
 using testing::AnalyticScene;
+using ::testing::HasSubstr;
 
 constexpr const char* thing = "{name: thing, detector: difference}";
 const std::vector<Eigen::Vector3d> eyes = {{-0.55, 0.35, 1.1}, {0.6, 0.3, 1.0}};
@@ -53,10 +53,10 @@ TEST(DifferenceOccluder, FindsWhatStandsFreeInAllCameras) {
   const OccluderReport report = detection.detect(*detector);
   EXPECT_TRUE(report.in_color && report.in_rgbd[0] && report.in_rgbd[1]);
   EXPECT_EQ(report.message, "");
-  EXPECT_GT(intersection_over_union(
-                detection.masks.color,
-                box_mask(scene, detection.rig.color, *detection.poses.color_from_world)),
-            0.93);
+  EXPECT_GT(
+      intersection_over_union(detection.masks.color, box_mask(scene, detection.rig.color,
+                                                              *detection.poses.color_from_world)),
+      0.93);
   DiscDilation dilation;
   for (std::size_t k = 0; k < 2; ++k) {
     SCOPED_TRACE(k);

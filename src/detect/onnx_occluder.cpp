@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/mat.h"
+#include "core/tasks.h"
 #include "diminish/occluder_detector.h"
 #include "diminish/occluder_settings.h"
 
@@ -37,7 +38,8 @@ class Network {
       net_ = cv::dnn::readNetFromONNX(settings.model.string());
     } catch (const cv::Exception& error) {
       place.find("model").fail("cannot be read: " + settings.model.string() + ": " +
-                               first_line(error) + "; expected an ONNX file that OpenCV's DNN "
+                               first_line(error) +
+                               "; expected an ONNX file that OpenCV's DNN "
                                "module supports");
     }
     net_.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
@@ -46,8 +48,8 @@ class Network {
       output = forward(cv::Mat(settings.height, settings.width, CV_8UC3, cv::Scalar()));
     } catch (const cv::Exception& error) {
       place.find("model").fail(fmt::format("{}: does not take a picture of {}x{} pixels: {}",
-                                           settings.model.string(), settings.width,
-                                           settings.height, first_line(error)));
+                                           settings.model.string(), settings.width, settings.height,
+                                           first_line(error)));
     }
     const std::string wrong = shape_error(output);
     if (!wrong.empty()) place.find("model").fail(settings.model.string() + ": " + wrong);
@@ -62,7 +64,7 @@ class Network {
                cv::INTER_LINEAR);
     bool any = false;
     for (int y = 0; y < mask.height(); ++y) {
-      const float* const margin = enlarged_.ptr<float>(y);
+      const auto* const margin = enlarged_.ptr<float>(y);
       std::uint8_t* const row = mask.row(y);
       for (int x = 0; x < mask.width(); ++x) {
         if (!(margin[x] > 0)) continue;
@@ -88,8 +90,8 @@ class Network {
     const cv::Scalar in_order = settings_.is_bgr ? cv::Scalar(mean.z(), mean.y(), mean.x())
                                                  : cv::Scalar(mean.x(), mean.y(), mean.z());
     cv::dnn::blobFromImage(picture, input_, settings_.scale,
-                           cv::Size(settings_.width, settings_.height), in_order,
-                           !settings_.is_bgr, false, CV_32F);
+                           cv::Size(settings_.width, settings_.height), in_order, !settings_.is_bgr,
+                           false, CV_32F);
     if (settings_.layout == OnnxSettings::Layout::nhwc) {
       cv::Mat channels_last;
       cv::transposeND(input_, {0, 2, 3, 1}, channels_last);
@@ -121,14 +123,15 @@ class Network {
     }
     const int greatest = *std::max_element(settings_.classes.begin(), settings_.classes.end());
     if (shape.channels > 1 && greatest >= shape.channels) {
-      return fmt::format("has {} classes, from 0 on; expected a class {}", shape.channels, greatest);
+      return fmt::format("has {} classes, from 0 on; expected a class {}", shape.channels,
+                         greatest);
     }
     return {};
   }
 
   /// By how much the object wins in each pixel of the output.
   void find_margin(const cv::Mat& output, const Shape& shape) {
-    const float* const values = output.ptr<float>();
+    const auto* const values = output.ptr<float>();
     const bool channels_last = settings_.layout == OnnxSettings::Layout::nhwc;
     const std::ptrdiff_t pixels = std::ptrdiff_t{shape.height} * shape.width;
     margin_.create(shape.height, shape.width, CV_32F);
@@ -159,25 +162,32 @@ class Network {
 /// What a segmentation network finds, in all cameras' pictures, each for itself.
 class OnnxOccluder : public OccluderDetector {
  public:
-  explicit OnnxOccluder(const OccluderSpec& spec)
-      : name_(spec.name), network_(settings_of<OnnxSettings>(spec), spec.place) {}
+  OnnxOccluder(const OccluderSpec& spec, const Rig& rig) : name_(spec.name) {
+    const auto& settings = settings_of<OnnxSettings>(spec);
+    for (std::size_t i = 0; i <= rig.rgbd.size(); ++i) networks_.emplace_back(settings, spec.place);
+  }
 
   OccluderReport detect(const Observation& observation, OcclusionMasks& masks) override {
     const FrameSet& frame = observation.frame;
     OccluderReport report;
     report.name = name_;
-    report.in_color = !frame.color.empty() && network_.segment(frame.color, masks.color);
-    for (std::size_t k = 0; k < frame.rgbd.size(); ++k) {
-      const RgbdFrame& rgbd = frame.rgbd[k];
-      report.in_rgbd.push_back(rgbd.available() &&
-                               network_.segment(rgbd.color, masks.rgbd_color[k]));
-    }
+    found_.assign(networks_.size(), 0);
+    for_tasks(networks_.size(), [&](std::size_t i) {
+      if (i == 0) {
+        found_[i] = !frame.color.empty() && networks_[i].segment(frame.color, masks.color) ? 1 : 0;
+      } else if (frame.rgbd[i - 1].available()) {
+        found_[i] = networks_[i].segment(frame.rgbd[i - 1].color, masks.rgbd_color[i - 1]) ? 1 : 0;
+      }
+    });
+    report.in_color = found_[0] != 0;
+    report.in_rgbd.assign(found_.begin() + 1, found_.end());
     return report;
   }
 
  private:
   std::string name_;
-  Network network_;
+  std::vector<Network> networks_;  ///< of the colour camera, and of each RGB-D camera
+  std::vector<char> found_;        ///< by image; not std::vector<bool>, whose elements share bytes
 };
 
 std::shared_ptr<const OccluderSettings> read_settings(const Config& place) {
@@ -214,8 +224,8 @@ std::shared_ptr<const OccluderSettings> read_settings(const Config& place) {
 }
 
 const bool registered = Registry<OccluderDetector>::add(
-    "onnx", {.read = read_settings, .make = [](const OccluderSpec& spec, const Rig&) {
-               return std::make_unique<OnnxOccluder>(spec);
+    "onnx", {.read = read_settings, .make = [](const OccluderSpec& spec, const Rig& rig) {
+               return std::make_unique<OnnxOccluder>(spec, rig);
              }});
 
 }  // namespace

@@ -85,7 +85,7 @@ TEST_F(OnnxOccluderTest, ACameraWithoutImagesIsLeftAlone) {
 
 TEST_F(OnnxOccluderTest, WrongModelsAndSettingsAreOneLine) {
   const auto error_with = [&](const std::string& settings) {
-    const std::string error = error_of([&] { make(settings); });
+    std::string error = error_of([&] { make(settings); });
     EXPECT_EQ(error.find('\n'), std::string::npos) << error;
     return error;
   };

@@ -64,8 +64,8 @@ LiveCamera read_live_camera(const Config& config, const Rig& rig) {
   if (camera.name != "color" && find_rgbd_camera(rig, camera.name) == nullptr) {
     std::vector<std::string> known = {"color"};
     for (const RgbdCamera& rgbd : rig.rgbd) known.push_back(rgbd.name);
-    config.at("camera").fail("expected one of " + join(known) + ", got '" +
-                             printable(camera.name) + "'");
+    config.at("camera").fail("expected one of " + join(known) + ", got '" + printable(camera.name) +
+                             "'");
   }
   return camera;
 }

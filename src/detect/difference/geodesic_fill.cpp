@@ -74,8 +74,8 @@ void GeodesicFill::improve(const Image<Bgr>& picture, const Pixel& pixel, int si
     const int from_x = x + sign * dx;
     const int from_y = y + sign * dy;
     if (!part_.contains(from_x, from_y) || !(way_(from_x, from_y) < own)) continue;
-    const float way = way_(from_x, from_y) +
-                      step(picture(x, y), picture(from_x, from_y), length, is_unlike);
+    const float way =
+        way_(from_x, from_y) + step(picture(x, y), picture(from_x, from_y), length, is_unlike);
     if (!(way < own)) continue;
     own = way;
     shown(x, y) = shown(from_x, from_y);

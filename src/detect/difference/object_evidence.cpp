@@ -21,10 +21,10 @@ constexpr float least_threshold = 18;
 constexpr float greatest_threshold = 48;
 
 /// Values of `kind_`.
-constexpr std::uint8_t nothing = 0;   ///< no RGB-D camera sees anything
-constexpr std::uint8_t plane = 1;     ///< the nearest surface is a wall or a table
-constexpr std::uint8_t standing = 2;  ///< it is not
-constexpr std::uint8_t is_free = 3;   ///< and it stands free
+constexpr std::uint8_t nothing = 0;      ///< no RGB-D camera sees anything
+constexpr std::uint8_t on_plane = 1;     ///< the nearest surface is a wall or a table
+constexpr std::uint8_t stands = 2;       ///< it is not
+constexpr std::uint8_t stands_free = 3;  ///< and it stands free
 constexpr std::uint8_t visited = 4;
 
 /// A value of `object_`, beside 0 and 255.
@@ -86,7 +86,7 @@ void ObjectEvidence::find(const Inputs& inputs, Image<Shown>& shown) {
   const int fewest = std::max(4, width * height / 2500);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      if (kind_(x, y) != is_free) continue;
+      if (kind_(x, y) != stands_free) continue;
       collect(layers, x, y);
       Component all;
       for (const Eigen::Vector2i& at : component_) {
@@ -209,14 +209,13 @@ void ObjectEvidence::compare(const Inputs& inputs) {
         if (nearest.source == 0) continue;
         const bool is_one = gap(nearest, farthest) < two_surfaces;
         d.nearest = difference(nearest.color, least_(x, y), greatest_(x, y));
-        d.farthest = is_one ? d.nearest
-                            : difference(farthest.color, least_(x, y), greatest_(x, y));
+        d.farthest = is_one ? d.nearest : difference(farthest.color, least_(x, y), greatest_(x, y));
         d.either = std::min(d.nearest, d.farthest);
         if (d.either < least_threshold) continue;
         d.either = difference(nearest.color, least_around_(x, y), greatest_around_(x, y));
         if (is_one) continue;
-        d.either = std::min(d.either, difference(farthest.color, least_around_(x, y),
-                                                 greatest_around_(x, y)));
+        d.either = std::min(
+            d.either, difference(farthest.color, least_around_(x, y), greatest_around_(x, y)));
       }
     }
   });
@@ -255,12 +254,12 @@ void ObjectEvidence::mark(const Inputs& inputs, float threshold) {
         if (nearest.source == 0) continue;
         if (d.either > threshold) unexplained_(x, y) = 255;
         if (is_on_plane(inputs.planes, x, y, nearest.depth_m)) {
-          kind_(x, y) = plane;
+          kind_(x, y) = on_plane;
         } else if (gap(nearest, inputs.layers.farthest(x, y)) > inputs.clearance &&
                    d.farthest > threshold && d.nearest < d.farthest) {
-          kind_(x, y) = is_free;
+          kind_(x, y) = stands_free;
         } else {
-          kind_(x, y) = standing;
+          kind_(x, y) = stands;
         }
       }
     }
@@ -282,12 +281,12 @@ void ObjectEvidence::collect(const SeenLayers& layers, int x, int y) {
     const Eigen::Vector2i at = open_ends_.back();
     open_ends_.pop_back();
     const float own = layers.nearest(at.x(), at.y()).depth_m;
-    for (const auto& [dx, dy] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-2, 0}, {2, 0},
-                                 {0, -2}, {0, 2}}) {
+    for (const auto& [dx, dy] :
+         {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-2, 0}, {2, 0}, {0, -2}, {0, 2}}) {
       const int column = at.x() + dx;
       const int row = at.y() + dy;
       if (!kind_.bounds().contains(column, row)) continue;
-      if (kind_(column, row) != standing && kind_(column, row) != is_free) continue;
+      if (kind_(column, row) != stands && kind_(column, row) != stands_free) continue;
       const float other = layers.nearest(column, row).depth_m;
       if (std::abs(other - own) <= largest_step * own) visit(column, row);
     }

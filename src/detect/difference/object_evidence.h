@@ -12,10 +12,10 @@ namespace diminish {
 
 /// What a pixel of the small picture shows, as far as RGB-D cameras tell.
 enum class Shown : std::uint8_t {
-  unknown,  ///< no RGB-D camera sees anything there
-  unlike,   ///< something else than they see
-  scene,    ///< what an RGB-D camera sees there, and it does not stand free
-  object,   ///< something that stands free, as RGB-D cameras see it
+  unknown,       ///< no RGB-D camera sees anything there
+  unlike,        ///< something else than they see
+  scene,         ///< what an RGB-D camera sees there, and it does not stand free
+  object,        ///< something that stands free, as RGB-D cameras see it
   unseen_object  ///< something that no RGB-D camera sees, where they see that nothing else can be
 };
 inline bool is_object(Shown what) {

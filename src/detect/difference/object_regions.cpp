@@ -18,9 +18,8 @@ constexpr double least_evidence = 0.3;
 
 void ObjectRegions::find(const Image<Shown>& evidence, const Image<Shown>& shown, Mask& regions) {
   regions.resize(shown.width(), shown.height());
-  std::transform(shown.begin(), shown.end(), regions.begin(), [](Shown what) -> std::uint8_t {
-    return is_object(what) ? 255 : 0;
-  });
+  std::transform(shown.begin(), shown.end(), regions.begin(),
+                 [](Shown what) -> std::uint8_t { return is_object(what) ? 255 : 0; });
   connected_.find(regions, Pixels::set, Connectivity::four);
   const auto pixels = static_cast<double>(regions.size());
   for (const ConnectedRegions::Region& region : connected_.regions()) {
@@ -31,8 +30,8 @@ void ObjectRegions::find(const Image<Shown>& evidence, const Image<Shown>& shown
       certain += static_cast<int>(std::count_if(row + run.first, row + run.last, is_object));
       seen += static_cast<int>(std::count(row + run.first, row + run.last, Shown::object));
     });
-    const bool is_large = region.pixels >= smallest_share * pixels ||
-                          seen >= smallest_seen * pixels;
+    const bool is_large =
+        region.pixels >= smallest_share * pixels || seen >= smallest_seen * pixels;
     if (is_large && certain >= least_evidence * region.pixels) continue;
     connected_.for_each_run(region, [&](const ConnectedRegions::Run& run) {
       std::fill(regions.row(run.y) + run.first, regions.row(run.y) + run.last, std::uint8_t{0});
@@ -45,9 +44,9 @@ bool add_enlarged(const Mask& small, int shrinkage, Mask& mask) {
   if (box.empty()) return false;
   const auto scale = static_cast<float>(shrinkage);
   const auto center = [scale](float at) { return (at + 0.5F) * scale - 0.5F; };
-  const Rect part = intersect({box.x * shrinkage, box.y * shrinkage, box.width * shrinkage,
-                               box.height * shrinkage},
-                              mask.bounds());
+  const Rect part = intersect(
+      {box.x * shrinkage, box.y * shrinkage, box.width * shrinkage, box.height * shrinkage},
+      mask.bounds());
   // What the small mask leaves over at the picture's right and lower sides belongs to its last
   // column and row.
   const int right = box.right() == small.width() ? mask.width() : part.right();

@@ -53,10 +53,10 @@ TEST(GeodesicFill, LeavesWhatIsFarAway) {
 
 TEST(ObjectRegions, LeavesOutWhatIsSmallOrGuessed) {
   Image<Shown> evidence = blank(320, 240);
-  evidence.fill({10, 10, 30, 30}, Shown::unseen_object);   // enough
-  evidence.fill({80, 10, 20, 20}, Shown::unseen_object);   // too small
-  evidence.fill({120, 10, 20, 20}, Shown::object);         // small, but a camera sees it
-  evidence.fill({200, 100, 10, 40}, Shown::unseen_object); // a sixth of its region
+  evidence.fill({10, 10, 30, 30}, Shown::unseen_object);    // enough
+  evidence.fill({80, 10, 20, 20}, Shown::unseen_object);    // too small
+  evidence.fill({120, 10, 20, 20}, Shown::object);          // small, but a camera sees it
+  evidence.fill({200, 100, 10, 40}, Shown::unseen_object);  // a sixth of its region
   Image<Shown> shown = evidence;
   shown.fill({200, 100, 60, 40}, Shown::unseen_object);
   Mask regions;

@@ -57,17 +57,19 @@ bool RgbdObject::add(const Inputs& inputs, const Image<LayerVertex>& vertices, i
     }
   }
   const bool any = !open_ends_.empty();
-  const int reach =
-      vertices.empty() ? 0 : (step * color_mask.width() + depth_mask.width() - 1) / depth_mask.width();
+  const int reach = vertices.empty()
+                        ? 0
+                        : (step * color_mask.width() + depth_mask.width() - 1) / depth_mask.width();
   while (!open_ends_.empty()) {
     const Eigen::Vector2i at = open_ends_.back();
     open_ends_.pop_back();
     const LayerVertex& own = vertices(at.x(), at.y());
-    depth_mask.fill(intersect({at.x() * step, at.y() * step, step, step}, depth_mask.bounds()), 255);
-    color_mask.fill(intersect(square_around(static_cast<int>(own.u), static_cast<int>(own.v),
-                                            (reach + 1) / 2),
-                              color_mask.bounds()),
+    depth_mask.fill(intersect({at.x() * step, at.y() * step, step, step}, depth_mask.bounds()),
                     255);
+    color_mask.fill(
+        intersect(square_around(static_cast<int>(own.u), static_cast<int>(own.v), (reach + 1) / 2),
+                  color_mask.bounds()),
+        255);
     for (const auto& [dx, dy] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
       const int x = at.x() + dx;
       const int y = at.y() + dy;

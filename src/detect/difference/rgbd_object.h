@@ -13,7 +13,7 @@ namespace diminish {
 class RgbdObject {
  public:
   struct Inputs {
-    const Mask& regions;  ///< of the small picture: where it shows an object
+    const Mask& regions;        ///< of the small picture: where it shows an object
     const Image<Shown>& shown;  ///< the evidence, before what is unknown was filled in
     const SeenLayers& layers;
     const ObjectEvidence& evidence;

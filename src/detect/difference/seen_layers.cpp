@@ -103,7 +103,8 @@ RgbdCamera with_coarse_depth(RgbdCamera camera, int step) {
 }  // namespace
 
 SeenLayersDrawer::SeenLayersDrawer(const Rig& rig)
-    : shrinkage_(std::max(1, static_cast<int>(std::lround(rig.color.width / double{usual_width})))) {
+    : shrinkage_(
+          std::max(1, static_cast<int>(std::lround(rig.color.width / double{usual_width})))) {
   color_bounds_ = rig.color.bounds();
   width_ = std::max(1, rig.color.width / shrinkage_);
   height_ = std::max(1, rig.color.height / shrinkage_);
@@ -173,8 +174,7 @@ void SeenLayersDrawer::find_cells(ImageView<Bgr> picture, const ColorMap& map, s
 }
 
 void SeenLayersDrawer::find_vertices(const RgbdFrame& images,
-                                     const RigidTransform& color_from_depth,
-                                     Camera& camera) const {
+                                     const RigidTransform& color_from_depth, Camera& camera) const {
   const ImageView<std::uint16_t> depth = images.depth;
   const int step = camera.step;
   camera.depth.resize(depth.width() / step, depth.height() / step);
@@ -211,8 +211,8 @@ void SeenLayersDrawer::find_vertices(const RgbdFrame& images,
         const auto small = [&](std::int32_t subpixels) {
           return (static_cast<float>(subpixels) / sdct::subpixels + 0.5F) * scale - 0.5F;
         };
-        vertices[x] = {small(row.x[i]),  small(row.y[i]),       z,
-                       row.depth_m[i],   row.u_over_z[i] * z,   row.v_over_z[i] * z};
+        vertices[x] = {small(row.x[i]), small(row.y[i]),     z,
+                       row.depth_m[i],  row.u_over_z[i] * z, row.v_over_z[i] * z};
       }
     }
   });

@@ -43,9 +43,10 @@ const FoundCamera& device_with(const InitialRig::Rgbd& camera,
   }
   std::string uris;
   for (const FoundCamera& device : camera.devices) uris += (uris.empty() ? "" : ", ") + device.uri;
-  throw Error(fmt::format("{}: {} delivers no {} images, expected color and depth; give the camera "
-                          "that does as well: --rgbd {}=CAMERA",
-                          camera.name, uris, what, camera.name));
+  throw Error(
+      fmt::format("{}: {} delivers no {} images, expected color and depth; give the camera "
+                  "that does as well: --rgbd {}=CAMERA",
+                  camera.name, uris, what, camera.name));
 }
 
 }  // namespace
@@ -67,22 +68,23 @@ FoundCamera look_at_camera(const std::string& uri, const std::string& name) {
     const bool is_color = image.sensor == Sensor::color;
     const auto known = source->intrinsics(image.sensor);
     (is_color ? found.color_is_guess : found.depth_is_guess) = !known;
-    (is_color ? found.color : found.depth) =
-        known      ? *known
-        : is_color ? guess(image.color.width(), image.color.height())
-                   : guess(image.depth.width(), image.depth.height());
+    (is_color ? found.color : found.depth) = known ? *known
+                                             : is_color
+                                                 ? guess(image.color.width(), image.color.height())
+                                                 : guess(image.depth.width(), image.depth.height());
     // The user's view is all that is asked of its camera.
     if (name == "color" && found.color) break;
   }
   if (!found.color && !found.depth) {
-    throw Error(fmt::format("{}: no image within {} s, expected a camera that runs", uri,
-                            patience_s));
+    throw Error(
+        fmt::format("{}: no image within {} s, expected a camera that runs", uri, patience_s));
   }
   return found;
 }
 
 std::string initial_rig_yaml(const InitialRig& rig) {
-  if (!rig.color.color) throw Error(rig.color.uri + ": delivers no color images, expected the user's view");
+  if (!rig.color.color)
+    throw Error(rig.color.uri + ": delivers no color images, expected the user's view");
   std::string text =
       "# Made by `diminish init`. What is a guess says so; docs/setting-up.md says how to measure "
       "it.\n"
@@ -110,7 +112,8 @@ std::string initial_rig_yaml(const InitialRig& rig) {
   }
   text +=
       "pose:\n"
-      "  source: marker   # the world marker in scene.yaml, which all cameras must see. For cameras "
+      "  source: marker   # the world marker in scene.yaml, which all cameras must see. For "
+      "cameras "
       "that do not move:\n"
       "                   # `diminish calibrate rig` (source: fixed)\n";
   return text;
