@@ -1,12 +1,13 @@
 # The two commands to know: `make demo` and `make test`. Everything they need, they install.
 
-.PHONY: help demo test test-page build deps bench lint format sanitize fuzz clean
+.PHONY: help demo test test-page build deps python bench lint format sanitize fuzz clean
 
 help:
 	@echo "make demo      remove the objects of the bundled recordings, print the figures"
 	@echo "make test      build and run all tests"
 	@echo "make test-page test the web page in a browser"
 	@echo "make build     build the program: build/release/diminish"
+	@echo "make python    build the Python module: build/release/python"
 	@echo "make bench     measure each stage beside its peer"
 	@echo "make lint      clang-format and clang-tidy"
 	@echo "make sanitize  all tests under the address and undefined-behaviour sanitizers"
@@ -28,6 +29,9 @@ test: deps
 test-page: build
 	scripts/install-deps page
 	scripts/test-page
+
+python: deps
+	scripts/build "" diminish_python
 
 bench: deps
 	scripts/bench

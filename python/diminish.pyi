@@ -1,0 +1,63 @@
+"""Removes real objects from a camera's picture and shows what is behind them."""
+
+from os import PathLike
+from typing import Any, Iterator, Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+Picture = NDArray[np.uint8]
+"""height x width x 3, BGR"""
+Mask = NDArray[np.uint8]
+"""height x width"""
+Depth = NDArray[np.uint16]
+"""height x width, in the rig's unit; 0: no measurement"""
+
+__version__: str
+
+class Error(ValueError): ...
+
+class Options:
+    """Everything that can be chosen; see docs/command-line.md."""
+
+    def __init__(self, **options: Any) -> None: ...
+    def __getattr__(self, name: str) -> Any: ...
+
+def methods(option: str) -> list[str]: ...
+
+class Frame:
+    name: str
+    index: int
+    stamp_s: float
+    picture: Picture
+    mask: Mask
+    provenance: NDArray[np.uint8]
+    input: Picture
+    rgbd: list[tuple[Picture, Depth] | None]
+    report: dict[str, Any]
+
+class Frames(Iterator[Frame]):
+    def __next__(self) -> Frame: ...
+
+class Pipeline:
+    cameras: list[str]
+    def __init__(
+        self,
+        folder: str | PathLike[str],
+        options: Options | None = None,
+        detector: str = "",
+        **single_options: Any,
+    ) -> None: ...
+    def __iter__(self) -> Frames: ...
+    def process(
+        self,
+        color: Picture,
+        rgbd: Mapping[str, tuple[Picture, Depth]] = {},
+        stamp_s: float = 0.0,
+    ) -> Frame: ...
+    def forget(self) -> None: ...
+
+def inpaint(src: Picture, inpaintMask: Mask, inpaintRadius: float = 3, flags: int = 0) -> Picture: ...
+def seamless_clone(
+    src: Picture, dst: Picture, mask: Mask, p: tuple[int, int], flags: int = 1
+) -> Picture: ...
