@@ -24,9 +24,11 @@ ImageView<std::uint16_t> as_depth(const Depths& array, const char* name);
 /// Read-only views of an image that `owner` keeps.
 py::array view_of(const Image<Bgr>& image, const std::shared_ptr<void>& owner);
 py::array view_of(const Image<std::uint8_t>& image, const std::shared_ptr<void>& owner);
+py::array view_of(ImageView<std::uint8_t> image, const std::shared_ptr<void>& owner);
 py::array view_of(ImageView<Bgr> image, const std::shared_ptr<void>& owner);
 py::array view_of(ImageView<std::uint16_t> image, const std::shared_ptr<void>& owner);
 
+void add_methods(py::module_& module);
 void add_options(py::module_& module);
 void add_pictures(py::module_& module);
 void add_pipeline(py::module_& module);

@@ -1,7 +1,7 @@
 """Removes real objects from a camera's picture and shows what is behind them."""
 
 from os import PathLike
-from typing import Any, Iterator, Mapping
+from typing import Any, Callable, Iterator, Mapping, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,7 @@ Depth = NDArray[np.uint16]
 """height x width, in the rig's unit; 0: no measurement"""
 
 __version__: str
+_Method = TypeVar("_Method", bound=Callable[..., Any])
 
 class Error(ValueError): ...
 
@@ -23,6 +24,8 @@ class Options:
     def __init__(self, **options: Any) -> None: ...
     def __getattr__(self, name: str) -> Any: ...
 
+def detector(name: str) -> Callable[[_Method], _Method]: ...
+def inpainter(name: str) -> Callable[[_Method], _Method]: ...
 def methods(option: str) -> list[str]: ...
 
 class Frame:

@@ -9,6 +9,7 @@ PYBIND11_MODULE(diminish, module) {
       "diminish.Error, a ValueError, with the text that the program prints.";
   module.attr("__version__") = DIMINISH_VERSION;
   py::register_exception<diminish::Error>(module, "Error", PyExc_ValueError);
+  diminish::python::add_methods(module);
   diminish::python::add_options(module);
   diminish::python::add_pictures(module);
   diminish::python::add_pipeline(module);

@@ -126,8 +126,12 @@ py::array view_of(const Image<Bgr>& image, const std::shared_ptr<void>& owner) {
   return view_of(ImageView<Bgr>(image), owner);
 }
 py::array view_of(const Image<std::uint8_t>& image, const std::shared_ptr<void>& owner) {
-  return read_only(py::array_t<std::uint8_t>({image.height(), image.width()}, {image.width(), 1},
-                                             image.data(), keeper(owner)));
+  return view_of(ImageView<std::uint8_t>(image), owner);
+}
+py::array view_of(ImageView<std::uint8_t> image, const std::shared_ptr<void>& owner) {
+  return read_only(py::array_t<std::uint8_t>({image.height(), image.width()},
+                                             {static_cast<int>(image.stride()), 1}, image.data(),
+                                             keeper(owner)));
 }
 py::array view_of(ImageView<Bgr> image, const std::shared_ptr<void>& owner) {
   return read_only(py::array_t<std::uint8_t>(

@@ -96,6 +96,58 @@ class PipelineTest(unittest.TestCase):
             pipeline.process(frame.input, {"kinect": frame.rgbd[0]})
 
 
+class OwnMethodsTest(unittest.TestCase):
+    def test_a_detector_and_an_inpainter(self):
+        made = []
+
+        @diminish.detector("test_square")
+        class Square:
+            def __init__(self):
+                made.append(self)
+
+            def __call__(self, color, rgbd):
+                self.depth = rgbd[0][1]
+                mask = np.zeros(color.shape[:2], np.uint8)
+                mask[400:500, 600:700] = 255
+                in_rgbd = np.zeros(rgbd[0][0].shape[:2], np.uint8)
+                in_rgbd[:] = 255  # so that nothing is seen
+                return mask, [in_rgbd]
+
+        @diminish.inpainter("test_grey")
+        def grey(picture, missing):
+            picture[missing > 0] = (10, 20, 30)
+            picture[0, 0] = 255  # outside: of no effect
+            return picture
+
+        pipeline = diminish.Pipeline(
+            CALENDAR, detector="test_square", inpaint="test_grey", memory="off", mask_margin_px=0, soft_rim_px=0
+        )
+        frame = next(iter(pipeline))
+        expected = np.zeros((1024, 1280), np.uint8)
+        expected[400:500, 600:700] = 255
+        self.assertTrue((frame.mask == expected).all())
+        self.assertTrue((frame.picture[400:500, 600:700] == (10, 20, 30)).all())
+        self.assertTrue((frame.picture[0, 0] == frame.input[0, 0]).all())
+        self.assertEqual(len(made), 1)
+        self.assertEqual(made[0].depth.dtype, np.uint16)
+        with self.assertRaisesRegex(ValueError, "test_grey.*taken"):
+            diminish.inpainter("test_grey")(grey)
+
+    def test_their_errors_are_the_callers(self):
+        @diminish.detector("test_broken")
+        def broken(color, rgbd):
+            raise RuntimeError("no idea")
+
+        @diminish.detector("test_small")
+        def small(color, rgbd):
+            return np.zeros((2, 3), np.uint8)
+
+        with self.assertRaisesRegex(RuntimeError, "no idea"):
+            next(iter(diminish.Pipeline(CALENDAR, detector="test_broken")))
+        with self.assertRaisesRegex(ValueError, "expected a mask of 1024 x 1280, got 2 x 3"):
+            next(iter(diminish.Pipeline(CALENDAR, detector="test_small")))
+
+
 class OptionsTest(unittest.TestCase):
     def test_have_the_programs_names_and_ranges(self):
         options = diminish.Options(mask_margin_px=7, memory="off")

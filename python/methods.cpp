@@ -1,0 +1,185 @@
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "bindings.h"
+#include "diminish/inpainter.h"
+#include "diminish/occluder_detector.h"
+
+namespace diminish::python {
+namespace {
+
+/// A Python callable, for the life of the process: methods stay registered after the interpreter
+/// has ended.
+py::handle keep(const py::object& callable) {
+  return callable.inc_ref();
+}
+
+/// What a pipeline calls: of a class, an object of its own.
+py::object made_of(py::handle callable) {
+  if (PyType_Check(callable.ptr()) != 0) return callable();
+  return py::reinterpret_borrow<py::object>(callable);
+}
+
+/// A copy, which the callee may keep and change.
+template <class Pixel>
+py::array copy_of(const ImageView<Pixel>& image) {
+  const auto owner = std::make_shared<Image<Pixel>>();
+  copy(image, *owner);
+  return view_of(ImageView<Pixel>(*owner), owner).attr("copy")().template cast<py::array>();
+}
+
+bool add_mask(const py::object& given, const std::string& name, Mask& mask) {
+  if (given.is_none()) return false;
+  const Bytes array = given.cast<Bytes>();
+  const ImageView<std::uint8_t> view = as_mask(array, name.c_str());
+  if (view.bounds() != mask.bounds()) {
+    throw py::value_error(name + ": expected a mask of " + std::to_string(mask.height()) + " x " +
+                          std::to_string(mask.width()) + ", got " + std::to_string(view.height()) +
+                          " x " + std::to_string(view.width()));
+  }
+  bool any = false;
+  for (int y = 0; y < mask.height(); ++y) {
+    std::transform(view.row(y), view.row(y) + view.width(), mask.row(y), mask.row(y),
+                   [&any](std::uint8_t from, std::uint8_t to) -> std::uint8_t {
+                     any = any || from != 0;
+                     return from != 0 ? 255 : to;
+                   });
+  }
+  return any;
+}
+
+class PythonDetector : public OccluderDetector {
+ public:
+  PythonDetector(std::string name, py::handle callable) : name_(std::move(name)) {
+    const py::gil_scoped_acquire acquire;
+    callable_ = made_of(callable);
+  }
+  ~PythonDetector() override {
+    const py::gil_scoped_acquire acquire;
+    callable_ = py::object();
+  }
+  PythonDetector(const PythonDetector&) = delete;
+  PythonDetector& operator=(const PythonDetector&) = delete;
+
+  OccluderReport detect(const Observation& observation, OcclusionMasks& masks) override {
+    const py::gil_scoped_acquire acquire;
+    OccluderReport report;
+    report.name = name_;
+    report.in_rgbd.assign(observation.frame.rgbd.size(), false);
+    py::list rgbd;
+    for (const RgbdFrame& images : observation.frame.rgbd) {
+      if (images.available()) {
+        rgbd.append(py::make_tuple(copy_of(images.color.view()), copy_of(images.depth.view())));
+      } else {
+        rgbd.append(py::none());
+      }
+    }
+    const py::object found = callable_(copy_of(observation.frame.color.view()), rgbd);
+    py::object in_color = found;
+    if (py::isinstance<py::tuple>(found)) {
+      const auto both = found.cast<std::pair<py::object, py::list>>();
+      in_color = both.first;
+      for (std::size_t k = 0; k < std::min(report.in_rgbd.size(), both.second.size()); ++k) {
+        report.in_rgbd[k] = add_mask(both.second[k], name_, masks.rgbd_color[k]);
+      }
+    }
+    report.in_color = add_mask(in_color, name_, masks.color);
+    return report;
+  }
+
+ private:
+  std::string name_;
+  py::object callable_;
+};
+
+class PythonInpainter : public Inpainter {
+ public:
+  explicit PythonInpainter(py::handle callable) {
+    const py::gil_scoped_acquire acquire;
+    callable_ = made_of(callable);
+  }
+  ~PythonInpainter() override {
+    const py::gil_scoped_acquire acquire;
+    callable_ = py::object();
+  }
+  PythonInpainter(const PythonInpainter&) = delete;
+  PythonInpainter& operator=(const PythonInpainter&) = delete;
+
+  bool inpaint(const Holes& holes, const Options&, Image<Bgr>& picture) override {
+    const py::gil_scoped_acquire acquire;
+    const py::object result = callable_(copy_of(ImageView<Bgr>(picture)),
+                                        copy_of(ImageView<std::uint8_t>(holes.missing)));
+    const Bytes array = result.cast<Bytes>();
+    const ImageView<Bgr> filled = as_picture(array, "inpainter");
+    if (filled.bounds() != picture.bounds()) {
+      throw py::value_error("inpainter: expected the picture's size back");
+    }
+    for (int y = 0; y < picture.height(); ++y) {
+      for (int x = 0; x < picture.width(); ++x) {
+        if (holes.missing(x, y) != 0) picture(x, y) = filled(x, y);
+      }
+    }
+    return true;
+  }
+
+ private:
+  py::object callable_;
+};
+
+void expect_free(bool was_free, const std::string& kind, const std::string& name) {
+  if (!was_free) throw py::value_error(kind + " '" + name + "': the name is taken");
+}
+
+py::object add_detector(const std::string& name, const py::object& callable) {
+  const py::handle kept = keep(callable);
+  const OccluderDetector::Entry entry{
+      .read =
+          [](const Config& place) {
+            place.expect_keys({"name", "detector"});
+            return std::make_shared<OccluderSettings>();
+          },
+      .make = [kept](const OccluderSpec& spec,
+                     const Rig&) { return std::make_unique<PythonDetector>(spec.name, kept); }};
+  expect_free(Registry<OccluderDetector>::add(name, entry), "detector", name);
+  return callable;
+}
+
+py::object add_inpainter(const std::string& name, const py::object& callable) {
+  const py::handle kept = keep(callable);
+  expect_free(
+      Registry<Inpainter>::add(name, [kept] { return std::make_unique<PythonInpainter>(kept); }),
+      "inpainter", name);
+  return callable;
+}
+
+}  // namespace
+
+void add_methods(py::module_& module) {
+  module.def(
+      "detector",
+      [](const std::string& name) {
+        return py::cpp_function(
+            [name](const py::object& callable) { return add_detector(name, callable); });
+      },
+      py::arg("name"),
+      "A decorator: adds a detector, for `detector: NAME` in scene.yaml or "
+      "Pipeline(detector=NAME).\n\n"
+      "It is called with the user's picture and, for each RGB-D camera, (color, depth) or None. "
+      "It\n"
+      "returns the mask of what to remove, or (mask, [mask of each RGB-D camera's colour image]);\n"
+      "None: nothing. Of a class, each pipeline makes an object and calls that.");
+  module.def(
+      "inpainter",
+      [](const std::string& name) {
+        return py::cpp_function(
+            [name](const py::object& callable) { return add_inpainter(name, callable); });
+      },
+      py::arg("name"),
+      "A decorator: adds an inpainting method, for the option inpaint=NAME.\n\n"
+      "It is called with the picture and the mask of the pixels to fill, and returns the picture.");
+}
+
+}  // namespace diminish::python
