@@ -28,6 +28,7 @@ py::array view_of(ImageView<std::uint8_t> image, const std::shared_ptr<void>& ow
 py::array view_of(ImageView<Bgr> image, const std::shared_ptr<void>& owner);
 py::array view_of(ImageView<std::uint16_t> image, const std::shared_ptr<void>& owner);
 
+void add_live(py::module_& module);
 void add_methods(py::module_& module);
 void add_options(py::module_& module);
 void add_pictures(py::module_& module);

@@ -60,6 +60,20 @@ class Pipeline:
     ) -> Frame: ...
     def forget(self) -> None: ...
 
+class Live(Iterator[Frame]):
+    status: dict[str, Any]
+    def __init__(
+        self,
+        folder: str | PathLike[str],
+        cameras: Mapping[str, str] = {},
+        options: Options | None = None,
+        detector: str = "",
+        budget_ms: float = 0.0,
+        **single_options: Any,
+    ) -> None: ...
+    def __next__(self) -> Frame: ...
+    def stop(self) -> None: ...
+
 def inpaint(src: Picture, inpaintMask: Mask, inpaintRadius: float = 3, flags: int = 0) -> Picture: ...
 def seamless_clone(
     src: Picture, dst: Picture, mask: Mask, p: tuple[int, int], flags: int = 1

@@ -1,5 +1,6 @@
 #include "bindings.h"
 #include "diminish/error.h"
+#include "frame.h"
 
 PYBIND11_MODULE(diminish, module) {
   namespace py = pybind11;
@@ -9,6 +10,8 @@ PYBIND11_MODULE(diminish, module) {
       "diminish.Error, a ValueError, with the text that the program prints.";
   module.attr("__version__") = DIMINISH_VERSION;
   py::register_exception<diminish::Error>(module, "Error", PyExc_ValueError);
+  diminish::python::add_frame(module);
+  diminish::python::add_live(module);
   diminish::python::add_methods(module);
   diminish::python::add_options(module);
   diminish::python::add_pictures(module);

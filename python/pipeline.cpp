@@ -5,44 +5,40 @@
 
 #include <filesystem>
 #include <map>
-#include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "bindings.h"
 #include "diminish/frame_source.h"
-#include "diminish/stage.h"
+#include "frame.h"
 
 namespace diminish::python {
 namespace {
 
-/// A frame that was processed, with what it was made of. Shared with the arrays that view it.
-struct Frame {
+/// What is processed, and its result.
+struct OwnFrame {
   FrameSet input;
   DiminishedFrame result;
 };
-using SharedFrame = std::shared_ptr<Frame>;
+
+SharedFrame share(const std::shared_ptr<OwnFrame>& frame) {
+  return std::make_shared<Frame>(Frame{frame, &frame->input, &frame->result});
+}
 
 /// A set-up's pipeline.
 class PythonPipeline {
  public:
   PythonPipeline(const std::filesystem::path& folder, const Options& options,
                  const std::string& detector)
-      : recording_(load_recording(folder)) {
-    if (!detector.empty()) {
-      const Config object = Config::parse(
-          "occluders:\n  - name: object\n    detector: \"" + detector + "\"", "detector");
-      recording_.scene.occluders = read_scene(object).occluders;
-    }
-    options_ = options;
+      : recording_(load_setup(folder, detector)), options_(options) {
     pipeline_ = std::make_unique<Pipeline>(recording_.rig, recording_.scene, options_);
     pipeline_->want_reconstruction(false);
   }
 
   SharedFrame process(const Bytes& color,
                       const std::map<std::string, std::pair<Bytes, Depths>>& rgbd, double stamp_s) {
-    auto frame = std::make_shared<Frame>();
+    auto frame = std::make_shared<OwnFrame>();
     FrameSet& input = frame->input;
     input.index = frames_++;
     input.name = std::to_string(input.index);
@@ -68,15 +64,15 @@ class PythonPipeline {
     }
     const py::gil_scoped_release release;
     pipeline_->process(input, frame->result);
-    return frame;
+    return share(frame);
   }
 
   /// Null at the end.
   SharedFrame next(FrameSource& source) {
-    auto frame = std::make_shared<Frame>();
+    auto frame = std::make_shared<OwnFrame>();
     if (!source.next(frame->input)) return nullptr;
     pipeline_->process(frame->input, frame->result);
-    return frame;
+    return share(frame);
   }
 
   std::unique_ptr<FrameSource> open() const { return open_recording(recording_, options_); }
@@ -110,81 +106,9 @@ struct Frames {
   }
 };
 
-py::dict report_of(const Frame& frame) {
-  const FrameReport& report = frame.result.report;
-  py::dict stages;
-  for (std::size_t i = 0; i < stage_count; ++i) stages[stage_names[i]] = report.milliseconds[i];
-  py::list objects;
-  for (const OccluderReport& object : report.occluders) {
-    objects.append(py::dict(py::arg("name") = object.name, py::arg("in_color") = object.in_color,
-                            py::arg("in_rgbd") = object.in_rgbd,
-                            py::arg("message") = object.message));
-  }
-  return py::dict(py::arg("objects") = objects, py::arg("mask_pixels") = report.mask_pixels,
-                  py::arg("seen_pixels") = report.valid_pixels - report.remembered_pixels,
-                  py::arg("remembered_pixels") = report.remembered_pixels,
-                  py::arg("invented_pixels") = report.missing_pixels,
-                  py::arg("milliseconds") = stages, py::arg("frame_ms") = report.frame_ms,
-                  py::arg("skipped") = report.skipped, py::arg("faults") = report.faults,
-                  py::arg("messages") = report.messages);
-}
-
-py::bytes as_png(const Frame& frame) {
-  const Image<Bgr>& picture = frame.result.picture;
-  if (picture.empty()) return {};
-  const cv::Mat pixels(picture.height(), picture.width(), CV_8UC3,
-                       const_cast<Bgr*>(picture.data()));
-  std::vector<std::uint8_t> bytes;
-  cv::imencode(".png", pixels, bytes);
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
-void add_frame(py::module_& module) {
-  py::class_<Frame, SharedFrame>(module, "Frame",
-                                 "A frame without the objects. Its arrays are read-only views.")
-      .def_property_readonly(
-          "name", [](const Frame& frame) { return frame.result.name; },
-          "The colour image's file name without its extension")
-      .def_property_readonly("index", [](const Frame& frame) { return frame.result.index; })
-      .def_property_readonly("stamp_s", [](const Frame& frame) { return frame.result.stamp_s; })
-      .def_property_readonly(
-          "picture", [](const SharedFrame& frame) { return view_of(frame->result.picture, frame); },
-          "The user's view without the objects: height x width x 3, uint8, BGR")
-      .def_property_readonly(
-          "mask", [](const SharedFrame& frame) { return view_of(frame->result.mask, frame); },
-          "255 where pixels were replaced: height x width, uint8")
-      .def_property_readonly(
-          "provenance",
-          [](const SharedFrame& frame) { return view_of(frame->result.provenance, frame); },
-          "Where each pixel comes from: 0 the camera; 1 to 199 an RGB-D camera; 200 witnessed, 201 "
-          "remembered; 254 invented; 255 unknown")
-      .def_property_readonly(
-          "input",
-          [](const SharedFrame& frame) { return view_of(frame->input.color.view(), frame); },
-          "The user's view as the camera saw it")
-      .def_property_readonly(
-          "rgbd",
-          [](const SharedFrame& frame) {
-            py::list cameras;
-            for (const RgbdFrame& images : frame->input.rgbd) {
-              if (!images.available()) {
-                cameras.append(py::none());
-                continue;
-              }
-              cameras.append(py::make_tuple(view_of(images.color.view(), frame),
-                                            view_of(images.depth.view(), frame)));
-            }
-            return cameras;
-          },
-          "(color, depth) of each RGB-D camera; None where there were no images")
-      .def_property_readonly("report", &report_of, "What was found, counted, measured and missed")
-      .def("_repr_png_", &as_png);
-}
-
 }  // namespace
 
 void add_pipeline(py::module_& module) {
-  add_frame(module);
   py::class_<Frames>(module, "Frames")
       .def("__iter__", [](py::object self) { return self; })
       .def("__next__", &Frames::next);
@@ -199,10 +123,8 @@ void add_pipeline(py::module_& module) {
       "Further arguments: Options, or single options.")
       .def(py::init([](const std::filesystem::path& folder, const py::object& options,
                        const std::string& detector, const py::kwargs& values) {
-             Options chosen = options.is_none() ? Options{} : options.cast<Options>();
-             const py::object self = py::cast(&chosen, py::return_value_policy::reference);
-             for (const auto& [name, value] : values) py::setattr(self, name, value);
-             return std::make_shared<PythonPipeline>(folder, chosen, detector);
+             return std::make_shared<PythonPipeline>(folder, chosen_options(options, values),
+                                                     detector);
            }),
            py::arg("folder"), py::arg("options") = py::none(), py::arg("detector") = "")
       .def("__iter__",

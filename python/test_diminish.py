@@ -96,6 +96,36 @@ class PipelineTest(unittest.TestCase):
             pipeline.process(frame.input, {"kinect": frame.rgbd[0]})
 
 
+class LiveTest(unittest.TestCase):
+    def test_ends_with_its_cameras(self):
+        live = diminish.Live(CALENDAR, memory="off")
+        indices = [frame.index for frame in live]
+        self.assertGreater(len(indices), 0)
+        self.assertEqual(indices, sorted(set(indices)))
+        self.assertEqual([camera["name"] for camera in live.status["cameras"]], ["color", "rgbd0"])
+
+    def test_stops_and_says_what_is_wrong(self):
+        replay = "recording:" + CALENDAR + "?loop&rate=0.3"
+        live = diminish.Live(CALENDAR, cameras={"color": replay, "rgbd0": "recording:/nowhere"})
+        frame = next(live)
+        self.assertEqual(frame.picture.shape, (1024, 1280, 3))
+        self.assertIn("/nowhere", " ".join(live.status["problems"]))
+        live.stop()
+        with self.assertRaises(StopIteration):
+            while True:
+                next(live)
+        with self.assertRaisesRegex(ValueError, "cameras: expected color"):
+            diminish.Live(CALENDAR, cameras={"kinect": replay})
+
+    def test_a_detector_of_ones_own_runs_in_the_sessions_thread(self):
+        @diminish.detector("test_live")
+        def everything(color, rgbd):
+            return np.full(color.shape[:2], 255, np.uint8)
+
+        frame = next(diminish.Live(CALENDAR, detector="test_live", memory="off"))
+        self.assertTrue((frame.mask == 255).all())
+
+
 class OwnMethodsTest(unittest.TestCase):
     def test_a_detector_and_an_inpainter(self):
         made = []
