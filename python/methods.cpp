@@ -1,6 +1,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -17,10 +18,17 @@ py::handle keep(const py::object& callable) {
   return callable.inc_ref();
 }
 
-/// What a pipeline calls: of a class, an object of its own.
-py::object made_of(py::handle callable) {
-  if (PyType_Check(callable.ptr()) != 0) return callable();
-  return py::reinterpret_borrow<py::object>(callable);
+using Callable = std::shared_ptr<py::object>;
+
+/// What a pipeline calls: of a class, an object of its own. Any thread may make it and let it go.
+Callable made_of(py::handle callable) {
+  const py::gil_scoped_acquire acquire;
+  const bool is_class = PyType_Check(callable.ptr()) != 0;
+  return {new py::object(is_class ? callable() : py::reinterpret_borrow<py::object>(callable)),
+          [](py::object* object) {
+            const py::gil_scoped_acquire acquire_again;
+            delete object;
+          }};
 }
 
 /// A copy, which the callee may keep and change.
@@ -33,7 +41,7 @@ py::array copy_of(const ImageView<Pixel>& image) {
 
 bool add_mask(const py::object& given, const std::string& name, Mask& mask) {
   if (given.is_none()) return false;
-  const Bytes array = given.cast<Bytes>();
+  const auto array = given.cast<Bytes>();
   const ImageView<std::uint8_t> view = as_mask(array, name.c_str());
   if (view.bounds() != mask.bounds()) {
     throw py::value_error(name + ": expected a mask of " + std::to_string(mask.height()) + " x " +
@@ -53,16 +61,8 @@ bool add_mask(const py::object& given, const std::string& name, Mask& mask) {
 
 class PythonDetector : public OccluderDetector {
  public:
-  PythonDetector(std::string name, py::handle callable) : name_(std::move(name)) {
-    const py::gil_scoped_acquire acquire;
-    callable_ = made_of(callable);
-  }
-  ~PythonDetector() override {
-    const py::gil_scoped_acquire acquire;
-    callable_ = py::object();
-  }
-  PythonDetector(const PythonDetector&) = delete;
-  PythonDetector& operator=(const PythonDetector&) = delete;
+  PythonDetector(std::string name, Callable callable)
+      : name_(std::move(name)), callable_(std::move(callable)) {}
 
   OccluderReport detect(const Observation& observation, OcclusionMasks& masks) override {
     const py::gil_scoped_acquire acquire;
@@ -77,7 +77,7 @@ class PythonDetector : public OccluderDetector {
         rgbd.append(py::none());
       }
     }
-    const py::object found = callable_(copy_of(observation.frame.color.view()), rgbd);
+    const py::object found = (*callable_)(copy_of(observation.frame.color.view()), rgbd);
     py::object in_color = found;
     if (py::isinstance<py::tuple>(found)) {
       const auto both = found.cast<std::pair<py::object, py::list>>();
@@ -92,27 +92,18 @@ class PythonDetector : public OccluderDetector {
 
  private:
   std::string name_;
-  py::object callable_;
+  Callable callable_;
 };
 
 class PythonInpainter : public Inpainter {
  public:
-  explicit PythonInpainter(py::handle callable) {
-    const py::gil_scoped_acquire acquire;
-    callable_ = made_of(callable);
-  }
-  ~PythonInpainter() override {
-    const py::gil_scoped_acquire acquire;
-    callable_ = py::object();
-  }
-  PythonInpainter(const PythonInpainter&) = delete;
-  PythonInpainter& operator=(const PythonInpainter&) = delete;
+  explicit PythonInpainter(Callable callable) : callable_(std::move(callable)) {}
 
   bool inpaint(const Holes& holes, const Options&, Image<Bgr>& picture) override {
     const py::gil_scoped_acquire acquire;
-    const py::object result = callable_(copy_of(ImageView<Bgr>(picture)),
-                                        copy_of(ImageView<std::uint8_t>(holes.missing)));
-    const Bytes array = result.cast<Bytes>();
+    const py::object result = (*callable_)(copy_of(ImageView<Bgr>(picture)),
+                                           copy_of(ImageView<std::uint8_t>(holes.missing)));
+    const auto array = result.cast<Bytes>();
     const ImageView<Bgr> filled = as_picture(array, "inpainter");
     if (filled.bounds() != picture.bounds()) {
       throw py::value_error("inpainter: expected the picture's size back");
@@ -126,7 +117,7 @@ class PythonInpainter : public Inpainter {
   }
 
  private:
-  py::object callable_;
+  Callable callable_;
 };
 
 void expect_free(bool was_free, const std::string& kind, const std::string& name) {
@@ -135,23 +126,25 @@ void expect_free(bool was_free, const std::string& kind, const std::string& name
 
 py::object add_detector(const std::string& name, const py::object& callable) {
   const py::handle kept = keep(callable);
-  const OccluderDetector::Entry entry{
-      .read =
-          [](const Config& place) {
-            place.expect_keys({"name", "detector"});
-            return std::make_shared<OccluderSettings>();
-          },
-      .make = [kept](const OccluderSpec& spec,
-                     const Rig&) { return std::make_unique<PythonDetector>(spec.name, kept); }};
+  const OccluderDetector::Entry entry{.read =
+                                          [](const Config& place) {
+                                            place.expect_keys({"name", "detector"});
+                                            return std::make_shared<OccluderSettings>();
+                                          },
+                                      .make =
+                                          [kept](const OccluderSpec& spec, const Rig&) {
+                                            return std::make_unique<PythonDetector>(spec.name,
+                                                                                    made_of(kept));
+                                          }};
   expect_free(Registry<OccluderDetector>::add(name, entry), "detector", name);
   return callable;
 }
 
 py::object add_inpainter(const std::string& name, const py::object& callable) {
   const py::handle kept = keep(callable);
-  expect_free(
-      Registry<Inpainter>::add(name, [kept] { return std::make_unique<PythonInpainter>(kept); }),
-      "inpainter", name);
+  expect_free(Registry<Inpainter>::add(
+                  name, [kept] { return std::make_unique<PythonInpainter>(made_of(kept)); }),
+              "inpainter", name);
   return callable;
 }
 
