@@ -180,7 +180,9 @@ void SeenLayersDrawer::find_vertices(const RgbdFrame& images,
   camera.depth.resize(depth.width() / step, depth.height() / step);
   for (int y = 0; y < camera.depth.height(); ++y) {
     const std::uint16_t* const row = depth.row(y * step);
-    for (int x = 0; x < camera.depth.width(); ++x) camera.depth(x, y) = row[x * step];
+    for (int x = 0; x < camera.depth.width(); ++x) {
+      camera.depth(x, y) = row[std::ptrdiff_t{x} * step];
+    }
   }
   camera.visible.find(camera.depth, color_from_depth, color_bounds_);
   const Rect blocks = camera.visible.bounds();
