@@ -53,22 +53,25 @@ float gap(const SeenSurface& nearest, const SeenSurface& farthest) {
   return 1 - nearest.depth_m / farthest.depth_m;
 }
 
+/// The camera of the picture that `shrink` makes.
+Intrinsics shrunk(Intrinsics camera, int shrinkage) {
+  camera.width = std::max(1, camera.width / shrinkage);
+  camera.height = std::max(1, camera.height / shrinkage);
+  camera.fx /= shrinkage;
+  camera.fy /= shrinkage;
+  camera.cx = (camera.cx + 0.5) / shrinkage - 0.5;
+  camera.cy = (camera.cy + 0.5) / shrinkage - 0.5;
+  return camera;
+}
+
 }  // namespace
 
 ObjectEvidence::ObjectEvidence(const Intrinsics& color, int shrinkage)
-    : rays_(std::max(1, color.width / shrinkage), std::max(1, color.height / shrinkage)) {
-  const Lens lens(color);
-  const auto center = [&](int i) { return (i + 0.5) * shrinkage - 0.5; };
-  for (int y = 0; y < rays_.height(); ++y) {
-    for (int x = 0; x < rays_.width(); ++x) {
-      rays_(x, y) = lens.undistort({center(x), center(y)}).cast<float>();
-    }
-  }
-}
+    : rays_(RayTable::of(shrunk(color, shrinkage))) {}
 
 bool ObjectEvidence::is_on_plane(const std::vector<BackgroundPlane>& planes, int x, int y,
                                  float depth_m) const {
-  const Eigen::Vector3f point = depth_m * rays_(x, y).homogeneous();
+  const Eigen::Vector3f point = depth_m * (*rays_)(x, y).homogeneous();
   return std::any_of(planes.begin(), planes.end(), [&](const BackgroundPlane& plane) {
     return std::abs(plane.height_m(point)) <= BackgroundPlanes::tolerance.at(depth_m);
   });
@@ -115,7 +118,7 @@ void ObjectEvidence::find(const Inputs& inputs, Image<Shown>& shown) {
     for (int x = 0; x < width; ++x) {
       if (unexplained_(x, y) == 0) continue;
       const SeenSurface& farthest = layers.farthest(x, y);
-      if (!inputs.free_space.is_free(rays_(x, y), (1 - inputs.clearance) * farthest.depth_m,
+      if (!inputs.free_space.is_free((*rays_)(x, y), (1 - inputs.clearance) * farthest.depth_m,
                                      farthest.depth_m)) {
         unexplained_(x, y) = 0;
       }

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "detect/difference/free_space.h"
 #include "detect/difference/seen_layers.h"
 #include "diminish/image.h"
 #include "diminish/intrinsics.h"
+#include "geometry/ray_table.h"
 #include "scene/background_planes.h"
 
 namespace diminish {
@@ -68,7 +70,7 @@ class ObjectEvidence {
   bool is_unlike_around(const Inputs& inputs, int x, int y, float threshold) const;
   void open(Mask& mask, int reach);
 
-  Image<Eigen::Vector2f> rays_;
+  std::shared_ptr<const RayTable> rays_;  ///< of the small picture
   Image<Bgr> least_, greatest_, least_around_, greatest_around_, scratch_;
   Image<Difference> difference_;
   std::vector<float> values_;
