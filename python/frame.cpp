@@ -5,6 +5,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <vector>
 
+#include "diminish/objects_of_detector.h"
 #include "diminish/stage.h"
 
 namespace diminish::python {
@@ -44,9 +45,7 @@ py::bytes as_png(const Frame& frame) {
 Recording load_setup(const std::filesystem::path& folder, const std::string& detector) {
   Recording setup = load_recording(folder);
   if (!detector.empty()) {
-    const Config object = Config::parse(
-        "occluders:\n  - name: object\n    detector: \"" + detector + "\"", "detector");
-    setup.scene.occluders = read_scene(object).occluders;
+    setup.scene.occluders = objects_of_detector(detector, "detector");
   }
   return setup;
 }

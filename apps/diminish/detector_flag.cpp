@@ -1,5 +1,7 @@
 #include "detector_flag.h"
 
+#include "diminish/objects_of_detector.h"
+
 namespace diminish {
 
 void DetectorFlag::add_flag(CLI::App& command) {
@@ -12,9 +14,7 @@ void DetectorFlag::add_flag(CLI::App& command) {
 
 void DetectorFlag::apply(Scene& scene) const {
   if (detector_.empty()) return;
-  const Config object = Config::parse(
-      "occluders:\n  - name: object\n    detector: \"" + detector_ + "\"", "--detector");
-  scene.occluders = read_scene(object).occluders;
+  scene.occluders = objects_of_detector(detector_, "--detector");
 }
 
 }  // namespace diminish

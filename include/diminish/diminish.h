@@ -37,6 +37,7 @@
 #include "diminish/live.h"
 #include "diminish/marker_detector.h"
 #include "diminish/marker_sheet.h"
+#include "diminish/objects_of_detector.h"
 #include "diminish/occluder_detector.h"
 #include "diminish/occluder_settings.h"
 #include "diminish/occlusion_masks.h"

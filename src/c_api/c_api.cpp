@@ -8,6 +8,7 @@
 #include "core/text.h"
 #include "diminish/error.h"
 #include "diminish/frame_source.h"
+#include "diminish/objects_of_detector.h"
 #include "diminish/pipeline.h"
 #include "diminish_c.h"
 
@@ -164,11 +165,8 @@ diminish_status diminish_set_detector(diminish_pipeline* pipeline, const char* d
   return guarded([&] {
     expect(pipeline != nullptr, "pipeline");
     expect(detector != nullptr, "detector");
-    const Config object = Config::parse(
-        std::string("occluders:\n  - name: object\n    detector: \"") + detector + "\"",
-        "detector");
     Scene scene = pipeline->setup.scene;
-    scene.occluders = read_scene(object).occluders;
+    scene.occluders = objects_of_detector(detector, "detector");
     std::swap(scene, pipeline->setup.scene);
     try {
       pipeline->make_pipeline();

@@ -58,8 +58,9 @@ class DifferenceOccluder : public OccluderDetector {
                                     options.discontinuity_reach_m);
     drawer_.draw(frame, poses_, maps_.by_source(), threshold, layers_);
     free_space_.begin(frame, poses_);
-    evidence_.find({picture_, layers_, free_space_, planes_.planes(), clearance_}, evidence_shown_);
-    find_regions();
+    const Rect part = evidence_.find({picture_, layers_, free_space_, planes_.planes(), clearance_},
+                                     evidence_shown_);
+    find_regions(part);
     report.in_color = add_enlarged(regions_, drawer_.shrinkage(), masks.color);
     if (!report.in_color) return report;
     in_rgbd_.assign(rig_.rgbd.size(), 0);
@@ -94,23 +95,11 @@ class DifferenceOccluder : public OccluderDetector {
         [&] { planes_.find(rig_.color.bounds(), samples_.surfaces); });
   }
 
-  void find_regions() {
-    const Image<Shown>& evidence = evidence_shown_;
-    Rect objects;
-    for (int y = 0; y < evidence.height(); ++y) {
-      const Shown* const row = evidence.row(y);
-      const Shown* const end = row + evidence.width();
-      const auto first = std::find_if(row, end, is_object);
-      if (first == end) continue;
-      int last = evidence.width() - 1;
-      while (!is_object(row[last])) --last;
-      extend(objects, static_cast<int>(first - row), y);
-      extend(objects, last, y);
-    }
-    shown_ = evidence;
-    fill_.fill(picture_, intersect(grow(objects, ObjectEvidence::guessed_px), evidence.bounds()),
-               shown_);
-    find_.find(evidence, shown_, regions_);
+  /// part: of the small picture, that objects may be in.
+  void find_regions(const Rect& part) {
+    shown_ = evidence_shown_;
+    fill_.fill(picture_, part, shown_);
+    find_.find(evidence_shown_, shown_, regions_);
   }
 
   std::string name_;

@@ -1,5 +1,6 @@
 #include "diminish/scene.h"
 
+#include "diminish/objects_of_detector.h"
 #include "diminish/occluder_detector.h"
 #include "source/configuration_checks.h"
 
@@ -38,6 +39,13 @@ Scene read_scene(const Config& config) {
   }
   check_scene(scene, nullptr, config);
   return scene;
+}
+
+std::vector<OccluderSpec> objects_of_detector(const std::string& detector,
+                                              const std::string& source) {
+  return read_scene(Config::parse(
+                        "occluders:\n  - name: object\n    detector: \"" + detector + "\"", source))
+      .occluders;
 }
 
 }  // namespace diminish

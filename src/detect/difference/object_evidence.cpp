@@ -5,8 +5,8 @@
 
 #include "core/channels.h"
 #include "core/extremum_filters.h"
-#include "core/robust.h"
 #include "core/rows.h"
+#include "geometry/shrunk_camera.h"
 
 namespace diminish {
 namespace {
@@ -53,21 +53,10 @@ float gap(const SeenSurface& nearest, const SeenSurface& farthest) {
   return 1 - nearest.depth_m / farthest.depth_m;
 }
 
-/// The camera of the picture that `shrink` makes.
-Intrinsics shrunk(Intrinsics camera, int shrinkage) {
-  camera.width = std::max(1, camera.width / shrinkage);
-  camera.height = std::max(1, camera.height / shrinkage);
-  camera.fx /= shrinkage;
-  camera.fy /= shrinkage;
-  camera.cx = (camera.cx + 0.5) / shrinkage - 0.5;
-  camera.cy = (camera.cy + 0.5) / shrinkage - 0.5;
-  return camera;
-}
-
 }  // namespace
 
 ObjectEvidence::ObjectEvidence(const Intrinsics& color, int shrinkage)
-    : rays_(RayTable::of(shrunk(color, shrinkage))) {}
+    : rays_(RayTable::of(shrunk_camera(color, shrinkage))) {}
 
 bool ObjectEvidence::is_on_plane(const std::vector<BackgroundPlane>& planes, int x, int y,
                                  float depth_m) const {
@@ -77,7 +66,7 @@ bool ObjectEvidence::is_on_plane(const std::vector<BackgroundPlane>& planes, int
   });
 }
 
-void ObjectEvidence::find(const Inputs& inputs, Image<Shown>& shown) {
+Rect ObjectEvidence::find(const Inputs& inputs, Image<Shown>& shown) {
   const SeenLayers& layers = inputs.layers;
   const int width = inputs.picture.width();
   const int height = inputs.picture.height();
@@ -124,11 +113,11 @@ void ObjectEvidence::find(const Inputs& inputs, Image<Shown>& shown) {
       }
     }
   }
-  decide(inputs, threshold, shown);
+  return decide(inputs, threshold, shown);
 }
 
 /// What is certain, from the object's pixels and from what is unexplained.
-void ObjectEvidence::decide(const Inputs& inputs, float threshold, Image<Shown>& shown) {
+Rect ObjectEvidence::decide(const Inputs& inputs, float threshold, Image<Shown>& shown) {
   const int width = inputs.picture.width();
   const int height = inputs.picture.height();
   scene_.resize(width, height);
@@ -153,7 +142,8 @@ void ObjectEvidence::decide(const Inputs& inputs, float threshold, Image<Shown>&
   });
   open(object_, 1);
   erode(scene_, {1, 1}, first_, second_);
-  const Rect near_objects = grow(bounding_box(object_), guessed_px);
+  const Rect near_objects =
+      intersect(grow(bounding_box(object_), guessed_px), inputs.picture.bounds());
   shown.resize(width, height);
   for_rows(height, [&](Rows rows) {
     for (int y = rows.first; y < rows.last; ++y) {
@@ -170,6 +160,7 @@ void ObjectEvidence::decide(const Inputs& inputs, float threshold, Image<Shown>&
       }
     }
   });
+  return near_objects;
 }
 
 /// Whether no RGB-D camera sees anything in a pixel, and it is quite unlike what they see on its

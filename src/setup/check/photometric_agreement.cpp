@@ -7,6 +7,7 @@
 
 #include "core/mat.h"
 #include "core/robust.h"
+#include "geometry/shrunk_camera.h"
 
 namespace diminish {
 namespace {
@@ -20,15 +21,7 @@ constexpr std::size_t least_blocks = 8;
 
 /// The camera of the picture, shrunk by an integer factor.
 Intrinsics shrunk(const Intrinsics& camera) {
-  const int by = std::max(1, camera.width / wanted_width);
-  Intrinsics small = camera;
-  small.width = camera.width / by;
-  small.height = camera.height / by;
-  small.fx /= by;
-  small.fy /= by;
-  small.cx = (camera.cx + 0.5) / by - 0.5;
-  small.cy = (camera.cy + 0.5) / by - 0.5;
-  return small;
+  return shrunk_camera(camera, std::max(1, camera.width / wanted_width));
 }
 
 cv::Mat grey_of(ImageView<Bgr> image) {
