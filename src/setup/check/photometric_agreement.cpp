@@ -96,7 +96,7 @@ std::optional<double> PhotometricAgreement::of(const FrameSet& frame, const Pose
       const int v = static_cast<int>(std::lround(to->y()));
       if (!small_.bounds().contains(u, v)) continue;
       // Something nearer hides what is behind it.
-      float& front = nearest.at<float>(v, u);
+      auto& front = nearest.at<float>(v, u);
       if (static_cast<float>(in_user.z()) > front) continue;
       const auto from = camera.color_lens.project(parameters.color_from_depth * p);
       if (!from) continue;
