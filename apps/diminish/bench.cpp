@@ -14,13 +14,13 @@
 
 #include "allocations.h"
 #include "commands.h"
-#include "detector_flag.h"
 #include "diminish/diminish.h"
 #include "diminish/runner.h"
 #include "frame_trace.h"
 #include "looped_recording.h"
 #include "option_flags.h"
 #include "preloaded_source.h"
+#include "set_up_flags.h"
 #include "sink/distribution.h"
 #include "sink/partial_file.h"
 #include "sink/time_table.h"
@@ -61,7 +61,7 @@ struct BenchCommand {
   std::size_t frames = 0;
   double seconds = 3;
   Options options;
-  DetectorFlag detector;
+  SetUpFlags flags;
 
   int execute() const;
 
@@ -385,7 +385,7 @@ void write_json(const BenchCommand& command, const Figures& figures) {
 
 int BenchCommand::execute() const {
   Recording input = load_recording(recording);
-  detector.apply(input.scene);
+  flags.apply(input.rig, input.scene);
   check(options, input.rig, input.scene);
   Figures figures;
   std::vector<FrameSet> loaded = load(input, figures);
@@ -434,7 +434,7 @@ void add_bench(CLI::App& program, int& exit_code) {
                   "Also write who did what, when, to this file (a Chrome trace, for Perfetto)")
       ->type_name("FILE");
   add_option_flags(*sub, command->options);
-  command->detector.add_flag(*sub);
+  command->flags.add_to(*sub);
   sub->callback([command, &exit_code] { exit_code = command->execute(); });
 }
 

@@ -59,7 +59,7 @@ void LiveSetup::add_flags(CLI::App& command) {
       ->type_name("SECONDS");
   add_option_flags(command, options);
   background.add_flag(command, options);
-  detector.add_flag(command);
+  flags.add_to(command);
 }
 
 bool LiveSetup::has_live_cameras(const Rig& rig) const {
@@ -126,9 +126,9 @@ void LiveRun::say_output_problem() {
 }
 
 LiveRun LiveSetup::start() const {
-  const Rig rig = load_rig(rig_file());
+  Rig rig = load_rig(rig_file());
   Scene scene = load_scene(scene_file());
-  detector.apply(scene);
+  flags.apply(rig, scene);
   std::vector<LiveCamera> all = cameras(rig);
   if (draw_clock) all.front().uri = "clock:" + all.front().uri;
   LiveOptions with_background = live_options;

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "background.h"
-#include "detector_flag.h"
 #include "diminish/live.h"
 #include "diminish/recording_writer.h"
 #include "diminish/virtual_camera.h"
+#include "set_up_flags.h"
 
 namespace diminish {
 
@@ -36,7 +36,7 @@ struct LiveSetup {
   bool draw_clock = false;  ///< into the colour camera's pictures
   Options options;
   Background background;
-  DetectorFlag detector;
+  SetUpFlags flags;
   LiveOptions live_options;
 
   void add_flags(CLI::App& command);

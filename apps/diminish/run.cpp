@@ -9,10 +9,10 @@
 
 #include "background.h"
 #include "commands.h"
-#include "detector_flag.h"
 #include "diminish/diminish.h"
 #include "option_flags.h"
 #include "progress.h"
+#include "set_up_flags.h"
 
 namespace diminish {
 namespace {
@@ -30,14 +30,14 @@ struct RunCommand {
   bool preview = false;
   Options options;
   Background background;
-  DetectorFlag detector;
+  SetUpFlags flags;
 
   int execute() const;
 };
 
 int RunCommand::execute() const {
   Recording input = load_recording(recording);
-  detector.apply(input.scene);
+  flags.apply(input.rig, input.scene);
   check(options, input.rig, input.scene);
   const auto source = open_recording(input, options);
   RunnerOptions runner;
@@ -86,7 +86,7 @@ void add_run(CLI::App& program, int& exit_code) {
       ->type_name("N");
   add_option_flags(*sub, command->options);
   command->background.add_flag(*sub, command->options);
-  command->detector.add_flag(*sub);
+  command->flags.add_to(*sub);
   sub->callback([command, &exit_code] { exit_code = command->execute(); });
 }
 

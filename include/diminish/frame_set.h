@@ -16,10 +16,11 @@ struct RgbdFrame {
   InputImage<std::uint16_t> depth;
   double color_stamp_s = 0;
   double depth_stamp_s = 0;
-  /// Why there are no images, in plain words; empty if both are there.
+  /// Why there are no images, in plain words; empty if all that the camera makes are there.
   std::string missing;
 
-  bool available() const { return missing.empty() && !color.empty() && !depth.empty(); }
+  bool has_picture() const { return missing.empty() && !color.empty(); }
+  bool available() const { return has_picture() && !depth.empty(); }
 };
 
 /// Masks of one occluder, made by another program: 255 on the object. An image without a mask is

@@ -11,16 +11,31 @@
 
 namespace diminish {
 
-/// A depth sensor with a colour sensor rigidly beside it.
+struct Rig;
+
+/// A depth sensor with a colour sensor rigidly beside it; or a colour camera whose depth image is
+/// estimated.
 struct RgbdCamera {
   std::string name;
   Intrinsics color;
+  /// Of an estimated depth image: the colour sensor's without lens distortion, made smaller.
   Intrinsics depth;
   /// Metres = depth value * depth_unit_m; value 0 = no measurement.
   double depth_unit_m = 0.001;
   /// From this camera's depth sensor to its own colour sensor.
   RigidTransform color_from_depth;
+  /// False: a colour camera. Its pictures come without depth, which is estimated (DepthEstimator).
+  bool measures_depth = true;
+  /// Where an estimate looks for surfaces, metres.
+  double nearest_m = 0.4, farthest_m = 6;
+  /// From the frame of which poses are given (pose.source fixed, file) to the depth image's.
+  RigidTransform depth_from_posed = {};
 };
+
+/// A colour camera without depth.
+DIMINISH_EXPORT RgbdCamera color_only_camera(const std::string& name, const Intrinsics& color);
+/// The rig, as if none of its cameras measured depth.
+DIMINISH_EXPORT Rig without_depth(Rig rig);
 
 /// A camera of a live session. An RGB-D camera with two devices has two.
 struct LiveCamera {

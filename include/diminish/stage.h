@@ -9,6 +9,7 @@ namespace diminish {
 enum class Stage {
   poses,        ///< markers; where the cameras are
   objects,      ///< masks of the objects to remove, in every image
+  estimation,   ///< depth images of cameras that measure none
   depth,        ///< cleans the parts of depth images that may be drawn
   samples,      ///< sparse samples of the scene
   refinement,   ///< refines the colour camera's pose
@@ -22,10 +23,11 @@ enum class Stage {
   inpainting,   ///< pixels that were not seen
   finish        ///< noise, rims, view mode
 };
-inline constexpr std::size_t stage_count = 14;
+inline constexpr std::size_t stage_count = 15;
 inline constexpr std::array<const char*, stage_count> stage_names = {
-    "poses",  "objects", "depth",   "samples",     "refinement", "background", "color_maps",
-    "memory", "drawing", "merging", "compositing", "colors",     "inpainting", "finish"};
+    "poses",      "objects",     "estimation", "depth",      "samples",
+    "refinement", "background",  "color_maps", "memory",     "drawing",
+    "merging",    "compositing", "colors",     "inpainting", "finish"};
 
 /// Milliseconds by Stage. Some stages run at the same time, so the sum may exceed the frame's time:
 /// `depth` to `refinement`; `background` to `drawing`.

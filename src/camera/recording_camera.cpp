@@ -124,6 +124,7 @@ class RecordingCamera : public CameraSource {
     if (!camera) uri.fail("the recording has no camera '" + name + "'");
     color_.emplace(folder / (name + "_color.txt"), camera->color, timeline, loop,
                    EmptyList::is_no_images);
+    if (!camera->measures_depth || is_ignored(request)) return;
     depth_.emplace(folder / (name + "_depth.txt"), camera->depth, timeline, loop,
                    EmptyList::is_no_images);
   }
@@ -155,6 +156,13 @@ class RecordingCamera : public CameraSource {
   std::size_t dropped() const override { return dropped_; }
 
  private:
+  /// Whether the session wants no depth of this camera.
+  static bool is_ignored(const CameraRequest& request) {
+    if (request.rig == nullptr) return false;
+    const RgbdCamera* const wanted = find_rgbd_camera(*request.rig, request.name);
+    return wanted != nullptr && !wanted->measures_depth;
+  }
+
   std::optional<Replay<Bgr>> color_;
   std::optional<Replay<std::uint16_t>> depth_;
   std::size_t dropped_ = 0;

@@ -110,11 +110,29 @@ VisibleBlocks::VisibleBlocks(const RgbdCamera& camera, const Intrinsics& color)
   depth_m_.resize(rays_.size());
 }
 
-void VisibleBlocks::find(ImageView<std::uint16_t> depth, const RigidTransform& color_from_depth,
-                         const Rect& region) {
+void VisibleBlocks::begin(const RigidTransform& color_from_depth, const Rect& region) {
   color_from_depth_ = color_from_depth;
   sides_ = {};
   for (const int axis : {0, 1}) add_sides(region, axis, sides_);
+}
+
+void VisibleBlocks::find(float nearest_m, float farthest_m, const RigidTransform& color_from_depth,
+                         const Rect& region) {
+  begin(color_from_depth, region);
+  for (int row = 0; row < visible_.rows(); ++row) {
+    for (int column = 0; column < visible_.columns(); ++column) {
+      const Range depth_m = {nearest_m, farthest_m};
+      depth_m_[visible_.index(column, row)] = depth_m;
+      visible_(column, row) =
+          is_inside(sides_, rays_[visible_.index(column, row)], depth_m) ? 1 : 0;
+    }
+  }
+  find_part();
+}
+
+void VisibleBlocks::find(ImageView<std::uint16_t> depth, const RigidTransform& color_from_depth,
+                         const Rect& region) {
+  begin(color_from_depth, region);
   const auto pitch = depth.stride() / std::ptrdiff_t{sizeof(std::uint16_t)};
   for_rows(image_height_, [&](Rows rows) {
     Depths& depths = depths_[rows.band];

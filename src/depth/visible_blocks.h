@@ -56,6 +56,9 @@ class VisibleBlocks {
   /// color_from_depth: from the depth sensor's frame to the colour camera's. Cost: 1 ns per pixel.
   void find(ImageView<std::uint16_t> depth, const RigidTransform& color_from_depth,
             const Rect& region);
+  /// The same where each pixel may show anything between two depths.
+  void find(float nearest_m, float farthest_m, const RigidTransform& color_from_depth,
+            const Rect& region);
   /// Nothing is visible.
   void clear();
 
@@ -89,6 +92,7 @@ class VisibleBlocks {
   /// Adds the planes through the camera and the left and right (axis 0) or the upper and lower
   /// sides of a rectangle in the picture, if all points of the side have rays.
   void add_sides(const Rect& rectangle, int axis, Sides& sides) const;
+  void begin(const RigidTransform& color_from_depth, const Rect& region);
   static bool is_inside(const Sides& sides, const Rays& rays, const Range& depth_m);
   void find_part();
 

@@ -48,9 +48,13 @@ double FrameAssembler::sync_wait_s(const Settings& settings) {
     camera->with_images([&](const auto& color, const auto& depth) {
       for (std::size_t i = 0; i < count; ++i) {
         const auto* color_image = color.nearest(arrivals[i].stamp_s, tolerance_s);
-        const auto* depth_image = depth.nearest(arrivals[i].stamp_s, tolerance_s);
-        if (!color_image || !depth_image) continue;
-        const double complete_s = std::max(color_image->arrival_s, depth_image->arrival_s);
+        if (!color_image) continue;
+        double complete_s = color_image->arrival_s;
+        if (camera->has_depth()) {
+          const auto* depth_image = depth.nearest(arrivals[i].stamp_s, tolerance_s);
+          if (!depth_image) continue;
+          complete_s = std::max(complete_s, depth_image->arrival_s);
+        }
         latest_s = std::max(latest_s, complete_s - arrivals[i].arrival_s);
       }
     });
@@ -72,10 +76,11 @@ bool FrameAssembler::is_complete(double stamp_s, double tolerance_s,
                                  const std::function<bool(std::size_t)>& is_expected) {
   for (std::size_t k = 0; k < rgbd_.size(); ++k) {
     if (!is_expected(k)) continue;
-    const bool has_both = rgbd_[k]->with_images([&](const auto& color, const auto& depth) {
-      return color.nearest(stamp_s, tolerance_s) && depth.nearest(stamp_s, tolerance_s);
+    const bool has_all = rgbd_[k]->with_images([&](const auto& color, const auto& depth) {
+      return color.nearest(stamp_s, tolerance_s) &&
+             (!rgbd_[k]->has_depth() || depth.nearest(stamp_s, tolerance_s));
     });
-    if (!has_both) return false;
+    if (!has_all) return false;
   }
   return true;
 }
@@ -135,7 +140,8 @@ void FrameAssembler::fill_rgbd(std::size_t camera, double tolerance_s, FrameSet&
       return true;
     };
     const bool has_color = view(color, rgbd.color, rgbd.color_stamp_s);
-    const bool has_depth = view(depth, rgbd.depth, rgbd.depth_stamp_s);
+    const bool has_depth =
+        !rgbd_[camera]->has_depth() || view(depth, rgbd.depth, rgbd.depth_stamp_s);
     rgbd.missing.clear();
     if (has_color && has_depth) return;
     rgbd.missing = fmt::format("{}: no {} image within {:.2g} s", rgbd_[camera]->name(),

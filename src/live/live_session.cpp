@@ -94,7 +94,8 @@ struct LiveSession::Implementation {
   CameraInbox& make_inboxes() {
     inboxes.push_back(std::make_unique<CameraInbox>("color", rig.color, std::nullopt));
     for (const RgbdCamera& camera : rig.rgbd) {
-      inboxes.push_back(std::make_unique<CameraInbox>(camera.name, camera.color, camera.depth));
+      const auto depth = camera.measures_depth ? std::optional(camera.depth) : std::nullopt;
+      inboxes.push_back(std::make_unique<CameraInbox>(camera.name, camera.color, depth));
     }
     return *inboxes.front();
   }

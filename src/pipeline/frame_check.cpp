@@ -34,9 +34,11 @@ void expect_sizes(const FrameSet& frame, const Rig& rig) {
                                           rig.rgbd.size(), frame.rgbd.size()));
   }
   for (std::size_t k = 0; k < rig.rgbd.size(); ++k) {
-    if (!frame.rgbd[k].available()) continue;
-    expect_size(frame.rgbd[k].color.view(), rig.rgbd[k].color, color_sensor_name(rig.rgbd[k]));
-    expect_size(frame.rgbd[k].depth.view(), rig.rgbd[k].depth, rig.rgbd[k].name + " depth");
+    const RgbdFrame& rgbd = frame.rgbd[k];
+    const bool measures = rig.rgbd[k].measures_depth;
+    if (!rgbd.has_picture() || (measures && rgbd.depth.empty())) continue;
+    expect_size(rgbd.color.view(), rig.rgbd[k].color, color_sensor_name(rig.rgbd[k]));
+    if (measures) expect_size(rgbd.depth.view(), rig.rgbd[k].depth, rig.rgbd[k].name + " depth");
   }
 }
 

@@ -11,6 +11,7 @@
 #include "depth/depth_stage.h"
 #include "detect/occlusion_masks.h"
 #include "diminish/validate.h"
+#include "estimate/depth_estimation.h"
 #include "memory/memory_stage.h"
 #include "pipeline/backend.h"
 #include "pipeline/frame_check.h"
@@ -70,6 +71,7 @@ struct Pipeline::Implementation {
         occluders(rig, scene),
         markers(rig, scene.marker_dictionary,
                 camera_poses.needs_markers() || occluders.needs_markers()),
+        estimation(rig, scene),
         depth(rig),
         sampler(rig),
         refinement(rig.color, PoseRefinement::usual_width, PoseRefinement::usual_last_step, false,
@@ -80,6 +82,7 @@ struct Pipeline::Implementation {
 
   void set_options(const Options& wanted) {
     check(wanted, rig, scene);
+    estimation.choose(wanted.estimate_depth);
     backend.choose(wanted.backend);
     occluders.draw_by(backend.mask_drawer());
     options = wanted;
@@ -141,6 +144,7 @@ struct Pipeline::Implementation {
   OccluderStage occluders;
   FrameMarkers markers;
   Poses measured_poses;
+  DepthEstimation estimation;
   DepthStage depth;
   SceneSampler sampler;
   SceneSamples samples;
@@ -218,9 +222,10 @@ void Pipeline::process(const FrameSet& frame, DiminishedFrame& result) {
 }
 
 // Meerits & Saito 2015, section 3, in its order.
-void Pipeline::Implementation::process(const FrameSet& frame, DiminishedFrame& result) {
+void Pipeline::Implementation::process(const FrameSet& given, DiminishedFrame& result) {
   FrameReport& report = result.report;
-  expect_sizes(frame, rig);
+  expect_sizes(given, rig);
+  const FrameSet& frame = estimation.begin(given);
   begin(frame, result);
   texture.begin_frame();
   backend.begin_frame();
@@ -268,6 +273,7 @@ void Pipeline::Implementation::process(const FrameSet& frame, DiminishedFrame& r
   // Not in the paper: what the colour camera saw earlier
   const RecallInputs recalling{frame, report.poses, masks, objects, region, options};
   const bool looks = looks_at_scene();
+  const auto drawn = [&] { return options.remove_shadows ? rig.color.bounds() : surroundings(); };
   const auto sample = [&] {
     stage(Stage::samples, [&] { sampler.sample(frame, measured_poses, masks, samples); });
     stage(Stage::refinement, [&] { refine_poses(frame, report.poses); });
@@ -287,14 +293,14 @@ void Pipeline::Implementation::process(const FrameSet& frame, DiminishedFrame& r
     });
   };
   // What is learnt of the scene may be needed only after the drawing: then both are done together.
+  if (looks) {
+    stage(Stage::estimation, [&] { estimation.estimate(measured_poses, masks, drawn(), options); });
+  }
   const bool learns_while_drawing = looks && backend.only_draws() && !options.remove_shadows;
   if (looks) {
     do_all(
         [&] {
-          stage(Stage::depth, [&] {
-            const Rect drawn = options.remove_shadows ? rig.color.bounds() : surroundings();
-            depth.clean(frame, measured_poses, masks, drawn, options);
-          });
+          stage(Stage::depth, [&] { depth.clean(frame, measured_poses, masks, drawn(), options); });
         },
         [&] {
           sample();
@@ -336,6 +342,7 @@ void Pipeline::Implementation::process(const FrameSet& frame, DiminishedFrame& r
     report.messages.emplace_back(
         "no RGB-D camera and no background (diminish scan): what is hidden is invented");
   }
+  for (const std::string& message : estimation.messages()) report.messages.push_back(message);
   for (const std::string& message : report.poses.messages) report.messages.push_back(message);
   for (const OccluderReport& occluder : report.occluders) {
     if (!occluder.message.empty()) report.messages.push_back(occluder.message);

@@ -20,6 +20,7 @@ class FileSource : public PoseSource {
     color_ = load_pose_list(files.at("color").path());
     for (const RgbdCamera& camera : rig.rgbd) {
       names_.push_back(camera.name);
+      depth_from_posed_.push_back(camera.depth_from_posed);
       depth_.push_back(load_pose_list(files.at(camera.name).path()));
     }
   }
@@ -39,7 +40,8 @@ class FileSource : public PoseSource {
     poses.color_from_world = find(color_, frame.stamp_s, "color");
     for (std::size_t k = 0; k < depth_.size(); ++k) {
       if (!frame.rgbd[k].available()) continue;
-      poses.depth_from_world[k] = find(depth_[k], frame.rgbd[k].depth_stamp_s, names_[k]);
+      const auto posed_from_world = find(depth_[k], frame.rgbd[k].depth_stamp_s, names_[k]);
+      if (posed_from_world) poses.depth_from_world[k] = depth_from_posed_[k] * *posed_from_world;
     }
   }
 
@@ -47,6 +49,7 @@ class FileSource : public PoseSource {
   double tolerance_s_ = 0.02;
   std::vector<StampedPose> color_;
   std::vector<std::string> names_;
+  std::vector<RigidTransform> depth_from_posed_;
   std::vector<std::vector<StampedPose>> depth_;
 };
 

@@ -24,7 +24,8 @@ class FixedSource : public PoseSource {
       }
     }
     for (const RgbdCamera& camera : rig.rgbd) {
-      color_from_depth_.push_back(read_rigid_transform(transforms.at(camera.name)));
+      color_from_depth_.push_back(read_rigid_transform(transforms.at(camera.name)) *
+                                  camera.depth_from_posed.inverse());
     }
     world_needed_ = world_marker_.size_m > 0 &&
                     std::any_of(scene.occluders.begin(), scene.occluders.end(),

@@ -59,7 +59,9 @@ RecordingFolder::RecordingFolder(std::filesystem::path folder, const Rig& rig,
   color_ = make_stream("color", "color");
   for (const RgbdCamera& camera : rig.rgbd) {
     rgbd_color_.push_back(make_stream(camera.name + "_color", camera.name + "/color"));
-    rgbd_depth_.push_back(make_stream(camera.name + "_depth", camera.name + "/depth"));
+    rgbd_depth_.emplace_back();
+    if (!camera.measures_depth) continue;
+    rgbd_depth_.back() = make_stream(camera.name + "_depth", camera.name + "/depth");
   }
 }
 
@@ -91,13 +93,13 @@ RecordingFolder::Stream RecordingFolder::make_stream(const std::string& list,
 void RecordingFolder::write(const FrameSet& frame, const std::string& name) {
   for (std::size_t k = 0; k < frame.rgbd.size(); ++k) {
     const RgbdFrame& rgbd = frame.rgbd[k];
-    if (!rgbd.available()) continue;
+    if (!rgbd_depth_[k] ? !rgbd.has_picture() : !rgbd.available()) continue;
     if (are_equal(rgbd.color, frame.color)) {
       add(rgbd_color_[k], rgbd.color_stamp_s, file_of(color_, name, true));
     } else {
       write_image(rgbd_color_[k], rgbd.color, rgbd.color_stamp_s, name);
     }
-    write_image(rgbd_depth_[k], rgbd.depth, rgbd.depth_stamp_s, name);
+    if (rgbd_depth_[k]) write_image(*rgbd_depth_[k], rgbd.depth, rgbd.depth_stamp_s, name);
   }
   write_image(color_, frame.color, frame.stamp_s, name);
 }

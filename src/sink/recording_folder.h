@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -50,7 +51,8 @@ class RecordingFolder {
   std::filesystem::path folder_, scene_file_;
   Pictures pictures_;
   Stream color_;
-  std::vector<Stream> rgbd_color_, rgbd_depth_;
+  std::vector<Stream> rgbd_color_;
+  std::vector<std::optional<Stream>> rgbd_depth_;  ///< of cameras that measure depth
   std::vector<std::uint8_t> bytes_;
 };
 

@@ -6,6 +6,7 @@ namespace {
 constexpr std::array<TimeRow, time_row_count> rows{{
     {"poses", "Camera poses", ""},
     {"objects", "Objects", ""},
+    {"estimation", "Depth estimation", ""},
     {"depth", "Depth cleaning", ""},
     {"samples", "Scene samples", ""},
     {"refinement", "Pose refinement", ""},
@@ -32,6 +33,7 @@ constexpr std::size_t paper_row(Stage stage) {
     case Stage::poses:
     case Stage::objects:
       return stage_count;
+    case Stage::estimation:
     case Stage::depth:
     case Stage::samples:
     case Stage::refinement:

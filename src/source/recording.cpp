@@ -18,7 +18,7 @@ namespace {
 /// The streams of one RGB-D camera.
 struct RgbdStreams {
   ImageStream<Bgr> color;
-  ImageStream<std::uint16_t> depth;
+  std::optional<ImageStream<std::uint16_t>> depth;  ///< if the camera measures it
 };
 
 /// Masks, results and truth know frames by name, so names must be unique.
@@ -44,8 +44,10 @@ class RecordingSource final : public FrameSource {
     expect_unique_names(color_.entries(), recording.folder / "color.txt");
     for (const RgbdCamera& camera : rig_.rgbd) {
       const std::filesystem::path lists = recording.folder / camera.name;
-      rgbd_.push_back({{lists.string() + "_color.txt", camera.color, EmptyList::is_no_images},
-                       {lists.string() + "_depth.txt", camera.depth, EmptyList::is_no_images}});
+      rgbd_.push_back({{lists.string() + "_color.txt", camera.color, EmptyList::is_no_images}, {}});
+      if (!camera.measures_depth) continue;
+      rgbd_.back().depth.emplace(lists.string() + "_depth.txt", camera.depth,
+                                 EmptyList::is_no_images);
     }
     tolerance_s_ = options.sync_tolerance_s > 0 ? options.sync_tolerance_s
                                                 : median_period_s(color_.entries()) / 2;
@@ -110,8 +112,8 @@ class RecordingSource final : public FrameSource {
       RgbdFrame& rgbd = frame.rgbd[camera];
       if (sensor % 2 == 1) {
         read(streams.color, partner(streams.color, frame), part, rgbd.color.own(), fault);
-      } else {
-        read(streams.depth, partner(streams.depth, frame), part, rgbd.depth.own(), fault);
+      } else if (streams.depth) {
+        read(*streams.depth, partner(*streams.depth, frame), part, rgbd.depth.own(), fault);
       }
     };
     // A thread that waits for an image must not begin something else.
@@ -137,11 +139,13 @@ class RecordingSource final : public FrameSource {
     RgbdFrame& rgbd = frame.rgbd[camera];
     const std::string* faults = &frame.faults[1 + 2 * camera];
     const auto color = partner(streams.color, frame);
-    const auto depth = partner(streams.depth, frame);
     rgbd.color_stamp_s = color ? streams.color.entries()[*color].stamp_s : 0;
-    rgbd.depth_stamp_s = depth ? streams.depth.entries()[*depth].stamp_s : 0;
     rgbd.missing = problem_of(camera, "color", color, faults[0]);
-    if (rgbd.missing.empty()) rgbd.missing = problem_of(camera, "depth", depth, faults[1]);
+    if (streams.depth) {
+      const auto depth = partner(*streams.depth, frame);
+      rgbd.depth_stamp_s = depth ? streams.depth->entries()[*depth].stamp_s : 0;
+      if (rgbd.missing.empty()) rgbd.missing = problem_of(camera, "depth", depth, faults[1]);
+    }
     return color ? entry_name(streams.color.entries()[*color], *color) : "";
   }
 

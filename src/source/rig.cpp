@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/text.h"
+#include "geometry/shrunk_camera.h"
 #include "source/configuration_checks.h"
 #include "source/find_camera.h"
 #include "source/read_rigid_transform.h"
@@ -58,6 +59,23 @@ RgbdCamera read_rgbd_camera(const Config& config) {
   return camera;
 }
 
+/// An item of `cameras`.
+RgbdCamera read_color_only_camera(const Config& config) {
+  config.expect_keys({"name", "color", "range_m"});
+  RgbdCamera camera =
+      color_only_camera(config.at("name").text(), read_intrinsics(config.at("color")));
+  const Config range = config.find("range_m");
+  if (range.exists()) {
+    const std::vector<double> ends = range.numbers(2);
+    if (!(ends[0] > 0 && ends[1] > ends[0])) {
+      range.fail("expected the nearest and the farthest distance of surfaces, in metres");
+    }
+    camera.nearest_m = ends[0];
+    camera.farthest_m = ends[1];
+  }
+  return camera;
+}
+
 LiveCamera read_live_camera(const Config& config, const Rig& rig) {
   config.expect_keys({"camera", "uri"});
   LiveCamera camera{config.at("camera").text(), config.at("uri").text()};
@@ -72,15 +90,48 @@ LiveCamera read_live_camera(const Config& config, const Rig& rig) {
 
 }  // namespace
 
+RgbdCamera color_only_camera(const std::string& name, const Intrinsics& color) {
+  // Finer than this, an estimate costs time and gains nothing.
+  constexpr int most_columns = 960;
+  RgbdCamera camera;
+  camera.name = name;
+  camera.color = color;
+  camera.depth = shrunk_camera(color, std::max(1, (color.width + most_columns - 1) / most_columns));
+  camera.depth.lens_model = LensModel::plumb_bob;
+  camera.depth.distortion = {};
+  camera.depth_unit_m = 0.0005;
+  camera.measures_depth = false;
+  return camera;
+}
+
+Rig without_depth(Rig rig) {
+  for (RgbdCamera& camera : rig.rgbd) {
+    if (!camera.measures_depth) continue;
+    RgbdCamera without = color_only_camera(camera.name, camera.color);
+    without.depth_from_posed = camera.color_from_depth;
+    camera = without;
+  }
+  return rig;
+}
+
 Rig load_rig(const std::filesystem::path& file) {
   return read_rig(Config::load(file));
 }
 
 Rig read_rig(const Config& config) {
-  config.expect_keys({"live", "color", "rgbd", "pose"});
+  config.expect_keys({"live", "color", "rgbd", "cameras", "pose"});
   Rig rig;
   rig.color = read_intrinsics(config.at("color"));
-  for (const Config& item : config.at("rgbd").items()) rig.rgbd.push_back(read_rgbd_camera(item));
+  const Config color_only = config.find("cameras");
+  const Config rgbd = color_only.exists() ? config.find("rgbd") : config.at("rgbd");
+  if (rgbd.exists()) {
+    for (const Config& item : rgbd.items()) rig.rgbd.push_back(read_rgbd_camera(item));
+  }
+  if (color_only.exists()) {
+    for (const Config& item : color_only.items()) {
+      rig.rgbd.push_back(read_color_only_camera(item));
+    }
+  }
   rig.pose = config.find("pose");
   const Config source = rig.pose.find("source");
   if (source.exists()) rig.pose_source = source.text();

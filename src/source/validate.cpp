@@ -80,7 +80,10 @@ void check_camera_name(const std::string& name, const Config& place) {
 void check_rgbd_camera(const RgbdCamera& camera, const Config& place) {
   check_camera_name(camera.name, place.find("name"));
   check_intrinsics(camera.color, place.find("color"));
-  check_intrinsics(camera.depth, place.find("depth"));
+  if (camera.measures_depth) check_intrinsics(camera.depth, place.find("depth"));
+  if (!(camera.nearest_m > 0 && camera.farthest_m > camera.nearest_m)) {
+    place.find("range_m").fail("expected the nearest and the farthest distance of surfaces");
+  }
   const Config unit = place.find("depth_unit_m");
   check_positive(camera.depth_unit_m, unit);
   if (camera.depth_unit_m > 1) unit.fail("expected at most 1 metre");
@@ -120,11 +123,15 @@ void check_rigid_transform(const RigidTransform& transform, const Config& place)
 void check_rig(const Rig& rig, const Config& place) {
   check_intrinsics(rig.color, place.find("color"));
   const Config cameras = place.find("rgbd");
+  const std::size_t in_rgbd = cameras.exists() ? cameras.items().size() : 0;
   if (rig.rgbd.size() > max_rgbd_cameras) {
     cameras.fail(fmt::format("expected at most {} RGB-D cameras", max_rgbd_cameras));
   }
   for (std::size_t k = 0; k < rig.rgbd.size(); ++k) {
-    const Config camera = item_of(cameras, k);
+    // Cameras without depth follow, from a list of their own.
+    const bool is_listed = k < in_rgbd || !place.exists();
+    const Config camera =
+        is_listed ? item_of(cameras, k) : item_of(place.find("cameras"), k - in_rgbd);
     check_rgbd_camera(rig.rgbd[k], camera);
     if (find_rgbd_camera(rig, rig.rgbd[k].name) != &rig.rgbd[k]) {
       camera.find("name").fail("there are two RGB-D cameras called '" + rig.rgbd[k].name + "'");
