@@ -113,41 +113,65 @@ class StereoEstimator final : public DepthEstimator {
                        camera.visible.part().bounds(), camera.inverse_depth);
   }
 
-  /// Writes what another camera's depth agrees with.
+  /// Writes what the partner's depth agrees with.
   void write(std::size_t k, Image<std::uint16_t>& depth) const {
     const Camera& camera = cameras_[k];
+    const Camera& witness = cameras_[*camera.partner];
     const Intrinsics& view = camera.rig.depth;
     const Rect part = intersect(camera.sweep.swept(), view.bounds());
+    const RigidTransform partner_from_own = other_from(k, *camera.partner);
+    const auto per_unit = static_cast<float>(1 / camera.rig.depth_unit_m);
     for_rows(part.height, [&](Rows rows) {
       for (int y = part.y + rows.first; y < part.y + rows.last; ++y) {
+        // Without a depth image of its own the partner cannot object.
+        const DepthRow row(view, partner_from_own, y);
         for (int x = part.x; x < part.right(); ++x) {
           const float inverse_depth = camera.inverse_depth(x, y);
           if (!(inverse_depth > 0)) continue;
-          const double z = 1 / static_cast<double>(inverse_depth);
-          const Eigen::Vector3d point((x - view.cx) / view.fx * z, (y - view.cy) / view.fy * z, z);
-          if (!is_confirmed(k, point)) continue;
-          const double value = std::round(z / camera.rig.depth_unit_m);
+          if (witness.partner && !is_confirmed(row.point(x, inverse_depth), inverse_depth, witness))
+            continue;
+          const float value = std::round(per_unit / inverse_depth);
           if (value < 65536) depth(x, y) = static_cast<std::uint16_t>(value);
         }
       }
     });
   }
 
-  /// Whether a camera that measures depth, or whose own sweep ended there, sees the point.
-  bool is_confirmed(std::size_t k, const Eigen::Vector3d& point) const {
-    const std::size_t other = *cameras_[k].partner;
-    const Camera& witness = cameras_[other];
-    // Without a depth image of its own it cannot object.
-    if (!witness.partner) return true;
-    const Eigen::Vector3d seen = other_from(k, other) * point;
-    if (!(seen.z() > 0)) return false;
+  /// A row of a depth image, seen from another camera.
+  class DepthRow {
+   public:
+    DepthRow(const Intrinsics& view, const RigidTransform& other_from_own, int y)
+        : step_((other_from_own.rotation.col(0) / view.fx).cast<float>()),
+          first_((other_from_own.rotation *
+                  Eigen::Vector3d(-view.cx / view.fx, (y - view.cy) / view.fy, 1))
+                     .cast<float>()),
+          translation_(other_from_own.translation.cast<float>()) {}
+
+    /// In the other camera's frame, times the inverse depth.
+    Eigen::Vector3f point(int x, float inverse_depth) const {
+      return first_ + static_cast<float>(x) * step_ + inverse_depth * translation_;
+    }
+
+   private:
+    Eigen::Vector3f step_, first_, translation_;
+  };
+
+  /// Whether the partner's own sweep ended at the point, too.
+  static bool is_confirmed(const Eigen::Vector3f& point, float inverse_depth,
+                           const Camera& witness) {
+    if (!(point.z() > 0)) return false;
     const Intrinsics& view = witness.rig.depth;
-    const auto x = static_cast<int>(std::lround(view.fx * seen.x() / seen.z() + view.cx));
-    const auto y = static_cast<int>(std::lround(view.fy * seen.y() / seen.z() + view.cy));
+    const float u =
+        static_cast<float>(view.fx) * point.x() / point.z() + static_cast<float>(view.cx);
+    const float v =
+        static_cast<float>(view.fy) * point.y() / point.z() + static_cast<float>(view.cy);
+    if (!(std::abs(u) < 32768) || !(std::abs(v) < 32768)) return false;
+    const int x = static_cast<int>(std::lround(u));
+    const int y = static_cast<int>(std::lround(v));
     if (!witness.sweep.swept().contains(x, y) || !view.bounds().contains(x, y)) return false;
     const float found = witness.inverse_depth(x, y);
     constexpr float tolerance_px = 3;
-    return found > 0 && std::abs(found - static_cast<float>(1 / seen.z())) <
+    return found > 0 && std::abs(found - inverse_depth / point.z()) <
                             tolerance_px * witness.sweep.step_of_pixel();
   }
 

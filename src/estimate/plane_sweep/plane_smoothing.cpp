@@ -1,36 +1,53 @@
 #include "estimate/plane_sweep/plane_smoothing.h"
 
 #include <algorithm>
-#include <vector>
 
 #include "core/rows.h"
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "estimate/plane_sweep/plane_smoothing.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "estimate/plane_sweep/row_motion-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace diminish::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Pixels [0, count) of a row, from those at one and two times `pitch` on both sides.
+void SmoothRow(const float* centers, std::ptrdiff_t pitch, int count, float per_tolerance,
+               float* out) {
+  ForEachPixelVector(count, [&](auto d, int x) HWY_ATTR {
+    const auto center = hn::LoadU(d, centers + x);
+    const auto one = hn::Set(d, 1.F);
+    auto sum = hn::Zero(d);
+    auto weight = one;
+    for (std::ptrdiff_t away = pitch; away <= 2 * pitch; away += pitch) {
+      const auto before = hn::Sub(hn::LoadU(d, centers + x - away), center);
+      const auto after = hn::Sub(hn::LoadU(d, centers + x + away), center);
+      const auto farther = hn::Max(hn::Mul(before, before), hn::Mul(after, after));
+      const auto counts =
+          hn::Max(hn::Zero(d), hn::Sub(one, hn::Mul(farther, hn::Set(d, per_tolerance))));
+      sum = hn::Add(sum, hn::Mul(counts, hn::Add(before, after)));
+      weight = hn::Add(weight, hn::Add(counts, counts));
+    }
+    const auto mean = hn::Add(center, hn::Div(sum, weight));
+    hn::StoreU(hn::IfThenElse(hn::Gt(center, hn::Zero(d)), mean, center), d, out + x);
+  });
+}
+
+}  // namespace
+}  // namespace diminish::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
 namespace diminish {
 namespace {
 
-/// Adds a pair of neighbours to the sums of a pixel.
-inline void add_pair(float center, float before, float after, float per_tolerance, float& sum,
-                     float& weight) {
-  const float a = before - center;
-  const float b = after - center;
-  const float farther = std::max(a * a, b * b) * per_tolerance;
-  const float w = std::max(0.F, 1 - farther);
-  sum += w * (a + b);
-  weight += 2 * w;
-}
-
-/// Of pixels [0, count): from those two steps of `pitch` pixels before to two after.
-void smooth_row(const float* __restrict centers, const float* __restrict a2,
-                const float* __restrict a1, const float* __restrict b1, const float* __restrict b2,
-                int count, float per_tolerance, float* __restrict out) {
-  for (int x = 0; x < count; ++x) {
-    float sum = 0;
-    float weight = 1;
-    add_pair(centers[x], a1[x], b1[x], per_tolerance, sum, weight);
-    add_pair(centers[x], a2[x], b2[x], per_tolerance, sum, weight);
-    out[x] = centers[x] > 0 ? centers[x] + sum / weight : centers[x];
-  }
-}
+HWY_EXPORT(SmoothRow);
 
 }  // namespace
 
@@ -47,9 +64,8 @@ void PlaneSmoothing::smooth(float tolerance, int widest_px, Image<float>& invers
         std::copy_n(row, width, out);
         const int inner = width - 4 * step;
         if (inner <= 0) continue;
-        const float* const first = row + 2 * step;
-        smooth_row(first, first - 2 * step, first - step, first + step, first + 2 * step, inner,
-                   per_tolerance, out + 2 * step);
+        HWY_DYNAMIC_DISPATCH(SmoothRow)
+        (row + 2 * step, step, inner, per_tolerance, out + 2 * step);
       }
     });
     for_rows(height, [&](Rows rows) {
@@ -59,11 +75,12 @@ void PlaneSmoothing::smooth(float tolerance, int widest_px, Image<float>& invers
           std::copy_n(between_.row(y), width, out);
           continue;
         }
-        smooth_row(between_.row(y), between_.row(y - 2 * step), between_.row(y - step),
-                   between_.row(y + step), between_.row(y + 2 * step), width, per_tolerance, out);
+        HWY_DYNAMIC_DISPATCH(SmoothRow)
+        (between_.row(y), std::ptrdiff_t{step} * width, width, per_tolerance, out);
       }
     });
   }
 }
 
 }  // namespace diminish
+#endif

@@ -15,6 +15,12 @@ constexpr int most_planes = 256;
 /// Of the depth image. The coarse view is half as large.
 constexpr int coarse = 2;
 
+/// Steps along the gradient, and how depths are smoothed between them: pixels of a surface differ
+/// by less, and count as far as this.
+constexpr int iterations = 2;
+constexpr float tolerance_px = 3;
+constexpr int widest_px = 2;
+
 /// The smallest rectangle with even sides that contains this one.
 Rect even(const Rect& rect) {
   const int x = rect.x - (rect.x & 1);
@@ -82,14 +88,26 @@ void PlaneSweep::sweep(const GreyPicture& reference, const GreyPicture& other,
   matching_.match({small_reference_.grey, small_reference_census_, small_other_census_,
                    small_parallax.within(small_reference_.window, small_other_.window)},
                   planes_, coarse_);
-  refinement_.refine({reference_.grey, reference_census_, other_.grey, other_census_,
-                      parallax.within(reference_.window, other_.window)},
-                     planes_, coarse_, fine_);
+  refine(parallax.within(reference_.window, other_.window));
   const Rect inside = intersect(wanted, view_.bounds());
   for (int y = inside.y; y < inside.bottom(); ++y) {
     std::copy_n(fine_.row(y - wanted.y) + (inside.x - wanted.x), inside.width,
                 inverse_depth.row(y) + inside.x);
   }
+}
+
+void PlaneSweep::refine(const Parallax& parallax) {
+  const FineViews views{reference_.grey, reference_census_, other_.grey, other_census_, parallax};
+  choice_.choose(views, planes_, coarse_, fine_);
+  // In the middle of the range
+  const float middle = planes_.inverse_depth(static_cast<float>(planes_.count) / 2);
+  const float step =
+      planes_.step / std::max(1e-6F, parallax.path_px(middle, middle + planes_.step));
+  for (int i = 0; i < iterations; ++i) {
+    smoothing_.smooth(tolerance_px * step, widest_px, fine_);
+    gradient_.move(views, step, fine_);
+  }
+  smoothing_.smooth(tolerance_px * step, widest_px, fine_);
 }
 
 }  // namespace diminish

@@ -3,9 +3,11 @@
 #include "diminish/image.h"
 #include "diminish/intrinsics.h"
 #include "diminish/rigid_transform.h"
+#include "estimate/plane_sweep/candidate_choice.h"
+#include "estimate/plane_sweep/gradient_refinement.h"
+#include "estimate/plane_sweep/plane_smoothing.h"
 #include "estimate/plane_sweep/semi_global.h"
 #include "estimate/plane_sweep/sweep_geometry.h"
-#include "estimate/plane_sweep/sweep_refinement.h"
 #include "estimate/plane_sweep/turned_view.h"
 
 namespace diminish {
@@ -35,13 +37,17 @@ class PlaneSweep {
   float step_of_pixel() const { return planes_.step / 2; }
 
  private:
+  void refine(const Parallax& parallax);
+
   Intrinsics view_;
   SweepPlanes planes_;
   TurnedView reference_, other_, small_reference_, small_other_;
   Image<std::uint32_t> reference_census_, other_census_, small_reference_census_,
       small_other_census_;
   SemiGlobalMatching matching_;
-  SweepRefinement refinement_;
+  CandidateChoice choice_;
+  PlaneSmoothing smoothing_;
+  GradientRefinement gradient_;
   Image<float> coarse_, fine_;
 };
 

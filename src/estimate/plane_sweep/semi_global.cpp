@@ -70,7 +70,7 @@ HWY_INLINE hn::Vec<Bytes> LeastOfAll(hn::Vec<Bytes> v) {
 void MatchPixel(std::uint32_t code, float x, const std::uint32_t* other, int width,
                 const float* scale, const float* shift, const std::int32_t* row, int pitch,
                 std::uint8_t* costs) {
-  const hn::CappedTag<float, 8> d;
+  const hn::CappedTag<float, 16> d;
   const hn::RebindToSigned<decltype(d)> di;
   const hn::RebindToUnsigned<decltype(d)> du;
   const hn::Rebind<std::uint8_t, decltype(d)> d8;
