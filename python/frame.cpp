@@ -86,16 +86,19 @@ void add_frame(py::module_& module) {
           [](const SharedFrame& frame) {
             py::list cameras;
             for (const RgbdFrame& images : frame->input->rgbd) {
-              if (!images.available()) {
+              if (!images.has_picture()) {
                 cameras.append(py::none());
                 continue;
               }
-              cameras.append(py::make_tuple(view_of(images.color.view(), frame),
-                                            view_of(images.depth.view(), frame)));
+              py::object depth = py::none();
+              if (!images.depth.empty()) depth = view_of(images.depth.view(), frame);
+              cameras.append(py::make_tuple(view_of(images.color.view(), frame), depth));
             }
             return cameras;
           },
-          "(color, depth) of each RGB-D camera; None where there were no images")
+          "(color, depth) of each RGB-D camera; None where there were no images, and for a depth "
+          "that "
+          "is estimated")
       .def_property_readonly("report", &report_of, "What was found, counted, measured and missed")
       .def("_repr_png_", &as_png);
 }

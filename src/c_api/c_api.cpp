@@ -135,7 +135,8 @@ void take(const diminish_input& input, diminish_pipeline& pipeline) {
     images.color = view<Bgr>(input.rgbd[k].color, name + " color");
     images.depth = view<std::uint16_t>(input.rgbd[k].depth, name + " depth");
     images.color_stamp_s = images.depth_stamp_s = input.stamp_s;
-    if (images.color.empty() || images.depth.empty()) images.missing = name + ": no images given";
+    const bool lacks_depth = images.depth.empty() && rig.rgbd[k].measures_depth;
+    if (images.color.empty() || lacks_depth) images.missing = name + ": no images given";
   }
 }
 

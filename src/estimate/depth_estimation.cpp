@@ -47,7 +47,6 @@ const FrameSet& DepthEstimation::begin(const FrameSet& frame) {
     }
     const Intrinsics& depth = rig_.rgbd[k].depth;
     depths_[k].resize(depth.width, depth.height, 0);
-    rgbd.depth_stamp_s = given.color_stamp_s;
     rgbd.depth = InputImage<std::uint16_t>(ImageView<std::uint16_t>(depths_[k]));
   }
   return frame_;

@@ -31,8 +31,9 @@ class StereoEstimator final : public DepthEstimator {
     }
     if (cameras_.size() < 2) {
       throw Error(Error::input,
-                  "estimate_depth: stereo needs two cameras beside the user's, the rig has " +
-                      std::to_string(cameras_.size()));
+                  fmt::format("estimate_depth stereo: expected two cameras or more beside the "
+                              "user's, the rig has {}",
+                              cameras_.size()));
     }
   }
 

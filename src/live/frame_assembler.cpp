@@ -140,6 +140,7 @@ void FrameAssembler::fill_rgbd(std::size_t camera, double tolerance_s, FrameSet&
       return true;
     };
     const bool has_color = view(color, rgbd.color, rgbd.color_stamp_s);
+    rgbd.depth_stamp_s = rgbd.color_stamp_s;  // of an estimated depth image
     const bool has_depth =
         !rgbd_[camera]->has_depth() || view(depth, rgbd.depth, rgbd.depth_stamp_s);
     rgbd.missing.clear();

@@ -20,7 +20,7 @@ void FrameMarkers::find(const FrameSet& frame, Markers& markers) {
     auto& [lens, detector] = cameras_[i];
     if (i == 0) {
       detector.detect(frame.color, lens, markers.color);
-    } else if (frame.rgbd[i - 1].available()) {
+    } else if (frame.rgbd[i - 1].has_picture()) {
       detector.detect(frame.rgbd[i - 1].color, lens, markers.rgbd[i - 1]);
     }
   });

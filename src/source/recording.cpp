@@ -140,6 +140,8 @@ class RecordingSource final : public FrameSource {
     const std::string* faults = &frame.faults[1 + 2 * camera];
     const auto color = partner(streams.color, frame);
     rgbd.color_stamp_s = color ? streams.color.entries()[*color].stamp_s : 0;
+    // An estimated depth image is of the same moment.
+    rgbd.depth_stamp_s = rgbd.color_stamp_s;
     rgbd.missing = problem_of(camera, "color", color, faults[0]);
     if (streams.depth) {
       const auto depth = partner(*streams.depth, frame);

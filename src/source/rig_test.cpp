@@ -54,6 +54,59 @@ TEST(Rig, ReadsTheBundledRigs) {
   EXPECT_FALSE(rig.pose.exists());
 }
 
+/// A rig with two cameras that measure no depth.
+std::string color_only_rig(const std::string& item) {
+  return rig_with("rgbd:\n", "cameras:\n" + item + "rgbd:\n");
+}
+
+TEST(Rig, CamerasWithoutDepthComeLast) {
+  const std::string camera =
+      "{width: 1920, height: 1080, camera_matrix: [1000, 1000, 959.5, 539.5],"
+      " distortion: [0.1, 0, 0, 0, 0]}";
+  const Rig rig =
+      read(color_only_rig("  - {name: left, color: " + camera +
+                          ", range_m: [0.5, 2]}\n  - {name: right, color: " + camera + "}\n"));
+  ASSERT_EQ(rig.rgbd.size(), 3U);
+  EXPECT_EQ(rig.rgbd[0].name, "rgbd0");
+  EXPECT_TRUE(rig.rgbd[0].measures_depth);
+  const RgbdCamera& left = rig.rgbd[1];
+  EXPECT_EQ(left.name, "left");
+  EXPECT_FALSE(left.measures_depth);
+  EXPECT_EQ(left.nearest_m, 0.5);
+  EXPECT_EQ(left.farthest_m, 2);
+  // Half the size, without lens distortion, at the colour sensor's place
+  EXPECT_EQ(left.depth.width, 960);
+  EXPECT_EQ(left.depth.height, 540);
+  EXPECT_EQ(left.depth.fx, 500);
+  EXPECT_EQ(left.depth.cx, 479.5);
+  EXPECT_EQ(left.depth.distortion[0], 0);
+  EXPECT_TRUE(left.color_from_depth.translation.isZero());
+}
+
+TEST(Rig, WhatIsWrongWithACameraWithoutDepthIsNamed) {
+  const std::string camera =
+      "{width: 1920, height: 1080, camera_matrix: [1000, 1000, 959.5, 539.5],"
+      " distortion: [0, 0, 0, 0, 0]}";
+  const auto complaint_of = [&](const std::string& item) {
+    return error_of([&] { read(color_only_rig("  - " + item + "\n")); });
+  };
+  EXPECT_THAT(complaint_of("{name: left, color: " + camera + ", range_m: [2, 1]}"),
+              HasSubstr("cameras[0].range_m: expected the nearest and the farthest distance"));
+  EXPECT_THAT(complaint_of("{name: rgbd0, color: " + camera + "}"),
+              HasSubstr("cameras[0].name: there are two"));
+  EXPECT_THAT(complaint_of("{name: left, depth: " + camera + "}"), HasSubstr("cameras[0]"));
+}
+
+TEST(Rig, MayBeUsedWithoutItsDepth) {
+  const Rig rig = read(rig_with("rgbd:\n", "rgbd:\n"));
+  const Rig without = without_depth(rig);
+  ASSERT_EQ(without.rgbd.size(), 1U);
+  EXPECT_FALSE(without.rgbd[0].measures_depth);
+  EXPECT_EQ(without.rgbd[0].color, rig.rgbd[0].color);
+  // Poses that are given of the depth sensor still hold.
+  EXPECT_EQ(without.rgbd[0].depth_from_posed.translation, Eigen::Vector3d(0.05, 0, 0));
+}
+
 TEST(Rig, RotationsAreMadeExact) {
   const Rig rig =
       read(rig_with("[1, 0, 0, 0, 1, 0, 0, 0, 1]", "[1.0004, 0, 0, 0, 0, 1, 0, -1, 0]"));

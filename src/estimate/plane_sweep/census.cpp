@@ -56,23 +56,9 @@ HWY_EXPORT(CensusRow);
 
 constexpr int reach = 2;
 
-void census_row_plain(const std::uint8_t* center, std::ptrdiff_t pitch, int count,
-                      std::uint32_t* codes) {
-  for (int x = 0; x < count; ++x) {
-    std::uint32_t bits = 0;
-    for (int y = -reach; y <= reach; ++y) {
-      for (int dx = -reach; dx <= reach; ++dx) {
-        if (y == 0 && dx == 0) continue;
-        bits = bits << 1U | (center[x + dx + y * pitch] < center[x] ? 1U : 0U);
-      }
-    }
-    codes[x] = center[x] == unknown_grey ? unknown_census : bits;
-  }
-}
+}  // namespace
 
-template <class CodeRow>
-void encode(const Image<std::uint8_t>& grey, const Rect& part, Image<std::uint32_t>& codes,
-            const CodeRow& code_row) {
+void census(const Image<std::uint8_t>& grey, const Rect& part, Image<std::uint32_t>& codes) {
   const Rect all = grey.bounds();
   const Rect inner = {reach, reach, all.width - 2 * reach, all.height - 2 * reach};
   const Rect coded = inner.empty() ? Rect{} : intersect(part, inner);
@@ -81,19 +67,10 @@ void encode(const Image<std::uint8_t>& grey, const Rect& part, Image<std::uint32
       std::uint32_t* const row = codes.row(y);
       std::fill_n(row + part.x, part.width, unknown_census);
       if (coded.empty() || y < coded.y || y >= coded.bottom()) continue;
-      code_row(grey.row(y) + coded.x, grey.width(), coded.width, row + coded.x);
+      HWY_DYNAMIC_DISPATCH(CensusRow)
+      (grey.row(y) + coded.x, grey.width(), coded.width, row + coded.x);
     }
   });
-}
-
-}  // namespace
-
-void census(const Image<std::uint8_t>& grey, const Rect& part, Image<std::uint32_t>& codes) {
-  encode(grey, part, codes, HWY_DYNAMIC_DISPATCH(CensusRow));
-}
-
-void census_plain(const Image<std::uint8_t>& grey, const Rect& part, Image<std::uint32_t>& codes) {
-  encode(grey, part, codes, census_row_plain);
 }
 
 }  // namespace diminish

@@ -28,7 +28,7 @@ Rect even(const Rect& rect) {
   return {x, y, (rect.right() - x + 1) / 2 * 2, (rect.bottom() - y + 1) / 2 * 2};
 }
 
-/// Planes a pixel of the coarse view apart.
+/// Planes a pixel of the coarse view apart; none if the other camera is beyond the range.
 SweepPlanes spread(const Parallax& parallax, const PlaneSweep::Range& range) {
   SweepPlanes planes;
   planes.farthest = static_cast<float>(1 / range.farthest_m);
@@ -36,6 +36,7 @@ SweepPlanes spread(const Parallax& parallax, const PlaneSweep::Range& range) {
   // What is hardly in front of the other camera is out of its sight.
   constexpr float least_of_distance = 0.2F;
   if (parallax.z < 0) nearest = std::min(nearest, (least_of_distance - 1) / parallax.z);
+  if (nearest <= planes.farthest) return planes;
   const float path_px = parallax.path_px(planes.farthest, nearest);
   planes.count = std::clamp(static_cast<int>(std::ceil(path_px)) + 1, least_planes, most_planes);
   planes.step = (nearest - planes.farthest) / static_cast<float>(planes.count - 1);
@@ -59,6 +60,8 @@ void PlaneSweep::sweep(const GreyPicture& reference, const GreyPicture& other,
   const Intrinsics small_view = shrunk_camera(view_, coarse);
   const Parallax small_parallax(small_view, second_from_first);
   planes_ = spread(small_parallax, range);
+  inverse_depth.resize(view_.width, view_.height);
+  if (part.empty() || planes_.count == 0) return find_nothing(inverse_depth);
 
   const Rect wanted = even(part);
   const float nearest = planes_.inverse_depth(static_cast<float>(planes_.count - 1));
@@ -66,12 +69,7 @@ void PlaneSweep::sweep(const GreyPicture& reference, const GreyPicture& other,
   const Rect useful = grow(view_.bounds(), 2 * std::max(view_.width, view_.height));
   const Rect reached =
       even(intersect(grow(parallax.reach(wanted, planes_.farthest, nearest), 8), useful));
-  inverse_depth.resize(view_.width, view_.height);
-  if (wanted.empty() || reached.empty()) {
-    inverse_depth.fill(0);
-    reference_.window = {};
-    return;
-  }
+  if (reached.empty()) return find_nothing(inverse_depth);
   do_all([&] { turn(reference, Eigen::Matrix3d::Identity(), view_, wanted, reference_); },
          [&] { turn(other, other_from_reference.rotation, view_, reached, other_); });
   do_all(
@@ -94,6 +92,11 @@ void PlaneSweep::sweep(const GreyPicture& reference, const GreyPicture& other,
     std::copy_n(fine_.row(y - wanted.y) + (inside.x - wanted.x), inside.width,
                 inverse_depth.row(y) + inside.x);
   }
+}
+
+void PlaneSweep::find_nothing(Image<float>& inverse_depth) {
+  inverse_depth.fill(0);
+  reference_.window = {};
 }
 
 void PlaneSweep::refine(const Parallax& parallax) {

@@ -37,6 +37,7 @@ class PlaneSweep {
   float step_of_pixel() const { return planes_.step / 2; }
 
  private:
+  void find_nothing(Image<float>& inverse_depth);
   void refine(const Parallax& parallax);
 
   Intrinsics view_;

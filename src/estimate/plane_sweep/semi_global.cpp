@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdlib>
 
@@ -144,42 +143,6 @@ HWY_EXPORT(MatchPixel);
 HWY_EXPORT(StepPath);
 HWY_EXPORT(FindLeast);
 
-void match_pixel_plain(std::uint32_t code, float x, const std::uint32_t* other, int width,
-                       const float* scale, const float* shift, const std::int32_t* row, int pitch,
-                       std::uint8_t* costs) {
-  for (int k = 0; k < pitch; ++k) {
-    const auto column = static_cast<int>(std::nearbyint(x * scale[k] + shift[k]));
-    const bool in_view = column >= 0 && column < width;
-    costs[k] =
-        static_cast<std::uint8_t>(std::popcount(other[in_view ? row[k] + column : 0] ^ code));
-  }
-}
-
-std::uint8_t step_path_plain(const std::uint8_t* costs, const std::uint8_t* before,
-                             std::uint8_t least_before, std::uint8_t far, int pitch,
-                             std::uint8_t* path, std::uint8_t* sums, bool add) {
-  int least = too_much;
-  for (int k = 0; k < pitch; ++k) {
-    const int beside = std::min(before[k - 1], before[k + 1]) + next_plane;
-    const int best = std::min({int{before[k]}, beside, least_before + far});
-    const int cost = std::min(costs[k] + best - least_before, int{too_much});
-    path[k] = static_cast<std::uint8_t>(cost);
-    least = std::min(least, cost);
-    sums[k] = static_cast<std::uint8_t>(std::min((add ? sums[k] : 0) + cost, int{too_much}));
-  }
-  return static_cast<std::uint8_t>(least);
-}
-
-int find_least_plain(const std::uint8_t* sums, int pitch) {
-  return static_cast<int>(std::min_element(sums, sums + pitch) - sums);
-}
-
-struct Kernels {
-  decltype(&match_pixel_plain) match_pixel;
-  decltype(&step_path_plain) step_path;
-  decltype(&find_least_plain) find_least;
-};
-
 /// From the costs of the best plane and of those beside it: where between them the least lies.
 float between(int before, int best, int after) {
   const int bend = before + after - 2 * best;
@@ -187,14 +150,14 @@ float between(int before, int best, int after) {
 }
 
 /// The best plane of a pixel, if it is clearly better than all but its neighbours. Changes `sums`.
-float choose(const Kernels& kernels, std::uint8_t* sums, int count, int pitch) {
-  const int best = kernels.find_least(sums, pitch);
+float choose(std::uint8_t* sums, int count, int pitch) {
+  const int best = HWY_DYNAMIC_DISPATCH(FindLeast)(sums, pitch);
   // At the ends of the range the least may lie beyond it.
   if (best == 0 || best >= count - 1) return SemiGlobalMatching::none;
   const int cost = sums[best];
   const float plane = static_cast<float>(best) + between(sums[best - 1], cost, sums[best + 1]);
   std::fill_n(sums + best - 1, 3, too_much);
-  const int second = sums[kernels.find_least(sums, pitch)];
+  const int second = sums[HWY_DYNAMIC_DISPATCH(FindLeast)(sums, pitch)];
   constexpr int better_by = 2;
   return second - cost >= better_by ? plane : SemiGlobalMatching::none;
 }
@@ -242,18 +205,20 @@ void SemiGlobalMatching::prepare(const MatchedViews& views, const SweepPlanes& p
   }
 }
 
-template <class AnyKernels>
-void SemiGlobalMatching::match_by(const AnyKernels& kernels, const MatchedViews& views,
-                                  const SweepPlanes& planes, Image<float>& found) {
+void SemiGlobalMatching::match(const MatchedViews& views, const SweepPlanes& planes,
+                               Image<float>& found) {
   prepare(views, planes);
-  const int height = views.reference.height();
+  found.resize(width_, views.reference.height());
+  follow_rows(views, planes.count);
+  follow_columns(views, planes.count, found);
+}
+
+/// Finds the costs, and follows the two paths along each row.
+void SemiGlobalMatching::follow_rows(const MatchedViews& views, int count) {
   const int other_width = views.other_census.width();
   const int other_height = views.other_census.height();
-  found.resize(width_, height);
-
-  // Costs, and the two paths along each row
   for_rows(
-      height,
+      views.reference.height(),
       [&](Rows rows) {
         Scratch& scratch = scratch_[rows.band];
         scratch.planes.shift.resize(scales_.size());
@@ -272,11 +237,11 @@ void SemiGlobalMatching::match_by(const AnyKernels& kernels, const MatchedViews&
           }
           for (int x = 0; x < width_; ++x) {
             std::uint8_t* const costs = costs_.data() + at(x, y);
-            kernels.match_pixel(views.reference_census(x, y), static_cast<float>(x),
-                                views.other_census.data(), other_width, scales_.data(),
-                                scratch.planes.shift.data(), scratch.planes.row.data(), pitch_,
-                                costs);
-            std::fill(costs + planes.count, costs + pitch_, too_much);
+            HWY_DYNAMIC_DISPATCH(MatchPixel)
+            (views.reference_census(x, y), static_cast<float>(x), views.other_census.data(),
+             other_width, scales_.data(), scratch.planes.shift.data(), scratch.planes.row.data(),
+             pitch_, costs);
+            std::fill(costs + count, costs + pitch_, too_much);
           }
           const std::uint8_t* const grey = views.reference.row(y);
           for (const bool is_back : {false, true}) {
@@ -286,23 +251,27 @@ void SemiGlobalMatching::match_by(const AnyKernels& kernels, const MatchedViews&
             int last_x = is_back ? width_ - 1 : 0;
             for (int i = 0; i < width_; ++i) {
               const int x = is_back ? width_ - 1 - i : i;
-              least = kernels.step_path(costs_.data() + at(x, y), path.before(i), least,
-                                        far_plane(change(grey[x], grey[last_x])), pitch_,
-                                        path.here(i), sums_.data() + at(x, y), is_back);
+              least =
+                  HWY_DYNAMIC_DISPATCH(StepPath)(costs_.data() + at(x, y), path.before(i), least,
+                                                 far_plane(change(grey[x], grey[last_x])), pitch_,
+                                                 path.here(i), sums_.data() + at(x, y), is_back);
               last_x = x;
             }
           }
         }
       },
       16);
+}
 
-  // The two along each column
+/// Follows the two paths along each column, which complete the sums, and chooses.
+void SemiGlobalMatching::follow_columns(const MatchedViews& views, int count, Image<float>& found) {
+  const int height = views.reference.height();
   constexpr int columns_of_task = 32;
   const int tasks = (width_ + columns_of_task - 1) / columns_of_task;
   column_scratch_.resize(static_cast<std::size_t>(tasks));
   for_tasks(static_cast<std::size_t>(tasks), [&](std::size_t task) {
     const int first = static_cast<int>(task) * columns_of_task;
-    const int count = std::min(columns_of_task, width_ - first);
+    const int columns = std::min(columns_of_task, width_ - first);
     Scratch& scratch = column_scratch_[task];
     const std::size_t size = PathCosts::size(pitch_);
     scratch.paths.resize(size * columns_of_task);
@@ -311,38 +280,26 @@ void SemiGlobalMatching::match_by(const AnyKernels& kernels, const MatchedViews&
       const auto path = [&](int i) {
         return PathCosts(scratch.paths.data() + static_cast<std::size_t>(i) * size, pitch_);
       };
-      for (int i = 0; i < count; ++i) path(i).begin();
+      for (int i = 0; i < columns; ++i) path(i).begin();
       least.fill(0);
       const std::uint8_t* last_grey = nullptr;
       for (int row = 0; row < height; ++row) {
         const int y = is_up ? height - 1 - row : row;
         const std::uint8_t* const grey = views.reference.row(y);
         if (last_grey == nullptr) last_grey = grey;
-        for (int i = 0; i < count; ++i) {
+        for (int i = 0; i < columns; ++i) {
           const int x = first + i;
           const auto column = static_cast<std::size_t>(i);
           std::uint8_t* const sums = sums_.data() + at(x, y);
-          least[column] = kernels.step_path(costs_.data() + at(x, y), path(i).before(row),
-                                            least[column], far_plane(change(grey[x], last_grey[x])),
-                                            pitch_, path(i).here(row), sums, true);
-          if (is_up) found(x, y) = choose(kernels, sums, planes.count, pitch_);
+          least[column] = HWY_DYNAMIC_DISPATCH(StepPath)(
+              costs_.data() + at(x, y), path(i).before(row), least[column],
+              far_plane(change(grey[x], last_grey[x])), pitch_, path(i).here(row), sums, true);
+          if (is_up) found(x, y) = choose(sums, count, pitch_);
         }
         last_grey = grey;
       }
     }
   });
-}
-
-void SemiGlobalMatching::match(const MatchedViews& views, const SweepPlanes& planes,
-                               Image<float>& found) {
-  match_by(Kernels{HWY_DYNAMIC_DISPATCH(MatchPixel), HWY_DYNAMIC_DISPATCH(StepPath),
-                   HWY_DYNAMIC_DISPATCH(FindLeast)},
-           views, planes, found);
-}
-
-void SemiGlobalMatching::match_plain(const MatchedViews& views, const SweepPlanes& planes,
-                                     Image<float>& found) {
-  match_by(Kernels{match_pixel_plain, step_path_plain, find_least_plain}, views, planes, found);
 }
 
 }  // namespace diminish

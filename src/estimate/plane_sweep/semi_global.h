@@ -29,8 +29,6 @@ class SemiGlobalMatching {
   /// through the costs; `none` where no plane is clearly better than all others. Cost: 1.5 ns per
   /// pixel and plane, shared by threads. Memory: 2 bytes per pixel and plane.
   void match(const MatchedViews& views, const SweepPlanes& planes, Image<float>& found);
-  /// The plain version of the same.
-  void match_plain(const MatchedViews& views, const SweepPlanes& planes, Image<float>& found);
 
  private:
   /// Where the planes' points lie in a row of the other view.
@@ -45,9 +43,8 @@ class SemiGlobalMatching {
   };
 
   void prepare(const MatchedViews& views, const SweepPlanes& planes);
-  template <class Kernels>
-  void match_by(const Kernels& kernels, const MatchedViews& views, const SweepPlanes& planes,
-                Image<float>& found);
+  void follow_rows(const MatchedViews& views, int count);
+  void follow_columns(const MatchedViews& views, int count, Image<float>& found);
   std::size_t at(int x, int y) const {
     return (static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
             static_cast<std::size_t>(x)) *

@@ -74,7 +74,7 @@ void RigCalibration::add(const FrameSet& frame) {
   if (!frame.color.empty()) in_color = self.finder.find(frame.color, self.color_lens);
   for (std::size_t k = 0; k < self.cameras.size(); ++k) {
     Camera& camera = self.cameras[k];
-    if (!frame.rgbd[k].available()) continue;
+    if (!frame.rgbd[k].has_picture()) continue;
     for (TargetView& view : self.finder.find(frame.rgbd[k].color, camera.color_lens)) {
       camera.depth.add(view, frame.rgbd[k].depth);
       settle_by_depth(camera, frame.rgbd[k].depth, view);

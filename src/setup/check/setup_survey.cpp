@@ -98,7 +98,9 @@ class Surveyor {
     look_at(frame.color, color_lens_, markers.color, survey_.color);
     for (std::size_t k = 0; k < rig_.rgbd.size(); ++k) {
       const RgbdFrame& rgbd = frame.rgbd[k];
-      if (!rgbd.available() && survey_.missing[k]++ == 0) survey_.first_missing[k] = rgbd.missing;
+      if (!rgbd.has_picture() && survey_.missing[k]++ == 0) {
+        survey_.first_missing[k] = rgbd.missing;
+      }
       look_at(rgbd.color, rgbd_lenses_[k], markers.rgbd[k], survey_.rgbd[k]);
     }
     if (frame.color.empty()) return markers;
@@ -129,7 +131,7 @@ class Surveyor {
   /// Records the paths of markers that both cameras see, and how well the cameras agree on their
   /// places.
   void follow(const FrameSet& frame, const Markers& markers, const Poses& poses, std::size_t k) {
-    if (!poses.color_from_depth[k] || !frame.rgbd[k].available()) return;
+    if (!poses.color_from_depth[k] || !frame.rgbd[k].has_picture()) return;
     const RigidTransform color_from_rgbd =
         *poses.color_from_depth[k] * rig_.rgbd[k].color_from_depth.inverse();
     // If the poses come from the world marker, its place always agrees.
