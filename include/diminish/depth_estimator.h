@@ -28,7 +28,8 @@ class DIMINISH_EXPORT DepthEstimator {
       std::function<std::unique_ptr<DepthEstimator>(const Rig& rig, const Scene& scene)>;
 
   struct Inputs {
-    const FrameSet& frame;  ///< cameras that measure no depth have images of zeros
+    const FrameSet& frame;   ///< cameras that measure no depth have images of zeros
+    const Markers& markers;  ///< empty if nothing needs any
     const Poses& poses;
     const OcclusionMasks& masks;
     /// The part of the user's picture that will be drawn; nothing else needs depth.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "diminish/export.h"
+#include "diminish/rigid_transform.h"
 #include "diminish/scene.h"
 
 namespace diminish {
@@ -79,6 +80,21 @@ class DIMINISH_EXPORT OnnxSettings : public OccluderSettings {
 
   void check(const Config& place, const Rig* rig) const override;
   std::vector<std::filesystem::path> files() const override { return {model}; }
+};
+
+/// For the detector `articulated`: a robot arm in the world's frame. Its links and joints are in
+/// one file, the joints' positions over time in another.
+class DIMINISH_EXPORT ArticulatedSettings : public OccluderSettings {
+ public:
+  std::filesystem::path chain;   ///< YAML: `links`, from the base up
+  std::filesystem::path angles;  ///< "timestamp position ..", radians or metres
+  RigidTransform world_from_base;
+  double tolerance_s = 0.1;  ///< the list must say something so near to a picture's moment
+  std::vector<std::filesystem::path> meshes;  ///< that the chain names
+
+  void check(const Config& place, const Rig* rig) const override;
+  bool needs_world() const override { return true; }
+  std::vector<std::filesystem::path> files() const override;
 };
 
 /// For the detector `difference`: whatever stands free in front of what the RGB-D cameras see.

@@ -16,7 +16,7 @@ struct Options {
   int soft_rim_px = 2;
   int rgbd_mask_margin_px = 9;
   double blob_spread = 1.0;
-  std::string estimate_depth = "stereo";
+  std::string estimate_depth = "auto";
   bool refine_poses = true;
   bool remove_flying = true;
   bool remove_hidden = true;
@@ -79,11 +79,14 @@ void for_each_option(AnyOptions& options, Visit&& visit) {
   visit(OptionInfo{"blob_spread", "standard deviations",
                    "How far a blob's mean colour may be from the training images' mean", 0.01, 100},
         options.blob_spread);
-  visit(OptionInfo{.name = "estimate_depth",
-                   .unit = "method",
-                   .help = "How the depth of cameras that measure none is found",
-                   .kind = "depth estimation"},
-        options.estimate_depth);
+  visit(
+      OptionInfo{.name = "estimate_depth",
+                 .unit = "method",
+                 .help = "How the depth of cameras that measure none is found; auto: planes if the "
+                         "scene names some, else stereo",
+                 .kind = "depth estimation",
+                 .choices = {"auto"}},
+      options.estimate_depth);
   visit(OptionInfo{"refine_poses", "",
                    "Refine the colour camera's pose until its picture matches the RGB-D cameras'"},
         options.refine_poses);

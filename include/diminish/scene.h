@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -43,11 +45,26 @@ struct OccluderSpec {
   Config place = {};  ///< where it was read, for messages; empty if it was not
 };
 
+/// A flat part of the background. Where a camera measures no depth, it may be all that is known.
+struct GivenPlane {
+  enum class From : std::uint8_t {
+    world,    ///< `point` and `normal`
+    marker,   ///< a marker lies on it
+    features  ///< found in the pictures: up to `count` planes that hold what both cameras see
+  } from = From::world;
+  /// World frame, metres.
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
+  MarkerSpec marker = {};
+  int count = 1;
+};
+
 /// What is in front of the cameras: a recording's `scene.yaml`.
 struct Scene {
   std::string marker_dictionary = "DICT_4X4_50";
   MarkerSpec world_marker;  ///< size 0: none
   std::vector<OccluderSpec> occluders;
+  std::vector<GivenPlane> planes = {};
 };
 
 /// Reads `scene.yaml`. Throws Error that names file and key.

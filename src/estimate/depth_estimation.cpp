@@ -17,7 +17,16 @@ bool DepthEstimation::is_needed() const {
                      [](const RgbdCamera& camera) { return !camera.measures_depth; });
 }
 
-void DepthEstimation::choose(const std::string& method) {
+bool DepthEstimation::needs_markers() const {
+  return is_needed() &&
+         std::any_of(scene_.planes.begin(), scene_.planes.end(), [](const GivenPlane& plane) {
+           return plane.from == GivenPlane::From::marker;
+         });
+}
+
+void DepthEstimation::choose(const std::string& wanted) {
+  std::string method = wanted;
+  if (wanted == "auto") method = scene_.planes.empty() ? "stereo" : "planes";
   if (!is_needed() || method == method_) return;
   estimator_ = Registry<DepthEstimator>::get(method)(rig_, scene_);
   method_ = method;
@@ -52,7 +61,8 @@ const FrameSet& DepthEstimation::begin(const FrameSet& frame) {
   return frame_;
 }
 
-void DepthEstimation::estimate(const Poses& poses, const OcclusionMasks& masks, const Rect& drawn,
+void DepthEstimation::estimate(const Markers& markers, const Poses& poses,
+                               const OcclusionMasks& masks, const Rect& drawn,
                                const Options& options) {
   if (!estimator_) return;
   wanted_.assign(rig_.rgbd.size(), false);
@@ -63,7 +73,8 @@ void DepthEstimation::estimate(const Poses& poses, const OcclusionMasks& masks, 
     is_any_wanted = is_any_wanted || wanted_[k];
   }
   if (!is_any_wanted) return;
-  estimator_->estimate({frame_, poses, masks, drawn, options, wanted_}, depths_, messages_);
+  estimator_->estimate({frame_, markers, poses, masks, drawn, options, wanted_}, depths_,
+                       messages_);
 }
 
 }  // namespace diminish

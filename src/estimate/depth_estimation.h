@@ -21,8 +21,10 @@ class DepthEstimation {
   /// all cameras measure depth. It is valid until the next call.
   const FrameSet& begin(const FrameSet& frame);
   /// Fills in the depth images of that frame.
-  void estimate(const Poses& poses, const OcclusionMasks& masks, const Rect& drawn,
-                const Options& options);
+  void estimate(const Markers& markers, const Poses& poses, const OcclusionMasks& masks,
+                const Rect& drawn, const Options& options);
+  /// Whether the frame's markers are asked for.
+  bool needs_markers() const;
   /// What hindered it in this frame.
   const std::vector<std::string>& messages() const { return messages_; }
 

@@ -33,7 +33,7 @@ struct StereoFrame {
   const FrameSet& estimate(const Rect& drawn) {
     estimation.choose("stereo");
     const FrameSet& completed = estimation.begin(frame);
-    estimation.estimate(poses, masks, drawn, options);
+    estimation.estimate({}, poses, masks, drawn, options);
     return completed;
   }
 

@@ -67,11 +67,12 @@ struct Pipeline::Implementation {
   Implementation(const Rig& rig_, const Scene& scene_)
       : rig(rig_),
         scene(scene_),
+        estimation(rig, scene),
         camera_poses(rig, scene),
         occluders(rig, scene),
         markers(rig, scene.marker_dictionary,
-                camera_poses.needs_markers() || occluders.needs_markers()),
-        estimation(rig, scene),
+                camera_poses.needs_markers() || occluders.needs_markers() ||
+                    estimation.needs_markers()),
         depth(rig),
         sampler(rig),
         refinement(rig.color, PoseRefinement::usual_width, PoseRefinement::usual_last_step, false,
@@ -140,11 +141,11 @@ struct Pipeline::Implementation {
   const ViewMode* mode = nullptr;
   FrameMethods methods;
 
+  DepthEstimation estimation;
   CameraPoses camera_poses;
   OccluderStage occluders;
   FrameMarkers markers;
   Poses measured_poses;
-  DepthEstimation estimation;
   DepthStage depth;
   SceneSampler sampler;
   SceneSamples samples;
@@ -294,7 +295,8 @@ void Pipeline::Implementation::process(const FrameSet& given, DiminishedFrame& r
   };
   // What is learnt of the scene may be needed only after the drawing: then both are done together.
   if (looks) {
-    stage(Stage::estimation, [&] { estimation.estimate(measured_poses, masks, drawn(), options); });
+    stage(Stage::estimation,
+          [&] { estimation.estimate(report.markers, measured_poses, masks, drawn(), options); });
   }
   const bool learns_while_drawing = looks && backend.only_draws() && !options.remove_shadows;
   if (looks) {

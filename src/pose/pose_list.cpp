@@ -1,16 +1,11 @@
 #include "pose/pose_list.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <fstream>
-#include <optional>
-#include <sstream>
 #include <string>
 
-#include "core/text.h"
+#include "core/number_lines.h"
 #include "diminish/error.h"
 
 namespace diminish {
@@ -23,29 +18,13 @@ std::vector<StampedPose> load_pose_list(const std::filesystem::path& file) {
 
 std::vector<StampedPose> read_pose_list(std::istream& stream, const std::filesystem::path& file) {
   std::vector<StampedPose> poses;
-  std::string line;
-  for (int number = 1; std::getline(stream, line); ++number) {
-    const auto fail = [&](const char* what) {
-      throw Error(Error::input, fmt::format("{}:{}: {}", file.string(), number, what));
-    };
-    line.erase(std::find(line.begin(), line.end(), '#'), line.end());
-    std::istringstream fields(line);
-    std::array<double, 8> v{};
-    std::string text;
-    std::size_t count = 0;
-    while (fields >> text) {
-      const std::optional<double> value = parse_number(text);
-      if (!value) fail("expected a finite number");
-      if (count < v.size()) v[count] = *value;
-      ++count;
-    }
-    if (count == 0) continue;
-    if (count != v.size()) fail("expected 'timestamp tx ty tz qx qy qz qw'");
+  for_each_number_line(stream, file, [&](const std::vector<double>& v, const FailLine& fail) {
+    if (v.size() != 8) fail("expected 'timestamp tx ty tz qx qy qz qw'");
     const Eigen::Quaterniond rotation(v[7], v[4], v[5], v[6]);
     if (std::abs(rotation.norm() - 1) > 1e-2) fail("expected a quaternion of length 1");
     if (!poses.empty() && !(v[0] > poses.back().stamp_s)) fail("expected ascending timestamps");
     poses.push_back({v[0], {rotation.normalized().toRotationMatrix(), {v[1], v[2], v[3]}}});
-  }
+  });
   if (poses.empty()) throw Error(Error::input, file.string() + ": expected at least one pose");
   return poses;
 }

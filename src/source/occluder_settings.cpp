@@ -97,6 +97,21 @@ void OnnxSettings::check(const Config& place, const Rig*) const {
   if (!std::isfinite(threshold)) place.find("threshold").fail("expected a number");
 }
 
+void ArticulatedSettings::check(const Config& place, const Rig*) const {
+  if (chain.empty()) place.find("chain").fail("expected a path, got ''");
+  if (angles.empty()) place.find("angles").fail("expected a path, got ''");
+  check_rigid_transform(world_from_base, place.find("base"));
+  if (!(std::isfinite(tolerance_s) && tolerance_s > 0)) {
+    place.find("tolerance_s").fail("expected a number above 0");
+  }
+}
+
+std::vector<std::filesystem::path> ArticulatedSettings::files() const {
+  std::vector<std::filesystem::path> files = {chain, angles};
+  files.insert(files.end(), meshes.begin(), meshes.end());
+  return files;
+}
+
 void DifferenceSettings::check(const Config& place, const Rig* rig) const {
   if (!(clearance >= 0.05 && clearance <= 0.95)) {
     place.find("clearance").fail("expected a number from 0.05 to 0.95");

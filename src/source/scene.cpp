@@ -16,6 +16,32 @@ OccluderSpec read_occluder(const Config& config) {
   return spec;
 }
 
+GivenPlane read_plane(const Config& config) {
+  config.expect_keys({"point", "normal", "marker", "features"});
+  GivenPlane plane;
+  const Config marker = config.find("marker");
+  const Config features = config.find("features");
+  if (marker.exists()) {
+    config.expect_keys({"marker"});
+    plane.from = GivenPlane::From::marker;
+    plane.marker = read_marker(marker);
+  } else if (features.exists()) {
+    config.expect_keys({"features"});
+    constexpr int most_planes = 8;
+    plane.from = GivenPlane::From::features;
+    plane.count = features.integer(1, most_planes);
+  } else {
+    plane.point = config.at("point").vector3();
+    plane.normal = config.at("normal").vector3();
+    constexpr double least_length = 1e-6;
+    if (!(plane.normal.norm() > least_length)) {
+      config.at("normal").fail("expected a direction, got a vector without length");
+    }
+    plane.normal.normalize();
+  }
+  return plane;
+}
+
 }  // namespace
 
 MarkerSpec read_marker(const Config& config) {
@@ -28,7 +54,7 @@ Scene load_scene(const std::filesystem::path& file) {
 }
 
 Scene read_scene(const Config& config) {
-  config.expect_keys({"marker_dictionary", "world_marker", "occluders"});
+  config.expect_keys({"marker_dictionary", "world_marker", "occluders", "planes"});
   Scene scene;
   const Config dictionary = config.find("marker_dictionary");
   if (dictionary.exists()) scene.marker_dictionary = dictionary.text();
@@ -36,6 +62,10 @@ Scene read_scene(const Config& config) {
   if (world_marker.exists()) scene.world_marker = read_marker(world_marker);
   for (const Config& item : config.at("occluders").items()) {
     scene.occluders.push_back(read_occluder(item));
+  }
+  const Config planes = config.find("planes");
+  if (planes.exists()) {
+    for (const Config& item : planes.items()) scene.planes.push_back(read_plane(item));
   }
   check_scene(scene, nullptr, config);
   return scene;
