@@ -42,6 +42,9 @@ struct FrameReport {
   Markers markers;
   Poses poses;  ///< as refined, where something is drawn
   std::vector<OccluderReport> occluders;
+  /// RGB-D cameras that were not drawn, because others show all that they see behind the objects;
+  /// `poses.color_from_depth` has none of theirs. Empty: none.
+  std::vector<bool> spared;
   std::size_t mask_pixels = 0;        ///< to be replaced
   std::size_t valid_pixels = 0;       ///< of these, seen by an RGB-D camera now, or remembered
   std::size_t witnessed_pixels = 0;   ///< of the valid ones (provenance::witnessed)

@@ -48,13 +48,15 @@ struct OccluderSpec {
 /// A flat part of the background. Where a camera measures no depth, it may be all that is known.
 struct GivenPlane {
   enum class From : std::uint8_t {
-    world,    ///< `point` and `normal`
+    world,    ///< `point` and `normal`, as far as `corners` reach
     marker,   ///< a marker lies on it
     features  ///< found in the pictures: up to `count` planes that hold what both cameras see
   } from = From::world;
   /// World frame, metres.
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
+  /// Of a convex part, in order; none: it has no end.
+  std::vector<Eigen::Vector3d> corners = {};
   MarkerSpec marker = {};
   int count = 1;
 };

@@ -114,7 +114,7 @@ InversePlane fit(const std::vector<SeenPoint>& points, const std::vector<std::si
     rays.row(i) = point.ray.homogeneous().transpose();
     inverse_depths(i) = point.inverse_depth;
   }
-  return {rays.colPivHouseholderQr().solve(inverse_depths)};
+  return {rays.colPivHouseholderQr().solve(inverse_depths), {}};
 }
 
 std::vector<std::size_t> members_of(const InversePlane& plane, const std::vector<SeenPoint>& points,

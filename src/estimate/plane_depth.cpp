@@ -1,11 +1,50 @@
 #include "estimate/plane_depth.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
+#include <cmath>
 
 #include "core/rows.h"
 
 namespace diminish {
+namespace {
+
+/// The columns of a row, in a picture of this width, in which the plane is seen. Each side of its
+/// part lies in a plane through the camera, which a row crosses once.
+struct Columns {
+  int first, last;
+};
+Columns columns_of(const InversePlane& plane, const Intrinsics& view, int y) {
+  double first = 0;
+  double last = view.width;
+  const std::size_t count = plane.corners.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const Eigen::Vector3d side = plane.corners[i].cross(plane.corners[(i + 1) % count]);
+    // Inside, as the next corner is
+    const double sign = side.dot(plane.corners[(i + 2) % count]) < 0 ? -1 : 1;
+    const double at_zero =
+        sign * (side.x() * (-view.cx / view.fx) + side.y() * ((y - view.cy) / view.fy) + side.z());
+    const double step = sign * side.x() / view.fx;
+    const double crossing = step != 0 ? -at_zero / step : 0;
+    if (step > 0) {
+      first = std::max(first, std::ceil(crossing));
+    } else if (step < 0) {
+      last = std::min(last, std::floor(crossing) + 1);
+    } else if (at_zero < 0) {
+      last = 0;
+    }
+  }
+  return {static_cast<int>(std::min<double>(first, view.width)),
+          static_cast<int>(std::max(0.0, last))};
+}
+
+bool is_in_front(const InversePlane& plane) {
+  constexpr double least_m = 0.01;
+  return std::all_of(plane.corners.begin(), plane.corners.end(),
+                     [](const Eigen::Vector3d& corner) { return corner.z() > least_m; });
+}
+
+}  // namespace
 
 void draw_planes(const std::vector<InversePlane>& planes, const Intrinsics& view,
                  double depth_unit_m, Image<std::uint16_t>& depth) {
@@ -13,26 +52,25 @@ void draw_planes(const std::vector<InversePlane>& planes, const Intrinsics& view
   const auto least = static_cast<float>(1 / (65535 * depth_unit_m));
   const auto unit = static_cast<float>(depth_unit_m);
   for_rows(view.height, [&](Rows rows) {
+    std::vector<float> nearest(static_cast<std::size_t>(view.width));
     for (int y = rows.first; y < rows.last; ++y) {
-      std::uint16_t* const row = depth.row(y);
-      // Along a row a plane's inverse depth changes evenly.
-      struct Along {
-        float first, step;
-      };
-      std::array<Along, most_planes> along{};
-      std::size_t count = 0;
+      std::fill(nearest.begin(), nearest.end(), 0.F);
       for (const InversePlane& plane : planes) {
-        if (count == along.size()) break;
+        if (!is_in_front(plane)) continue;
+        // Along a row a plane's inverse depth changes evenly.
         const Eigen::Vector2d ray(-view.cx / view.fx, (y - view.cy) / view.fy);
-        along[count++] = {static_cast<float>(plane.inverse_depth(ray)),
-                          static_cast<float>(plane.inverse.x() / view.fx)};
-      }
-      for (int x = 0; x < view.width; ++x) {
-        float nearest = 0;
-        for (std::size_t i = 0; i < count; ++i) {
-          nearest = std::max(nearest, along[i].first + static_cast<float>(x) * along[i].step);
+        const auto first = static_cast<float>(plane.inverse_depth(ray));
+        const auto step = static_cast<float>(plane.inverse.x() / view.fx);
+        const Columns columns = columns_of(plane, view, y);
+        for (int x = columns.first; x < columns.last; ++x) {
+          float& known = nearest[static_cast<std::size_t>(x)];
+          known = std::max(known, first + static_cast<float>(x) * step);
         }
-        row[x] = nearest > least ? static_cast<std::uint16_t>(1 / (nearest * unit) + 0.5F) : 0;
+      }
+      std::uint16_t* const row = depth.row(y);
+      for (int x = 0; x < view.width; ++x) {
+        const float inverse = nearest[static_cast<std::size_t>(x)];
+        row[x] = inverse > least ? static_cast<std::uint16_t>(1 / (inverse * unit) + 0.5F) : 0;
       }
     }
   });

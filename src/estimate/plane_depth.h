@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -15,10 +14,12 @@ namespace diminish {
 /// `inverse` . x = 1, so that the inverse depth along a ray (x, y, 1) is `inverse` . ray.
 struct InversePlane {
   Eigen::Vector3d inverse = Eigen::Vector3d::Zero();  ///< 1/m
+  /// Where a convex part of the plane ends, in order; none: nowhere. All in front of the camera.
+  std::vector<Eigen::Vector3d> corners = {};
 
   /// Through a point, with this normal.
   static InversePlane through(const Eigen::Vector3d& point, const Eigen::Vector3d& normal) {
-    return {normal / normal.dot(point)};
+    return {normal / normal.dot(point), {}};
   }
   double inverse_depth(const Eigen::Vector2d& ray) const {
     return inverse.x() * ray.x() + inverse.y() * ray.y() + inverse.z();
@@ -28,12 +29,13 @@ struct InversePlane {
 
 /// The plane in another camera's frame.
 inline InversePlane transformed(const InversePlane& plane, const RigidTransform& from_other) {
-  return {from_other.rotation.transpose() * plane.inverse /
-          (1 - plane.inverse.dot(from_other.translation))};
+  InversePlane there{from_other.rotation.transpose() * plane.inverse /
+                         (1 - plane.inverse.dot(from_other.translation)),
+                     plane.corners};
+  const RigidTransform other_from = from_other.inverse();
+  for (Eigen::Vector3d& corner : there.corners) corner = other_from * corner;
+  return there;
 }
-
-/// More are not drawn.
-inline constexpr std::size_t most_planes = 16;
 
 /// Writes how far away the nearest plane is along each pixel's ray; 0 where there is none. view: a
 /// camera without lens distortion. depth: of its size. Cost: 1 ns per pixel and plane, shared by

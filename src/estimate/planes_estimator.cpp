@@ -61,8 +61,12 @@ class PlanesEstimator final : public DepthEstimator {
       return std::nullopt;
     }
     const RigidTransform& user_from_world = *inputs.poses.color_from_world;
-    return InversePlane::through(user_from_world * plane.point,
-                                 user_from_world.rotation * plane.normal);
+    InversePlane in_user = InversePlane::through(user_from_world * plane.point,
+                                                 user_from_world.rotation * plane.normal);
+    for (const Eigen::Vector3d& corner : plane.corners) {
+      in_user.corners.push_back(user_from_world * corner);
+    }
+    return in_user;
   }
 
   /// From the first picture that shows the marker.

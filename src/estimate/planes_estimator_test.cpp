@@ -50,6 +50,37 @@ TEST(PlaneDepth, IsTheNearestPlaneAlongEachRay) {
   }
 }
 
+TEST(PlaneDepth, APlaneMayEnd) {
+  const Intrinsics view{.width = 80, .height = 60, .fx = 70, .fy = 70, .cx = 40.2, .cy = 29.7};
+  // A slanted card in front of a wall
+  InversePlane card = InversePlane::through({0, 0, 1.5}, {0.3, 0, -1});
+  card.corners = {{-0.3, -0.2, 1.41}, {0.4, -0.1, 1.62}, {0.2, 0.4, 1.56}, {-0.2, 0.3, 1.44}};
+  Image<std::uint16_t> depth(view.width, view.height);
+  draw_planes({InversePlane::through({0, 0, 3}, {0, 0, -1}), card}, view, 0.0005, depth);
+  const auto is_inside = [&](int x, int y) {
+    // Its corners' pixels, by the sides of a polygon
+    for (std::size_t i = 0; i < 4; ++i) {
+      const auto pixel = [&](const Eigen::Vector3d& p) {
+        return Eigen::Vector2d(view.fx * p.x() / p.z() + view.cx,
+                               view.fy * p.y() / p.z() + view.cy);
+      };
+      const Eigen::Vector2d a = pixel(card.corners[i]);
+      const Eigen::Vector2d along = pixel(card.corners[(i + 1) % 4]) - a;
+      if (along.x() * (y - a.y()) - along.y() * (x - a.x()) < 0) return false;
+    }
+    return true;
+  };
+  int inside = 0;
+  for (int y = 0; y < view.height; ++y) {
+    for (int x = 0; x < view.width; ++x) {
+      const double z = is_inside(x, y) ? 1.5 / (1 - 0.3 * (x - view.cx) / view.fx) : 3;
+      inside += is_inside(x, y) ? 1 : 0;
+      ASSERT_NEAR(depth(x, y) * 0.0005, z, 0.0004) << x << ' ' << y;
+    }
+  }
+  EXPECT_GT(inside, 300);
+}
+
 TEST(PlaneDepth, WhereThereIsNoPlaneNothingIsKnown) {
   const Intrinsics view{.width = 20, .height = 20, .fx = 20, .fy = 20, .cx = 9.5, .cy = 9.5};
   Image<std::uint16_t> depth(20, 20, 7);
@@ -163,6 +194,13 @@ TEST(PlanesEstimator, WhatIsNoPlaneIsNamed) {
   EXPECT_THAT(complaint("{point: [0, 0, 0], normal: [0, 0, 0]}"),
               HasSubstr("planes[0].normal: expected a direction, got a vector without length"));
   EXPECT_THAT(complaint("{point: [0, 0, 0]}"), HasSubstr("planes[0]: missing key 'normal'"));
+  EXPECT_THAT(complaint("{corners: [[0, 0, 0], [1, 0, 0]]}"), HasSubstr("expected 3 to 8 corners"));
+  EXPECT_THAT(complaint("{corners: [[0, 0, 0], [1, 0, 0], [2, 0, 0]]}"),
+              HasSubstr("planes[0].corners: expected corners that are not on one line"));
+  EXPECT_THAT(complaint("{corners: [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.5]]}"),
+              HasSubstr("planes[0].corners: expected corners of one plane"));
+  EXPECT_THAT(complaint("{corners: [[0, 0, 0], [1, 1, 0], [1, 0, 0], [0, 1, 0]]}"),
+              HasSubstr("planes[0].corners: expected corners"));
   EXPECT_THAT(complaint("{features: 0}"), HasSubstr("planes[0].features"));
   EXPECT_THAT(complaint("{features: 1, point: [0, 0, 0]}"), HasSubstr("planes[0]"));
 }

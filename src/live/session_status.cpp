@@ -25,7 +25,11 @@ void describe_last_frame(const LiveFrame& frame, LiveStatus& status) {
   status.frames = frame.number;
   status.stage_ms = report.milliseconds;
   status.frame_ms = report.frame_ms;
-  for (const auto& pose : report.poses.color_from_depth) status.posed.push_back(pose.has_value());
+  const auto& poses = report.poses.color_from_depth;
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const bool is_spared = k < report.spared.size() && report.spared[k];
+    status.posed.push_back(poses[k].has_value() || is_spared);
+  }
   status.markers.push_back(report.markers.color.size());
   for (const auto& markers : report.markers.rgbd) status.markers.push_back(markers.size());
   status.occluders = report.occluders;

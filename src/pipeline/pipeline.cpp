@@ -8,6 +8,7 @@
 
 #include "composite/compositor.h"
 #include "composite/smoothing_share.h"
+#include "depth/camera_choice.h"
 #include "depth/depth_stage.h"
 #include "detect/occlusion_masks.h"
 #include "diminish/validate.h"
@@ -73,6 +74,7 @@ struct Pipeline::Implementation {
         markers(rig, scene.marker_dictionary,
                 camera_poses.needs_markers() || occluders.needs_markers() ||
                     estimation.needs_markers()),
+        choice(rig),
         depth(rig),
         sampler(rig),
         refinement(rig.color, PoseRefinement::usual_width, PoseRefinement::usual_last_step, false,
@@ -116,6 +118,16 @@ struct Pipeline::Implementation {
       region.keep_near(occluders.masks().color, options.surroundings_px);
     }
   }
+  /// Those that add nothing to what is drawn get no pose.
+  void spare_cameras(const FrameSet& frame, FrameReport& report) {
+    report.spared.clear();
+    if (options.whole_view || options.remove_shadows || occluders.objects().empty()) return;
+    report.spared =
+        choice.find_spared(frame, measured_poses, occluders.masks(), occluders.objects());
+    for (std::size_t k = 0; k < report.spared.size(); ++k) {
+      if (report.spared[k]) measured_poses.color_from_depth[k].reset();
+    }
+  }
   void refine_poses(const FrameSet& frame, Poses& poses) {
     if (!options.refine_poses) return;
     const auto correction = refinement.refine(frame, occluders.masks().color, samples);
@@ -146,6 +158,7 @@ struct Pipeline::Implementation {
   OccluderStage occluders;
   FrameMarkers markers;
   Poses measured_poses;
+  CameraChoice choice;
   DepthStage depth;
   SceneSampler sampler;
   SceneSamples samples;
@@ -252,6 +265,7 @@ void Pipeline::Implementation::process(const FrameSet& given, DiminishedFrame& r
   });
 
   // 3.3 Reconstruction of what is behind them, for which the scene has to be known
+  spare_cameras(frame, report);
   report.poses = measured_poses;
   background.clear();
   const auto learn = [&] {

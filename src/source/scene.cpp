@@ -1,5 +1,9 @@
 #include "diminish/scene.h"
 
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
 #include "diminish/objects_of_detector.h"
 #include "diminish/occluder_detector.h"
 #include "source/configuration_checks.h"
@@ -16,11 +20,42 @@ OccluderSpec read_occluder(const Config& config) {
   return spec;
 }
 
+/// A plane's end. Four corners, say, lie on it to a hundredth of its size.
+void read_corners(const Config& place, GivenPlane& plane) {
+  constexpr std::size_t most_corners = 8;
+  for (const Config& item : place.items()) plane.corners.push_back(item.vector3());
+  const std::size_t count = plane.corners.size();
+  if (count < 3 || count > most_corners) place.fail("expected 3 to 8 corners");
+  const std::vector<Eigen::Vector3d>& corners = plane.corners;
+  plane.point = corners[0];
+  plane.normal.setZero();
+  double size_m = 0;
+  for (std::size_t i = 1; i + 1 < count; ++i) {
+    plane.normal += (corners[i] - corners[0]).cross(corners[i + 1] - corners[0]);
+    size_m = std::max(size_m, (corners[i] - corners[0]).norm());
+  }
+  constexpr double least_area_m2 = 1e-6;
+  if (!(plane.normal.norm() > least_area_m2))
+    place.fail("expected corners that are not on one line");
+  plane.normal.normalize();
+  for (std::size_t i = 0; i < count; ++i) {
+    if (std::abs(plane.normal.dot(corners[i] - plane.point)) > 0.01 * size_m) {
+      place.fail("expected corners of one plane");
+    }
+    const Eigen::Vector3d along = corners[(i + 1) % count] - corners[i];
+    const Eigen::Vector3d next = corners[(i + 2) % count] - corners[(i + 1) % count];
+    if (!(along.cross(next).dot(plane.normal) >= 0)) {
+      place.fail("expected corners in order around a convex part");
+    }
+  }
+}
+
 GivenPlane read_plane(const Config& config) {
-  config.expect_keys({"point", "normal", "marker", "features"});
+  config.expect_keys({"point", "normal", "corners", "marker", "features"});
   GivenPlane plane;
   const Config marker = config.find("marker");
   const Config features = config.find("features");
+  const Config corners = config.find("corners");
   if (marker.exists()) {
     config.expect_keys({"marker"});
     plane.from = GivenPlane::From::marker;
@@ -30,6 +65,9 @@ GivenPlane read_plane(const Config& config) {
     constexpr int most_planes = 8;
     plane.from = GivenPlane::From::features;
     plane.count = features.integer(1, most_planes);
+  } else if (corners.exists()) {
+    config.expect_keys({"corners"});
+    read_corners(corners, plane);
   } else {
     plane.point = config.at("point").vector3();
     plane.normal = config.at("normal").vector3();
