@@ -51,7 +51,7 @@ TEST(CameraChoice, TakesTheOneThatLooksMostLikeTheUser) {
 }
 
 TEST(CameraChoice, TakesWhatOnlyOneCameraSees) {
-  Wall wall({0.05, -1.5, -1.5});
+  Wall wall({0.05, -0.5, -0.5});
   // The first sees nothing of the right half: its depth is missing there.
   for (int y = 0; y < 96; ++y) {
     for (int x = 62; x < 128; ++x) wall.frame.rgbd[0].depth.own()(x, y) = 0;

@@ -38,10 +38,19 @@ Columns columns_of(const InversePlane& plane, const Intrinsics& view, int y) {
           static_cast<int>(std::max(0.0, last))};
 }
 
-bool is_in_front(const InversePlane& plane) {
-  constexpr double least_m = 0.01;
-  return std::all_of(plane.corners.begin(), plane.corners.end(),
-                     [](const Eigen::Vector3d& corner) { return corner.z() > least_m; });
+/// Cuts off what lies less than 1 cm in front of the camera (Sutherland & Hodgman 1974).
+InversePlane in_front(const InversePlane& plane) {
+  constexpr double nearest_m = 0.01;
+  InversePlane cut{plane.inverse, {}};
+  const std::size_t count = plane.corners.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const Eigen::Vector3d& from = plane.corners[i];
+    const Eigen::Vector3d& to = plane.corners[(i + 1) % count];
+    if (from.z() >= nearest_m) cut.corners.push_back(from);
+    if ((from.z() >= nearest_m) == (to.z() >= nearest_m)) continue;
+    cut.corners.push_back(from + (nearest_m - from.z()) / (to.z() - from.z()) * (to - from));
+  }
+  return cut;
 }
 
 }  // namespace
@@ -51,12 +60,16 @@ void draw_planes(const std::vector<InversePlane>& planes, const Intrinsics& view
   // Beyond it a depth does not fit into the image.
   const auto least = static_cast<float>(1 / (65535 * depth_unit_m));
   const auto unit = static_cast<float>(depth_unit_m);
+  std::vector<InversePlane> visible;
+  for (const InversePlane& plane : planes) {
+    const InversePlane cut = in_front(plane);
+    if (plane.corners.empty() || !cut.corners.empty()) visible.push_back(cut);
+  }
   for_rows(view.height, [&](Rows rows) {
     std::vector<float> nearest(static_cast<std::size_t>(view.width));
     for (int y = rows.first; y < rows.last; ++y) {
       std::fill(nearest.begin(), nearest.end(), 0.F);
-      for (const InversePlane& plane : planes) {
-        if (!is_in_front(plane)) continue;
+      for (const InversePlane& plane : visible) {
         // Along a row a plane's inverse depth changes evenly.
         const Eigen::Vector2d ray(-view.cx / view.fx, (y - view.cy) / view.fy);
         const auto first = static_cast<float>(plane.inverse_depth(ray));

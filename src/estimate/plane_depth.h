@@ -14,7 +14,7 @@ namespace diminish {
 /// `inverse` . x = 1, so that the inverse depth along a ray (x, y, 1) is `inverse` . ray.
 struct InversePlane {
   Eigen::Vector3d inverse = Eigen::Vector3d::Zero();  ///< 1/m
-  /// Where a convex part of the plane ends, in order; none: nowhere. All in front of the camera.
+  /// Where a convex part of the plane ends, in order; none: nowhere.
   std::vector<Eigen::Vector3d> corners = {};
 
   /// Through a point, with this normal.

@@ -81,6 +81,20 @@ TEST(PlaneDepth, APlaneMayEnd) {
   EXPECT_GT(inside, 300);
 }
 
+TEST(PlaneDepth, APartMayReachBehindTheCamera) {
+  const Intrinsics view{.width = 40, .height = 40, .fx = 40, .fy = 40, .cx = 19.5, .cy = 19.5};
+  // A floor from 3 m behind the camera to 2 m in front of it
+  InversePlane floor = InversePlane::through({0, 0.5, 0}, {0, -1, 0});
+  floor.corners = {{-5, 0.5, 2}, {5, 0.5, 2}, {5, 0.5, -3}, {-5, 0.5, -3}};
+  Image<std::uint16_t> depth(40, 40);
+  draw_planes({floor}, view, 0.0005, depth);
+  for (int y = 0; y < 40; ++y) {
+    const double z = y > view.cy ? 0.5 * view.fy / (y - view.cy) : 1e9;
+    for (int x = 0; x < 40; ++x)
+      ASSERT_NEAR(depth(x, y) * 0.0005, z <= 2 ? z : 0, 0.0004) << x << ' ' << y;
+  }
+}
+
 TEST(PlaneDepth, WhereThereIsNoPlaneNothingIsKnown) {
   const Intrinsics view{.width = 20, .height = 20, .fx = 20, .fy = 20, .cx = 9.5, .cy = 9.5};
   Image<std::uint16_t> depth(20, 20, 7);

@@ -51,7 +51,7 @@ TEST(Scene, EachWrongValueIsNamed) {
       {"world_marker: {id: 1, size: 1}\noccluders: []\n", "world_marker.size: unknown key"},
       {"marker_dictionary: [4]\noccluders: []\n", "marker_dictionary: expected a text"},
       {"occluders: [{name: a, detector: nose}]\n",
-       "scene.yaml:1: occluders[0].detector: expected one of box, color_blob, "},
+       "scene.yaml:1: occluders[0].detector: expected one of articulated, box, "},
       {"occluders: [{name: a, detector: mask}]\n", "occluders[0]: missing key 'color'"},
       {"occluder: []\n", "scene.yaml:1: occluder: unknown key, expected one of"},
   };
