@@ -22,6 +22,7 @@
 #include "diminish/color_corrector.h"
 #include "diminish/color_map.h"
 #include "diminish/config.h"
+#include "diminish/depth_estimator.h"
 #include "diminish/diminished_frame.h"
 #include "diminish/error.h"
 #include "diminish/export.h"
