@@ -52,7 +52,7 @@ void CameraChoice::mark_tiles(const Mask& mask, const Rect& objects) {
         const int y = row * tile_px + (i / places) * tile_px / places + tile_px / places / 2;
         shows_object = objects.contains(x, y) && mask(x, y) != 0;
       }
-      wanted_[static_cast<std::size_t>(row * tiles_.width + column)] = shows_object;
+      wanted_[tile_at(column, row)] = shows_object;
     }
   }
 }
@@ -85,7 +85,7 @@ void CameraChoice::look(const FrameSet& frame, const Poses& poses, const Occlusi
       const int column = static_cast<int>(std::floor(u / tile_px));
       const int row = static_cast<int>(std::floor(v / tile_px));
       if (!tiles_.contains(column, row)) continue;
-      const auto tile = static_cast<std::size_t>(row * tiles_.width + column);
+      const std::size_t tile = tile_at(column, row);
       if (!wanted_[tile]) continue;
       camera.worth[tile] = std::max(camera.worth[tile], freshness * alikeness(point, place));
     }

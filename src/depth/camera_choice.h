@@ -41,6 +41,10 @@ class CameraChoice {
     std::vector<float> worth;  ///< by tile
   };
 
+  std::size_t tile_at(int column, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(tiles_.width) +
+           static_cast<std::size_t>(column);
+  }
   void mark_tiles(const Mask& mask, const Rect& objects);
   void look(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks, std::size_t k);
 

@@ -136,7 +136,7 @@ void VisibleBlocks::find(ImageView<std::uint16_t> depth, const RigidTransform& c
   const auto pitch = depth.stride() / std::ptrdiff_t{sizeof(std::uint16_t)};
   for_rows(image_height_, [&](Rows rows) {
     Depths& depths = depths_[rows.band];
-    depths.nearest.resize(static_cast<std::size_t>(image_width_ + columns_ahead));
+    depths.nearest.resize(static_cast<std::size_t>(image_width_) + columns_ahead);
     depths.farthest.resize(depths.nearest.size());
     for (int row = rows.first / height; row * height < rows.last; ++row) {
       const Rect band = with_neighbours(0, row, depth.bounds());

@@ -48,7 +48,7 @@ InversePlane in_front(const InversePlane& plane) {
     const Eigen::Vector3d& to = plane.corners[(i + 1) % count];
     if (from.z() >= nearest_m) cut.corners.push_back(from);
     if ((from.z() >= nearest_m) == (to.z() >= nearest_m)) continue;
-    cut.corners.push_back(from + (nearest_m - from.z()) / (to.z() - from.z()) * (to - from));
+    cut.corners.emplace_back(from + (nearest_m - from.z()) / (to.z() - from.z()) * (to - from));
   }
   return cut;
 }
@@ -83,7 +83,8 @@ void draw_planes(const std::vector<InversePlane>& planes, const Intrinsics& view
       std::uint16_t* const row = depth.row(y);
       for (int x = 0; x < view.width; ++x) {
         const float inverse = nearest[static_cast<std::size_t>(x)];
-        row[x] = inverse > least ? static_cast<std::uint16_t>(1 / (inverse * unit) + 0.5F) : 0;
+        row[x] =
+            inverse > least ? static_cast<std::uint16_t>(std::lround(1 / (inverse * unit))) : 0;
       }
     }
   });

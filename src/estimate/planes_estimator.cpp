@@ -44,6 +44,7 @@ class PlanesEstimator final : public DepthEstimator {
     for (std::size_t k = 0; k < depths.size(); ++k) {
       if (!inputs.wanted[k]) continue;
       std::vector<InversePlane> planes;
+      planes.reserve(in_user.size());
       const RigidTransform& user_from_depth = *inputs.poses.color_from_depth[k];
       for (const InversePlane& plane : in_user) {
         planes.push_back(transformed(plane, user_from_depth));

@@ -150,7 +150,7 @@ TEST(Rig, EachWrongValueIsNamed) {
       {"name: rgbd0", "name: a/b", "rig.yaml:3: rgbd[0].name: expected a name that a folder can"},
       {"name: rgbd0", "name: ..", "rig.yaml:3: rgbd[0].name: "},
       {"name: rgbd0", "name: ''", "rig.yaml:3: rgbd[0].name: "},
-      {"name: rgbd0", "name: \"a\\nb\"", "rig.yaml:3: rgbd[0].name: "},
+      {"name: rgbd0", R"(name: "a\nb")", "rig.yaml:3: rgbd[0].name: "},
       {"name: rgbd0", "name: color", "rgbd[0].name: expected another name than 'color'"},
       {"rgbd:\n", "others:\n", "rig.yaml:2: others: unknown key"},
       {"rgbd:\n", "pose: {source: []}\nrgbd:\n", "pose.source: expected a text, got a list"},

@@ -99,7 +99,7 @@ void CandidateChoice::choose(const FineViews& views, const SweepPlanes& planes,
   for_rows(height, [&](Rows rows) {
     Scratch& scratch = scratch_[rows.band];
     for (auto& columns : scratch.columns) {
-      columns.assign(static_cast<std::size_t>(width + 2 * reach), 0);
+      columns.assign(static_cast<std::size_t>(width) + std::size_t{2} * reach, 0);
     }
     for (auto& sums : scratch.sums) sums.resize(static_cast<std::size_t>(width));
     for (int y = rows.first; y < rows.last; ++y) {

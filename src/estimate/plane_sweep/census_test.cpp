@@ -32,13 +32,13 @@ std::uint32_t code_of(const Image<std::uint8_t>& grey, int x, int y) {
 }
 
 TEST(Census, ComparesEachPixelWithThoseAroundIt) {
-  for (const auto& [width, height] : {std::pair{61, 37}, {5, 5}, {4, 9}, {1, 1}, {130, 70}}) {
-    const Image<std::uint8_t> grey = picture(width, height);
+  for (const auto& size : {std::pair{61, 37}, {5, 5}, {4, 9}, {1, 1}, {130, 70}}) {
+    const Image<std::uint8_t> grey = picture(size.first, size.second);
     testing::on_each_vector_target([&] {
-      Image<std::uint32_t> codes(width, height, 7);
+      Image<std::uint32_t> codes(grey.width(), grey.height(), 7);
       census(grey, grey.bounds(), codes);
-      for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x)
+      for (int y = 0; y < grey.height(); ++y) {
+        for (int x = 0; x < grey.width(); ++x)
           ASSERT_EQ(codes(x, y), code_of(grey, x, y)) << x << ' ' << y;
       }
     });

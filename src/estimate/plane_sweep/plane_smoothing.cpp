@@ -63,9 +63,10 @@ void PlaneSmoothing::smooth(float tolerance, int widest_px, Image<float>& invers
         float* const out = between_.row(y);
         std::copy_n(row, width, out);
         const int inner = width - 4 * step;
+        const std::ptrdiff_t first = std::ptrdiff_t{2} * step;
         if (inner <= 0) continue;
         HWY_DYNAMIC_DISPATCH(SmoothRow)
-        (row + 2 * step, step, inner, per_tolerance, out + 2 * step);
+        (row + first, step, inner, per_tolerance, out + first);
       }
     });
     for_rows(height, [&](Rows rows) {

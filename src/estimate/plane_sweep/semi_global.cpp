@@ -178,7 +178,7 @@ class PathCosts {
     // Nothing was paid before the first pixel.
     std::fill_n(here(1), pitch_, std::uint8_t{0});
   }
-  std::uint8_t* here(int i) { return memory_ + (i % 2) * path_pitch(pitch_) + block; }
+  std::uint8_t* here(int i) { return memory_ + std::ptrdiff_t{i % 2} * path_pitch(pitch_) + block; }
   std::uint8_t* before(int i) { return here(i + 1); }
 
  private:

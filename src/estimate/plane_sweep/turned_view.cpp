@@ -150,7 +150,7 @@ void halve(const TurnedView& view, TurnedView& small) {
     const std::uint8_t* const upper = view.grey.row(2 * y);
     const std::uint8_t* const lower = view.grey.row(2 * y + 1);
     std::uint8_t* const means = small.grey.row(y);
-    for (int x = 0; x < small.window.width; ++x) {
+    for (std::ptrdiff_t x = 0; x < small.window.width; ++x) {
       const int a = upper[2 * x];
       const int b = upper[2 * x + 1];
       const int c = lower[2 * x];
