@@ -98,8 +98,8 @@ void plane_sweep_beside_sgbm(benchmark::State& state, int mode) {
   const Intrinsics& view = pair.left.depth;
   GreyPicture left(pair.left.color, 2);
   GreyPicture right(pair.right.color, 2);
-  left.take(pair.pictures[0], Mask(pair.left.color.width, pair.left.color.height, 0));
-  right.take(pair.pictures[1], Mask(pair.right.color.width, pair.right.color.height, 0));
+  left.take(pair.pictures[0]);
+  right.take(pair.pictures[1]);
   PlaneSweep sweep(view);
   Image<float> inverse_depth;
 

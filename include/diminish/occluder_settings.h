@@ -90,10 +90,10 @@ class DIMINISH_EXPORT ArticulatedSettings : public OccluderSettings {
   std::filesystem::path angles;  ///< "timestamp position ..", radians or metres
   RigidTransform world_from_base;
   double tolerance_s = 0.1;  ///< the list must say something so near to a picture's moment
-  std::vector<std::filesystem::path> meshes;  ///< that the chain names
 
   void check(const Config& place, const Rig* rig) const override;
   bool needs_world() const override { return true; }
+  /// Reads the chain, whose meshes are among them.
   std::vector<std::filesystem::path> files() const override;
 };
 

@@ -108,10 +108,6 @@ std::shared_ptr<const OccluderSettings> read_settings(const Config& place) {
   if (const Config tolerance = place.find("tolerance_s"); tolerance.exists()) {
     settings->tolerance_s = tolerance.positive_number();
   }
-  const KinematicChain chain = KinematicChain::load(settings->chain);
-  for (const KinematicChain::Link& link : chain.links()) {
-    settings->meshes.push_back(link.mesh);
-  }
   return settings;
 }
 
@@ -121,4 +117,12 @@ const bool registered = Registry<OccluderDetector>::add(
                     }});
 
 }  // namespace
+
+std::vector<std::filesystem::path> ArticulatedSettings::files() const {
+  std::vector<std::filesystem::path> files = {chain, angles};
+  const KinematicChain read = KinematicChain::load(chain);
+  for (const KinematicChain::Link& link : read.links()) files.push_back(link.mesh);
+  return files;
+}
+
 }  // namespace diminish

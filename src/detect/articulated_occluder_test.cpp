@@ -80,19 +80,20 @@ TEST(ArticulatedOccluder, NamesTheFilesOfACopy) {
   EXPECT_EQ(arm.spec.settings->files().size(), 8U);
 }
 
-TEST(ArticulatedOccluder, MissingFilesAreNamed) {
+TEST(ArticulatedOccluder, WhatIsWrongWithItsFilesIsNamed) {
   const TemporaryFolder folder;
-  const auto scene = [&](const std::string& chain) {
+  const auto complaint = [&](const std::string& chain, const std::string& angles) {
     std::ofstream(folder.path() / "arm.yaml") << chain;
+    std::ofstream(folder.path() / "angles.txt") << angles;
     return error_of([&] {
-      read_scene(
-          Config::parse("world_marker: {id: 0, size_m: 0.2}\noccluders:\n  - {name: arm, detector: "
-                        "articulated, chain: " +
-                            (folder.path() / "arm.yaml").string() + ", angles: none.txt}\n",
-                        "scene.yaml"));
+      make_detector("{name: arm, detector: articulated, chain: arm.yaml, angles: angles.txt}",
+                    Arm().recording.rig, folder.path() / "scene.yaml");
     });
   };
-  EXPECT_THAT(scene("links: []\n"), HasSubstr("links"));
+  const std::string link = "links: [{name: base, mesh: base.obj}]\n";
+  EXPECT_THAT(complaint("links: []\n", "1\n"), HasSubstr("arm.yaml:1: links"));
+  EXPECT_THAT(complaint(link, "1 2\n"), HasSubstr("angles.txt:1: expected a timestamp and the"));
+  EXPECT_THAT(complaint(link, "1\n"), HasSubstr("base.obj"));
 }
 
 }  // namespace

@@ -55,7 +55,9 @@ class StereoEstimator final : public DepthEstimator {
       if (cameras_[k].partner) sweep(inputs, k);
     });
     for_tasks(cameras_.size(), [&](std::size_t k) {
-      if (cameras_[k].partner) write(k, depths[k]);
+      if (!cameras_[k].partner) return;
+      write(k, depths[k]);
+      complete(k, depths[k]);
     });
   }
 
@@ -70,6 +72,7 @@ class StereoEstimator final : public DepthEstimator {
     std::optional<RigidTransform> user_from_color = {};  ///< unknown: it has no picture, or no pose
     std::optional<std::size_t> partner = {};
     Image<float> inverse_depth = {};
+    Image<std::uint16_t> confirmed = {};
   };
 
   void begin(const Inputs& inputs, std::size_t k) {
@@ -79,7 +82,8 @@ class StereoEstimator final : public DepthEstimator {
     camera.user_from_color.reset();
     if (!user_from_depth || !rgbd.has_picture()) return;
     camera.user_from_color = *user_from_depth * camera.rig.color_from_depth.inverse();
-    camera.picture.take(rgbd.color, inputs.masks.rgbd_color[k]);
+    // Objects are surfaces as well: it is for others to leave them out.
+    camera.picture.take(rgbd.color);
   }
 
   RigidTransform other_from(std::size_t k, std::size_t other) const {
@@ -133,6 +137,39 @@ class StereoEstimator final : public DepthEstimator {
             continue;
           const float value = std::round(per_unit / inverse_depth);
           if (value < 65536) depth(x, y) = static_cast<std::uint16_t>(value);
+        }
+      }
+    });
+  }
+
+  /// Writes what the partner does not see, or not well, but enough of what is known around it lies
+  /// at the same depth.
+  void complete(std::size_t k, Image<std::uint16_t>& depth) {
+    Camera& camera = cameras_[k];
+    Image<std::uint16_t>& known = camera.confirmed;
+    known = depth;
+    const Rect part = intersect(camera.sweep.swept(), camera.rig.depth.bounds());
+    const auto unit = static_cast<float>(camera.rig.depth_unit_m);
+    // Of 24 places around a pixel
+    constexpr int reach = 6;
+    constexpr int apart = 3;
+    constexpr int enough = 5;
+    const float tolerance = 2 * camera.sweep.step_of_pixel();
+    for_rows(part.height, [&](Rows rows) {
+      for (int y = part.y + rows.first; y < part.y + rows.last; ++y) {
+        for (int x = part.x; x < part.right(); ++x) {
+          const float own = camera.inverse_depth(x, y);
+          if (known(x, y) != 0 || !(own > 0)) continue;
+          int agree = 0;
+          for (int dy = -reach; dy <= reach; dy += apart) {
+            for (int dx = -reach; dx <= reach; dx += apart) {
+              if (!part.contains(x + dx, y + dy) || known(x + dx, y + dy) == 0) continue;
+              const float other = 1 / (static_cast<float>(known(x + dx, y + dy)) * unit);
+              agree += std::abs(other - own) < tolerance ? 1 : 0;
+            }
+          }
+          if (agree < enough) continue;
+          depth(x, y) = static_cast<std::uint16_t>(std::lround(1 / (own * unit)));
         }
       }
     });

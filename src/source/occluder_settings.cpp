@@ -106,12 +106,6 @@ void ArticulatedSettings::check(const Config& place, const Rig*) const {
   }
 }
 
-std::vector<std::filesystem::path> ArticulatedSettings::files() const {
-  std::vector<std::filesystem::path> files = {chain, angles};
-  files.insert(files.end(), meshes.begin(), meshes.end());
-  return files;
-}
-
 void DifferenceSettings::check(const Config& place, const Rig* rig) const {
   if (!(clearance >= 0.05 && clearance <= 0.95)) {
     place.find("clearance").fail("expected a number from 0.05 to 0.95");

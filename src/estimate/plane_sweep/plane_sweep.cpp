@@ -89,8 +89,10 @@ void PlaneSweep::sweep(const GreyPicture& reference, const GreyPicture& other,
   refine(parallax.within(reference_.window, other_.window));
   const Rect inside = intersect(wanted, view_.bounds());
   for (int y = inside.y; y < inside.bottom(); ++y) {
-    std::copy_n(fine_.row(y - wanted.y) + (inside.x - wanted.x), inside.width,
-                inverse_depth.row(y) + inside.x);
+    const float* const found = fine_.row(y - wanted.y) + (inside.x - wanted.x);
+    const std::uint8_t* const grey = reference_.grey.row(y - wanted.y) + (inside.x - wanted.x);
+    float* const row = inverse_depth.row(y) + inside.x;
+    for (int x = 0; x < inside.width; ++x) row[x] = grey[x] == unknown_grey ? 0 : found[x];
   }
 }
 

@@ -95,23 +95,16 @@ std::uint8_t look_up(const Image<std::uint8_t>& pixels, float u, float v) {
 GreyPicture::GreyPicture(const Intrinsics& camera, int shrinkage)
     : projection_(Lens(shrunk_camera(camera, shrinkage))), shrinkage_(shrinkage) {}
 
-void GreyPicture::take(ImageView<Bgr> picture, const Mask& objects) {
+void GreyPicture::take(ImageView<Bgr> picture) {
   const Rect small = shrunk_bounds(picture, shrinkage_);
   shrink(picture, shrinkage_, small, scratch_, small_);
   pixels_.resize(small.width, small.height);
-  const Rect box = bounding_box(objects);
   for (int y = 0; y < small.height; ++y) {
     const Bgr* const color = small_.row(y);
     std::uint8_t* const grey = pixels_.row(y);
     for (int x = 0; x < small.width; ++x) {
       const int level = (29 * color[x].b + 150 * color[x].g + 77 * color[x].r + 128) >> 8;
       grey[x] = static_cast<std::uint8_t>(std::max(1, level));
-    }
-    const int above = y * shrinkage_;
-    if (above + shrinkage_ <= box.y || above >= box.bottom()) continue;
-    const std::uint8_t* const object = objects.row(above + shrinkage_ / 2);
-    for (int x = 0; x < small.width; ++x) {
-      if (object[x * shrinkage_ + shrinkage_ / 2] != 0) grey[x] = unknown_grey;
     }
   }
 }

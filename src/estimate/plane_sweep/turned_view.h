@@ -10,13 +10,13 @@
 
 namespace diminish {
 
-/// A picture's brightness, made smaller by a whole factor, and the objects in it.
+/// A picture's brightness, made smaller by a whole factor.
 class GreyPicture {
  public:
   GreyPicture(const Intrinsics& camera, int shrinkage);
 
-  /// objects: of the picture's size; what shows an object becomes unknown_grey. Cost: one pass.
-  void take(ImageView<Bgr> picture, const Mask& objects);
+  /// Cost: one pass.
+  void take(ImageView<Bgr> picture);
 
   const Image<std::uint8_t>& pixels() const { return pixels_; }
   /// Of the small picture.
@@ -34,7 +34,7 @@ class GreyPicture {
 struct TurnedView {
   /// In pixels of that camera's picture; it may reach beyond its borders.
   Rect window;
-  /// unknown_grey where the picture that it is made of shows nothing, or an object.
+  /// unknown_grey where the picture that it is made of shows nothing.
   Image<std::uint8_t> grey;
 };
 
