@@ -42,6 +42,13 @@ class DIMINISH_EXPORT OccluderDetector {
   /// Whether `Observation::markers` must be filled.
   virtual bool needs_markers() const { return false; }
 
+  /// Whether it keeps something from frame to frame. It then gets the frames of a sequence in their
+  /// order, also where several pipelines share the frames.
+  virtual bool needs_order() const { return false; }
+  /// If it needs order: takes over what `other`, which finds the same object in other frames of the
+  /// same sequence, keeps from frame to frame. Only one of them is called at a time.
+  virtual void share(OccluderDetector& other) { static_cast<void>(other); }
+
   /// Sets the object's pixels in `masks` to 255 and leaves the others alone. `masks` has the rig's
   /// sizes. Leaves cameras without images in this frame alone too.
   virtual OccluderReport detect(const Observation& observation, OcclusionMasks& masks) = 0;

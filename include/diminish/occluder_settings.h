@@ -77,6 +77,12 @@ class DIMINISH_EXPORT OnnxSettings : public OccluderSettings {
   Layout layout = Layout::nchw;
   std::vector<int> classes = {1};  ///< the object's; of no meaning with one channel
   double threshold = 0.5;
+  /// It runs in every n-th picture only; in between, and until it has answered, the last answer is
+  /// carried by the pixels' motion.
+  int every = 1;
+  double steady = 0;  ///< the share of the answer before in an answer, 0 to 0.9
+
+  static constexpr int greatest_every = 100;
 
   void check(const Config& place, const Rig* rig) const override;
   std::vector<std::filesystem::path> files() const override { return {model}; }

@@ -20,6 +20,7 @@ OccluderStage::OccluderStage(const Rig& rig, const Scene& scene) : rig_(rig) {
   for (const OccluderSpec& spec : scene.occluders) {
     detectors_.push_back(Detectors::get(spec.detector).make(spec, rig));
     names_.push_back(spec.name);
+    needs_order_ = needs_order_ || detectors_.back()->needs_order();
   }
   shared_->tracks.resize(detectors_.size());
   drawings_.resize(1 + 2 * rig.rgbd.size());
@@ -37,6 +38,11 @@ bool OccluderStage::needs_markers() const {
                      [](const auto& detector) { return detector->needs_markers(); });
 }
 
+void OccluderStage::share(OccluderStage& other) {
+  shared_ = other.shared_;
+  for (std::size_t i = 0; i < detectors_.size(); ++i) detectors_[i]->share(*other.detectors_[i]);
+}
+
 void OccluderStage::draw_by(const std::string& drawer) {
   if (drawer == drawer_name_) return;
   drawer_name_ = drawer;
@@ -51,7 +57,7 @@ void OccluderStage::detect(const Observation& observation, std::vector<OccluderR
   reports.resize(detectors_.size());
   const std::vector<std::string> kept = kept_objects(observation.options);
   const bool remembers = observation.options.memory != "off";
-  if (remembers) turn_.wait(shared_->turns);
+  if (remembers || needs_order_) turn_.wait(shared_->turns);
   for (std::size_t i = 0; i < detectors_.size(); ++i) {
     OccluderReport& report = reports[i];
     auto* const shape = dynamic_cast<ShapeDetector*>(detectors_[i].get());

@@ -13,8 +13,8 @@
 namespace diminish {
 
 /// Finds all of a scene's objects to remove. With the option `memory`, one that nobody sees for a
-/// moment is continued by its motion: several stages then share what they know of it, and each,
-/// with a frame of the same sequence, takes its turn.
+/// moment is continued by its motion; some detectors keep something themselves. Several stages then
+/// share what they know, and each, with a frame of the same sequence, takes its turn.
 class OccluderStage {
  public:
   /// Throws Error on unknown detectors and wrong settings.
@@ -27,14 +27,15 @@ class OccluderStage {
   /// next frame tries again, then ever later ones.
   void draw_by(const std::string& drawer);
 
-  void share(OccluderStage& other) { shared_ = other.shared_; }
+  /// Of the same scene.
+  void share(OccluderStage& other);
   void take_turn() { turn_.take(shared_->turns); }
   /// Does nothing if there is none.
   void end_turn() { turn_.end(); }
 
-  /// With the option `memory`, waits for its turn. Ends it. Replaces the masks by the union of all
-  /// objects' masks in this frame, grown by the options' margins, and `reports` by one report for
-  /// each object. Objects in the option `keep` are not looked for.
+  /// Waits for its turn, if what it knows of other frames matters. Ends it. Replaces the masks by
+  /// the union of all objects' masks in this frame, grown by the options' margins, and `reports` by
+  /// one report for each object. Objects in the option `keep` are not looked for.
   void detect(const Observation& observation, std::vector<OccluderReport>& reports);
 
   const OcclusionMasks& masks() const { return masks_; }
@@ -59,6 +60,7 @@ class OccluderStage {
   Rig rig_;
   std::vector<std::unique_ptr<OccluderDetector>> detectors_;
   std::vector<std::string> names_;  ///< of the objects
+  bool needs_order_ = false;        ///< does one of the detectors?
   std::shared_ptr<Shared> shared_ = std::make_shared<Shared>();
   Turn turn_;
   OcclusionOutlines outlines_;

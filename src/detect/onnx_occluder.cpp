@@ -1,183 +1,58 @@
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <limits>
-#include <opencv2/core/utils/logger.hpp>
-#include <opencv2/dnn.hpp>
-#include <opencv2/imgproc.hpp>
-#include <optional>
 #include <vector>
 
-#include "core/mat.h"
 #include "core/tasks.h"
+#include "detect/segment/depth_outline.h"
+#include "detect/segment/segmentation.h"
 #include "diminish/occluder_detector.h"
 #include "diminish/occluder_settings.h"
 
 namespace diminish {
 namespace {
 
-/// OpenCV would print what it throws.
-class Quiet {
- public:
-  Quiet() : before_(cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT)) {}
-  ~Quiet() { cv::utils::logging::setLogLevel(before_); }
-  Quiet(const Quiet&) = delete;
-  Quiet& operator=(const Quiet&) = delete;
-
- private:
-  cv::utils::logging::LogLevel before_;
-};
-
-/// A segmentation network. Used by one thread at a time.
-class Network {
- public:
-  /// Tries it. Throws Error that names the file.
-  Network(const OnnxSettings& settings, const Config& place) : settings_(settings) {
-    const Quiet quiet;
-    try {
-      net_ = cv::dnn::readNetFromONNX(settings.model.string());
-    } catch (const cv::Exception& error) {
-      place.find("model").fail("cannot be read: " + settings.model.string() + ": " +
-                               first_line(error) +
-                               "; expected an ONNX file that OpenCV's DNN "
-                               "module supports");
-    }
-    net_.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
-    cv::Mat output;
-    try {
-      output = forward(cv::Mat(settings.height, settings.width, CV_8UC3, cv::Scalar()));
-    } catch (const cv::Exception& error) {
-      place.find("model").fail(fmt::format("{}: does not take a picture of {}x{} pixels: {}",
-                                           settings.model.string(), settings.width, settings.height,
-                                           first_line(error)));
-    }
-    const std::string wrong = shape_error(output);
-    if (!wrong.empty()) place.find("model").fail(settings.model.string() + ": " + wrong);
-  }
-
-  /// Sets the object's pixels in the mask; returns whether there are any.
-  bool segment(ImageView<Bgr> picture, Mask& mask) {
-    const cv::Mat output = forward(as_mat(picture));
-    const Shape shape = shape_of(output);
-    find_margin(output, shape);
-    cv::resize(margin_, enlarged_, cv::Size(picture.width(), picture.height()), 0, 0,
-               cv::INTER_LINEAR);
-    bool any = false;
-    for (int y = 0; y < mask.height(); ++y) {
-      const auto* const margin = enlarged_.ptr<float>(y);
-      std::uint8_t* const row = mask.row(y);
-      for (int x = 0; x < mask.width(); ++x) {
-        if (!(margin[x] > 0)) continue;
-        row[x] = 255;
-        any = true;
-      }
-    }
-    return any;
-  }
-
- private:
-  /// Of the output.
-  struct Shape {
-    int channels = 0, height = 0, width = 0;
-  };
-
-  static std::string first_line(const cv::Exception& error) {
-    return error.err.substr(0, error.err.find('\n'));
-  }
-
-  cv::Mat forward(const cv::Mat& picture) {
-    const Eigen::Vector3d& mean = settings_.mean;
-    const cv::Scalar in_order = settings_.is_bgr ? cv::Scalar(mean.z(), mean.y(), mean.x())
-                                                 : cv::Scalar(mean.x(), mean.y(), mean.z());
-    cv::dnn::blobFromImage(picture, input_, settings_.scale,
-                           cv::Size(settings_.width, settings_.height), in_order, !settings_.is_bgr,
-                           false, CV_32F);
-    if (settings_.layout == OnnxSettings::Layout::nhwc) {
-      cv::Mat channels_last;
-      cv::transposeND(input_, {0, 2, 3, 1}, channels_last);
-      input_ = channels_last;
-    }
-    net_.setInput(input_);
-    return net_.forward();
-  }
-
-  /// All 0 if it is no picture.
-  Shape shape_of(const cv::Mat& output) const {
-    const auto size = [&](int i) { return output.size[i]; };
-    if (output.type() != CV_32F) return {};
-    if (output.dims == 2) return {1, size(0), size(1)};
-    if (output.dims == 3 && size(0) == 1) return {1, size(1), size(2)};
-    if (output.dims != 4 || size(0) != 1) return {};
-    if (settings_.layout == OnnxSettings::Layout::nhwc) return {size(3), size(1), size(2)};
-    return {size(1), size(2), size(3)};
-  }
-
-  std::string shape_error(const cv::Mat& output) const {
-    const Shape shape = shape_of(output);
-    if (shape.channels == 0) {
-      std::string sizes;
-      for (int i = 0; i < output.dims; ++i) {
-        sizes += (i > 0 ? "x" : "") + std::to_string(output.size[i]);
-      }
-      return "expected an output of 1 x classes x rows x columns, got " + sizes;
-    }
-    const int greatest = *std::max_element(settings_.classes.begin(), settings_.classes.end());
-    if (shape.channels > 1 && greatest >= shape.channels) {
-      return fmt::format("has {} classes, from 0 on; expected a class {}", shape.channels,
-                         greatest);
-    }
-    return {};
-  }
-
-  /// By how much the object wins in each pixel of the output.
-  void find_margin(const cv::Mat& output, const Shape& shape) {
-    const auto* const values = output.ptr<float>();
-    const bool channels_last = settings_.layout == OnnxSettings::Layout::nhwc;
-    const std::ptrdiff_t pixels = std::ptrdiff_t{shape.height} * shape.width;
-    margin_.create(shape.height, shape.width, CV_32F);
-    auto* const margin = margin_.ptr<float>();
-    for (std::ptrdiff_t i = 0; i < pixels; ++i) {
-      if (shape.channels == 1) {
-        margin[i] = values[i] - static_cast<float>(settings_.threshold);
-        continue;
-      }
-      float object = -std::numeric_limits<float>::infinity();
-      float other = object;
-      for (int c = 0; c < shape.channels; ++c) {
-        const float value = values[channels_last ? i * shape.channels + c : c * pixels + i];
-        const bool is_object = std::find(settings_.classes.begin(), settings_.classes.end(), c) !=
-                               settings_.classes.end();
-        (is_object ? object : other) = std::max(is_object ? object : other, value);
-      }
-      // All classes may be the object's.
-      margin[i] = std::min(object - other, std::numeric_limits<float>::max());
-    }
-  }
-
-  OnnxSettings settings_;
-  cv::dnn::Net net_;
-  cv::Mat input_, margin_, enlarged_;
-};
-
 /// What a segmentation network finds, in all cameras' pictures, each for itself.
 class OnnxOccluder : public OccluderDetector {
  public:
   OnnxOccluder(const OccluderSpec& spec, const Rig& rig) : name_(spec.name) {
     const auto& settings = settings_of<OnnxSettings>(spec);
-    for (std::size_t i = 0; i <= rig.rgbd.size(); ++i) networks_.emplace_back(settings, spec.place);
+    needs_order_ = settings.every > 1 || settings.steady > 0;
+    const auto add = [&](const Intrinsics& camera) {
+      networks_->push_back(std::make_unique<Segmentation>(settings, spec.place,
+                                                          cv::Size(camera.width, camera.height)));
+    };
+    add(rig.color);
+    for (const RgbdCamera& camera : rig.rgbd) {
+      add(camera.color);
+      outlines_.emplace_back(camera);
+      in_rgbd_.emplace_back(camera.color.width, camera.color.height);
+      // Half a pixel of the network's input on either side, and as much again for its blur.
+      error_px_.push_back(static_cast<float>(camera.color.width) /
+                          static_cast<float>(settings.width));
+      measures_depth_.push_back(camera.measures_depth ? 1 : 0);
+    }
+  }
+
+  bool needs_order() const override { return needs_order_; }
+  void share(OccluderDetector& other) override {
+    if (needs_order_) networks_ = dynamic_cast<OnnxOccluder&>(other).networks_;
   }
 
   OccluderReport detect(const Observation& observation, OcclusionMasks& masks) override {
     const FrameSet& frame = observation.frame;
     OccluderReport report;
     report.name = name_;
-    found_.assign(networks_.size(), 0);
-    for_tasks(networks_.size(), [&](std::size_t i) {
+    found_.assign(networks_->size(), 0);
+    for_tasks(networks_->size(), [&](std::size_t i) {
+      Segmentation& network = *(*networks_)[i];
+      bool any = false;
       if (i == 0) {
-        found_[i] = !frame.color.empty() && networks_[i].segment(frame.color, masks.color) ? 1 : 0;
-      } else if (frame.rgbd[i - 1].available()) {
-        found_[i] = networks_[i].segment(frame.rgbd[i - 1].color, masks.rgbd_color[i - 1]) ? 1 : 0;
+        any = !frame.color.empty() && network.segment(frame.color, frame.stamp_s, masks.color);
+      } else if (frame.rgbd[i - 1].has_picture()) {
+        const RgbdFrame& rgbd = frame.rgbd[i - 1];
+        any = network.segment(rgbd.color, frame.stamp_s, in_rgbd_[i - 1]);
+        if (any) add_rgbd(i - 1, rgbd, observation.options, masks.rgbd_color[i - 1]);
       }
+      found_[i] = any ? 1 : 0;
     });
     report.in_color = found_[0] != 0;
     report.in_rgbd.assign(found_.begin() + 1, found_.end());
@@ -185,14 +60,37 @@ class OnnxOccluder : public OccluderDetector {
   }
 
  private:
+  /// Adds what was found to the masks, its outline by the depth; clears it for the next frame.
+  void add_rgbd(std::size_t k, const RgbdFrame& rgbd, const Options& options, Mask& mask) {
+    Mask& found = in_rgbd_[k];
+    if (measures_depth_[k] && rgbd.available()) {
+      outlines_[k].refine(rgbd.depth, error_px_[k],
+                          static_cast<float>(options.discontinuity_threshold_m), found);
+    }
+    for (int y = 0; y < mask.height(); ++y) {
+      std::uint8_t* const row = found.row(y);
+      std::uint8_t* const into = mask.row(y);
+      for (int x = 0; x < mask.width(); ++x) into[x] |= row[x];
+      std::fill_n(row, mask.width(), std::uint8_t{0});
+    }
+  }
+
+  using Networks = std::vector<std::unique_ptr<Segmentation>>;
+
   std::string name_;
-  std::vector<Network> networks_;  ///< of the colour camera, and of each RGB-D camera
-  std::vector<char> found_;        ///< by image; not std::vector<bool>, whose elements share bytes
+  bool needs_order_ = false;
+  /// Of the colour camera, and of each RGB-D camera.
+  std::shared_ptr<Networks> networks_ = std::make_shared<Networks>();
+  std::vector<DepthOutline> outlines_;  ///< of each RGB-D camera, as are the next three
+  std::vector<float> error_px_;
+  std::vector<char> measures_depth_;
+  std::vector<Mask> in_rgbd_;
+  std::vector<char> found_;  ///< by image; not std::vector<bool>, whose elements share bytes
 };
 
 std::shared_ptr<const OccluderSettings> read_settings(const Config& place) {
   place.expect_keys({"name", "detector", "model", "size", "scale", "mean", "channels", "layout",
-                     "classes", "threshold"});
+                     "classes", "threshold", "every", "steady"});
   auto settings = std::make_shared<OnnxSettings>();
   settings->model = place.at("model").path();
   const std::vector<double> size = place.at("size").numbers(2);
@@ -220,6 +118,10 @@ std::shared_ptr<const OccluderSettings> read_settings(const Config& place) {
     }
   });
   if_there("threshold", [&](const Config& value) { settings->threshold = value.number(); });
+  if_there("every", [&](const Config& value) {
+    settings->every = value.integer(1, OnnxSettings::greatest_every);
+  });
+  if_there("steady", [&](const Config& value) { settings->steady = value.number(); });
   return settings;
 }
 

@@ -100,6 +100,8 @@ TEST_F(OnnxOccluderTest, WrongModelsAndSettingsAreOneLine) {
   EXPECT_THAT(error_with("size: [4, 128]"), HasSubstr("s.yaml:4: size"));
   EXPECT_THAT(error_with(size + "\nchannels: yuv"), HasSubstr("s.yaml:5: channels"));
   EXPECT_THAT(error_with(size + "\nscale: -1"), HasSubstr("s.yaml:5: scale"));
+  EXPECT_THAT(error_with(size + "\nevery: 0"), HasSubstr("s.yaml:5: every"));
+  EXPECT_THAT(error_with(size + "\nsteady: 2"), HasSubstr("s.yaml:5: steady"));
 }
 
 }  // namespace

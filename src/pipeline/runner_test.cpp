@@ -11,7 +11,10 @@
 #include <set>
 
 #include "diminish/error.h"
+#include "diminish/occluder_settings.h"
+#include "onnx_model.h"
 #include "paths.h"
+#include "temporary_folder.h"
 
 namespace diminish {
 namespace {
@@ -31,6 +34,7 @@ class MemorySink : public FrameSink {
     names.push_back(result.name);
     pictures.push_back(result.picture);
     provenances.push_back(result.provenance);
+    masks.push_back(result.mask);
     reconstructions.push_back(result.reconstruction.color);
   }
 
@@ -38,6 +42,7 @@ class MemorySink : public FrameSink {
   std::vector<std::string> names;
   std::vector<Image<Bgr>> pictures;
   std::vector<Image<std::uint8_t>> provenances;
+  std::vector<Mask> masks;
   std::vector<Image<Bgra>> reconstructions;
 
  private:
@@ -89,6 +94,36 @@ TEST_F(Runner, RemembersTheSameWhateverTheNumberOfThreads) {
     }
     EXPECT_EQ(sink.pictures, expected.pictures) << threads;
     EXPECT_EQ(sink.provenances, expected.provenances) << threads;
+  }
+}
+
+// So are the answers of a network that looks at every second picture only.
+TEST_F(Runner, CarriesANetworksAnswersTheSameWhateverTheNumberOfThreads) {
+  const TemporaryFolder folder;
+  testing::OnnxModel::write(folder.path() / "m.onnx", {{-1, 0.5F, 0.5F}}, {0}, 160, 96);
+  const auto settings = std::make_shared<OnnxSettings>();
+  settings->model = folder.path() / "m.onnx";
+  settings->width = 160;
+  settings->height = 96;
+  settings->threshold = 0.1;
+  settings->every = 2;
+  settings->steady = 0.3;
+  Recording calendar = load_recording(recordings / "calendar");
+  calendar.scene.occluders = {{.name = "blue", .detector = "onnx", .settings = settings}};
+  MemorySink expected;
+  for (const int threads : {1, 3}) {
+    MemorySink sink;
+    const auto source = open_recording(calendar, {});
+    run(*source, calendar.rig, calendar.scene, {}, sink, {.threads = threads});
+    if (threads == 1) {
+      expected.masks = sink.masks;
+      expected.pictures = sink.pictures;
+      ASSERT_EQ(expected.masks.size(), 5U);
+      EXPECT_GT(count_equal(expected.masks[4], 255, expected.masks[4].bounds()), 100U);
+      EXPECT_NE(expected.masks[4], expected.masks[2]);
+    }
+    EXPECT_EQ(sink.masks, expected.masks) << threads;
+    EXPECT_EQ(sink.pictures, expected.pictures) << threads;
   }
 }
 

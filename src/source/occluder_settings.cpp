@@ -1,6 +1,8 @@
 #include "diminish/occluder_settings.h"
 
+#include <fmt/format.h>
 #include <Eigen/QR>
+
 #include <algorithm>
 #include <cmath>
 
@@ -95,6 +97,13 @@ void OnnxSettings::check(const Config& place, const Rig*) const {
     place.find("classes").fail("expected numbers from 0 on");
   }
   if (!std::isfinite(threshold)) place.find("threshold").fail("expected a number");
+  if (every < 1 || every > greatest_every) {
+    place.find("every").fail(fmt::format("expected a whole number, 1 to {}", greatest_every));
+  }
+  constexpr double steadiest = 0.9;
+  if (!(steady >= 0 && steady <= steadiest)) {
+    place.find("steady").fail(fmt::format("expected a number from 0 to {}", steadiest));
+  }
 }
 
 void ArticulatedSettings::check(const Config& place, const Rig*) const {
