@@ -24,10 +24,10 @@ py::dict report_of(const Frame& frame) {
   return py::dict(py::arg("objects") = objects, py::arg("mask_pixels") = report.mask_pixels,
                   py::arg("seen_pixels") = report.valid_pixels - report.remembered_pixels,
                   py::arg("remembered_pixels") = report.remembered_pixels,
-                  py::arg("invented_pixels") = report.missing_pixels,
-                  py::arg("milliseconds") = stages, py::arg("frame_ms") = report.frame_ms,
-                  py::arg("skipped") = report.skipped, py::arg("faults") = report.faults,
-                  py::arg("messages") = report.messages);
+                  py::arg("invented_pixels") = report.missing_pixels, py::arg("fit") = report.fit,
+                  py::arg("in_doubt") = report.in_doubt, py::arg("milliseconds") = stages,
+                  py::arg("frame_ms") = report.frame_ms, py::arg("skipped") = report.skipped,
+                  py::arg("faults") = report.faults, py::arg("messages") = report.messages);
 }
 
 py::bytes as_png(const Frame& frame) {

@@ -27,6 +27,7 @@ class MemoryTest : public ::testing::Test {
     bool is_witnessed = true;   ///< the RGB-D camera delivers
     double turn = 0;            ///< an error of the user's camera's pose, about its axis; radians
     bool is_lost = false;       ///< the object is not found
+    bool is_in_doubt = false;   ///< the RGB-D camera does not fit the picture
     bool has_pose = true;       ///< the user's camera's is known
     bool has_world = true;      ///< else only the cameras' places relative to each other are known
     double moved_m = 0;         ///< all cameras, sidewards
@@ -72,7 +73,8 @@ class MemoryTest : public ::testing::Test {
     sampler.sample(now.frame, now.poses, masks, samples);
     OccluderReport report;
     if (moment.is_lost) report.message = "board: not found";
-    const RecallInputs inputs{now.frame, now.poses, masks, moment.object, region, options};
+    const RecallInputs inputs{now.frame, now.poses,         masks, moment.object, region,
+                              options,   moment.is_in_doubt};
     memory.recall(inputs, samples, {report}, nullptr, memory_report = {});
     memory.merge(inputs, maps, result, memory_report);
     return result;

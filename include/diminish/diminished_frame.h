@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -50,6 +51,11 @@ struct FrameReport {
   std::size_t witnessed_pixels = 0;   ///< of the valid ones (provenance::witnessed)
   std::size_t remembered_pixels = 0;  ///< likewise (provenance::remembered)
   std::size_t missing_pixels = 0;     ///< of these, neither
+  /// For each RGB-D camera, how well what it sees fits the picture: a correlation, -1 to 1. Nothing
+  /// where they see too little of the same, or nothing is drawn.
+  std::vector<std::optional<double>> fit;
+  /// One of them is below the option `least_fit`. The option `on_doubt` says what is shown then.
+  bool in_doubt = false;
   MemoryReport memory;
   StageTimes milliseconds{};
   double frame_ms = 0;  ///< of the whole frame

@@ -39,6 +39,8 @@ struct Options {
   std::string mode = "remove";
   std::string keep;
   double transparency = 0.5;
+  std::string on_doubt = "mark";
+  double least_fit = 0.8;
   std::string backend = "cpu";
 };
 
@@ -165,6 +167,18 @@ void for_each_option(AnyOptions& options, Visit&& visit) {
   visit(OptionInfo{"transparency", "",
                    "Transparency of the object in mode half; 0: opaque, 1: invisible", 0, 1},
         options.transparency);
+  visit(
+      OptionInfo{.name = "on_doubt",
+                 .unit = "method",
+                 .help = "Where an RGB-D camera does not fit the picture: show the background and "
+                         "say so, the camera's picture, or for half a second the last good one",
+                 .choices = {"mark", "pass-through", "hold"}},
+      options.on_doubt);
+  visit(OptionInfo{"least_fit", "",
+                   "Correlation of what an RGB-D camera sees with the picture below which it is "
+                   "doubted; -1: never",
+                   -1, 1},
+        options.least_fit);
   visit(OptionInfo{.name = "backend",
                    .unit = "method",
                    .help = "Whether the CPU or the GPU makes the pixels, and how",

@@ -92,6 +92,13 @@ TEST_F(Memory, LearnsNothingWhileAnObjectIsLost) {
   EXPECT_EQ(count(shown, provenance::remembered), 0U);
 }
 
+TEST_F(Memory, LearnsNothingWhileACameraIsInDoubt) {
+  show({.stamp_s = 0, .is_in_doubt = true});
+  EXPECT_EQ(memory_report.keyframes, 0U);
+  show({.stamp_s = 0.3});
+  EXPECT_EQ(memory_report.keyframes, 1U);
+}
+
 TEST_F(Memory, ForgetsWithAge) {
   options.memory_max_age_s = 5;
   show({.stamp_s = 0});

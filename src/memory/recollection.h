@@ -23,6 +23,7 @@ struct RecallInputs {
   const Rect& objects;        ///< their box in the picture
   const TiledRegion& region;  ///< that is drawn
   const Options& options;
+  const bool& is_in_doubt;  ///< known once the frame's samples are taken: nothing is learnt then
 };
 
 /// Draws a keyframe as an RGB-D camera's images, from the viewpoint of another frame.

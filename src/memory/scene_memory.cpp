@@ -184,6 +184,7 @@ void SceneMemory::learn(const RecallInputs& inputs, const SceneSamples& samples,
                                 [](const Testimony& testimony) { return testimony.is_given; });
   if (!sees) return;
   if (sample) sample();
+  if (inputs.is_in_doubt) return;
   last_keyframe_s_ = frame.stamp_s;
   last_keyframe_from_world_ = inputs.poses.color_from_world;
   last_objects_ = inputs.objects;

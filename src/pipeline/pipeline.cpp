@@ -15,6 +15,7 @@
 #include "estimate/depth_estimation.h"
 #include "memory/memory_stage.h"
 #include "pipeline/backend.h"
+#include "pipeline/doubt.h"
 #include "pipeline/frame_check.h"
 #include "pipeline/frame_texture.h"
 #include "pipeline/methods.h"
@@ -24,6 +25,7 @@
 #include "pose/pose_refinement.h"
 #include "scene/background.h"
 #include "scene/color_maps.h"
+#include "scene/scene_fit.h"
 #include "scene/scene_sampler.h"
 
 namespace diminish {
@@ -37,6 +39,8 @@ void begin(const FrameSet& frame, DiminishedFrame& result) {
   FrameReport& report = result.report;
   report.mask_pixels = report.valid_pixels = report.missing_pixels = 0;
   report.witnessed_pixels = report.remembered_pixels = 0;
+  report.fit.clear();
+  report.in_doubt = false;
   report.memory = {};
   report.milliseconds.fill(0);
   report.frame_ms = 0;
@@ -79,6 +83,7 @@ struct Pipeline::Implementation {
         sampler(rig),
         refinement(rig.color, PoseRefinement::usual_width, PoseRefinement::usual_last_step, false,
                    PoseRefinement::usual_coarser),
+        fit(rig.color),
         background(rig.color),
         backend(rig),
         memory(rig) {}
@@ -163,6 +168,7 @@ struct Pipeline::Implementation {
   SceneSampler sampler;
   SceneSamples samples;
   PoseRefinement refinement;
+  SceneFit fit;
   Background background;
   ColorMaps color_maps;
   int smoothing = 0;   ///< its share
@@ -171,6 +177,7 @@ struct Pipeline::Implementation {
   MemoryStage memory;
   Compositor compositor;
   bool wants_reconstruction = true;
+  Doubt doubt;
   FrameTexture texture;
 };
 
@@ -205,17 +212,21 @@ const Options& Pipeline::options() const {
 void Pipeline::share_memory(Pipeline& other) {
   implementation_->memory.share(other.implementation_->memory);
   implementation_->occluders.share(other.implementation_->occluders);
+  implementation_->doubt.share(other.implementation_->doubt);
 }
 void Pipeline::take_turn() {
   implementation_->memory.take_turn();
   implementation_->occluders.take_turn();
+  implementation_->doubt.take_turn();
 }
 void Pipeline::pass_turn() {
+  implementation_->doubt.end_turn();
   implementation_->occluders.end_turn();
   implementation_->memory.end_turn();
 }
 void Pipeline::forget() {
   implementation_->memory.forget();
+  implementation_->doubt.forget();
 }
 
 void Pipeline::set_background(const Scan& scan) {
@@ -286,12 +297,18 @@ void Pipeline::Implementation::process(const FrameSet& given, DiminishedFrame& r
   drawing.texture = texture.output();
   const auto draw = [&] { stage(Stage::drawing, [&] { backend.draw(drawing, result); }); };
   // Not in the paper: what the colour camera saw earlier
-  const RecallInputs recalling{frame, report.poses, masks, objects, region, options};
+  const RecallInputs recalling{frame,  report.poses, masks,          objects,
+                               region, options,      report.in_doubt};
   const bool looks = looks_at_scene();
   const auto drawn = [&] { return options.remove_shadows ? rig.color.bounds() : surroundings(); };
   const auto sample = [&] {
     stage(Stage::samples, [&] { sampler.sample(frame, measured_poses, masks, samples); });
-    stage(Stage::refinement, [&] { refine_poses(frame, report.poses); });
+    stage(Stage::refinement, [&] {
+      refine_poses(frame, report.poses);
+      report.fit.resize(rig.rgbd.size());
+      fit.find(frame.color, masks.color, samples, report.fit);
+      Doubt::judge(rig, options, report);
+    });
   };
   const auto recall = [&] {
     stage(Stage::memory, [&] {
@@ -353,7 +370,8 @@ void Pipeline::Implementation::process(const FrameSet& given, DiminishedFrame& r
   for (const std::string* message : {&occluders.message(), &backend.message()}) {
     if (!message->empty()) report.messages.push_back(*message);
   }
-  texture.finish_frame(backend.has_done(Stage::finish), result);
+  const bool is_replaced = doubt.act(frame, options, result);
+  texture.finish_frame(backend.has_done(Stage::finish) && !is_replaced, result);
   if (rig.rgbd.empty() && report.poses.color_from_world && report.memory.keyframes == 0) {
     report.messages.emplace_back(
         "no RGB-D camera and no background (diminish scan): what is hidden is invented");

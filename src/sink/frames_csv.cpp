@@ -81,7 +81,8 @@ FramesCsv::FramesCsv(const std::filesystem::path& file, const Rig& rig)
     header += pose_columns("color_from_" + camera.name + "_depth");
   }
   header += ",occluders,mask_pixels,valid_pixels,missing_pixels,witnessed_pixels,remembered_pixels";
-  header += ",background_pixels,remembered_median_age_s,remembered_oldest_age_s,keyframes";
+  for (const RgbdCamera& camera : rig.rgbd) header += "," + in_quotes(camera.name + "_fit");
+  header += ",in_doubt,background_pixels,remembered_median_age_s,remembered_oldest_age_s,keyframes";
   for (const TimeRow& row : time_rows()) header += fmt::format(",{}_ms", row.key);
   header += ",messages,faults\n";
   stream_ << header << std::flush;
@@ -106,6 +107,10 @@ void FramesCsv::append(const DiminishedFrame& frame) {
                      known ? found_occluders(report.occluders, cameras_) : in_quotes(""),
                      report.mask_pixels, report.valid_pixels, report.missing_pixels,
                      report.witnessed_pixels, report.remembered_pixels);
+  for (std::size_t k = 0; k < cameras_.size(); ++k) {
+    row += k < report.fit.size() && report.fit[k] ? fmt::format(",{:.3f}", *report.fit[k]) : ",";
+  }
+  row += fmt::format(",{}", report.in_doubt ? 1 : 0);
   row += fmt::format(",{}", report.memory.background_pixels) + ages(report) +
          fmt::format(",{}", report.memory.keyframes);
   for (const double ms : times_of(report)) row += fmt::format(",{:.3f}", ms);

@@ -133,6 +133,7 @@ void ResultWriter::Implementation::write_summary(bool interrupted,
   summary["frames"] = statistics.frames();
   summary["skipped"] = statistics.skipped();
   summary["faulty"] = statistics.faulty();
+  summary["in_doubt"] = statistics.in_doubt();
   summary["pixels"] = {{"mask", statistics.mask_pixels()},
                        {"valid", statistics.valid_pixels()},
                        {"missing", statistics.missing_pixels()},

@@ -38,6 +38,7 @@ void RunStatistics::add(const FrameReport& report) {
   };
   const auto ms = times_of(report);
   for (std::size_t row = 0; row < time_row_count; ++row) count(times_[row], ms[row]);
+  in_doubt_ += report.in_doubt ? 1 : 0;
   mask_pixels_ += report.mask_pixels;
   valid_pixels_ += report.valid_pixels;
   missing_pixels_ += report.missing_pixels;

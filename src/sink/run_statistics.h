@@ -26,6 +26,7 @@ class RunStatistics {
   std::size_t skipped() const { return skipped_; }  ///< without
   /// Frames with an unusable image, including skipped ones.
   std::size_t faulty() const { return faulty_; }
+  std::size_t in_doubt() const { return in_doubt_; }
   std::size_t mask_pixels() const { return mask_pixels_; }
   std::size_t valid_pixels() const { return valid_pixels_; }
   std::size_t missing_pixels() const { return missing_pixels_; }
@@ -52,7 +53,7 @@ class RunStatistics {
   std::string table() const;
 
  private:
-  std::size_t frames_ = 0, skipped_ = 0, faulty_ = 0;
+  std::size_t frames_ = 0, skipped_ = 0, faulty_ = 0, in_doubt_ = 0;
   std::size_t mask_pixels_ = 0, valid_pixels_ = 0, missing_pixels_ = 0;
   std::size_t witnessed_pixels_ = 0, remembered_pixels_ = 0, background_pixels_ = 0;
   std::vector<double> median_ages_s_;  ///< of frames with something remembered

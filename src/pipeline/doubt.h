@@ -1,0 +1,49 @@
+#pragma once
+
+#include <memory>
+
+#include "core/turns.h"
+#include "diminish/diminished_frame.h"
+#include "diminish/frame_set.h"
+#include "diminish/options.h"
+#include "diminish/rig.h"
+
+namespace diminish {
+
+/// What is shown where the background does not fit the picture around it: a false background is
+/// worse than the real object. Several pipelines share what they hold, each with a frame of the
+/// same sequence.
+class Doubt {
+ public:
+  /// A picture that is held for longer is no longer where the user looks.
+  static constexpr double longest_hold_s = 0.5;
+
+  void share(Doubt& other) { shared_ = other.shared_; }
+  void take_turn() { turn_.take(shared_->turns); }
+  /// Does nothing if there is none.
+  void end_turn() { turn_.end(); }
+  void forget();
+
+  /// From `report.fit`: sets `report.in_doubt`, and says why in `report.messages`.
+  static void judge(const Rig& rig, const Options& options, FrameReport& report);
+  /// Shows what the option `on_doubt` says. With `hold`, waits for its turn and ends it. Returns
+  /// whether that changed the result.
+  bool act(const FrameSet& frame, const Options& options, DiminishedFrame& result);
+
+ private:
+  /// The last one without doubt.
+  struct Shared {
+    Turns turns;
+    double stamp_s = 0;
+    Image<Bgr> picture;  ///< empty: none
+    Mask mask;
+    Image<std::uint8_t> provenance;
+    Rect objects;
+  };
+  bool hold(const FrameSet& frame, DiminishedFrame& result);
+
+  std::shared_ptr<Shared> shared_ = std::make_shared<Shared>();
+  Turn turn_;
+};
+
+}  // namespace diminish
