@@ -1,6 +1,9 @@
 #include <gmock/gmock.h>
 
+#include <chrono>
+#include <csignal>
 #include <cstdlib>
+#include <thread>
 
 #include "diminish/frame_source.h"
 #include "paths.h"
@@ -22,6 +25,24 @@ TEST(LiveProgram, RunsAndRecordsWhatCanBeRunAgain) {
   EXPECT_EQ(live.exit_code, 0) << live.err;
   EXPECT_THAT(live.out, AllOf(HasSubstr("frames/s"), HasSubstr("Latency: p50"),
                               ContainsRegex("Recorded [1-9][0-9]* frames")));
+  const auto run = Program::run({"run", copy, "--out", (folder.path() / "out").string()});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+}
+
+/// Nobody could tidy up.
+TEST(LiveProgram, ARecordingThatIsKilledIsRepaired) {
+  const TemporaryFolder folder;
+  const std::filesystem::path copy = folder.path() / "copy";
+  const std::string replay = "recording:" + calendar + "?loop&rate=0.5";
+  Program program({"live", calendar, "--color", replay, "--rgbd", replay, "--record", copy});
+  for (int i = 0; i < 600 && !std::filesystem::exists(copy / "color/000003.jpg"); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  kill(program.process(), SIGKILL);
+  EXPECT_EQ(program.wait().exit_code, 128 + SIGKILL);
+  const auto repaired = Program::run({"repair", copy});
+  EXPECT_EQ(repaired.exit_code, 0) << repaired.err;
+  EXPECT_THAT(repaired.out, ContainsRegex("color.txt: [3-9][0-9]* entries"));
   const auto run = Program::run({"run", copy, "--out", (folder.path() / "out").string()});
   EXPECT_EQ(run.exit_code, 0) << run.err;
 }

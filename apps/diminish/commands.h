@@ -16,6 +16,7 @@ void add_init(CLI::App& program, int& exit_code);
 void add_latency_test(CLI::App& program, int& exit_code);
 void add_live(CLI::App& program, int& exit_code);
 void add_markers(CLI::App& program, int& exit_code);
+void add_repair(CLI::App& program, int& exit_code);
 void add_report(CLI::App& program, int& exit_code);
 void add_run(CLI::App& program, int& exit_code);
 void add_scan(CLI::App& program, int& exit_code);

@@ -27,6 +27,11 @@ void PartialFile::commit() {
   committed_ = true;
 }
 
+bool is_partial_file(const std::filesystem::path& file) {
+  const std::string name = file.stem().string();
+  return name.starts_with('.') && name.ends_with(".partial");
+}
+
 void write_file(const std::filesystem::path& target, std::string_view bytes) {
   PartialFile file(target);
   std::ofstream stream(file.path(), std::ios::binary);

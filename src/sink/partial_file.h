@@ -26,6 +26,9 @@ class PartialFile {
   bool committed_ = false;
 };
 
+/// Whether a file has the name of one that was begun and never finished: the program was killed.
+bool is_partial_file(const std::filesystem::path& file);
+
 /// Replaces `target` by these bytes, completely or not at all. Throws Error that names it.
 void write_file(const std::filesystem::path& target, std::string_view bytes);
 
