@@ -4,6 +4,7 @@
 
 #include <cstddef>
 
+#include "core/happens_before.h"
 #include "core/tracing.h"
 
 namespace diminish {
@@ -15,13 +16,19 @@ template <class Visit>
 void for_tasks(std::size_t count, const Visit& visit) {
   if (count == 1) return visit(std::size_t{0});
   tracing::Region region(count);
-  oneapi::tbb::parallel_for(
-      std::size_t{0}, count,
-      [&](std::size_t i) {
-        const tracing::Region::Task task(region, i);
-        visit(i);
-      },
-      oneapi::tbb::simple_partitioner());
+  const char forked = 0;
+  const char joined = 0;
+  const auto work = [&](std::size_t i) {
+    happens_after(&forked);
+    {
+      const tracing::Region::Task task(region, i);
+      visit(i);
+    }
+    happens_before(&joined);
+  };
+  happens_before(&forked);
+  oneapi::tbb::parallel_for(std::size_t{0}, count, work, oneapi::tbb::simple_partitioner());
+  happens_after(&joined);
 }
 
 /// Does all works, at the same time if threads are free.

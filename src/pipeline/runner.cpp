@@ -9,6 +9,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/happens_before.h"
 #include "diminish/pipeline.h"
 
 namespace diminish {
@@ -57,22 +58,29 @@ std::size_t run(FrameSource& source, const Rig& rig, const Scene& scene, const O
     }
   };
   const auto read = [&](tbb::flow_control& control) -> Slot* {
+    happens_after(&failed);
     Slot* slot = nullptr;
+    happens_after(&source);
     const bool stopped = failed || (runner_options.stop && runner_options.stop->load());
     // There are as many slots as frames in progress, so one is always free here.
     if (stopped || !free_slots.try_pop(slot)) {
       control.stop();
       return nullptr;
     }
+    happens_after(slot);
     bool is_there = false;
     slot->error = nullptr;
     attempt(slot->error, [&] { is_there = source.begin(slot->frame); });
     if (is_there) slot->pipeline.take_turn();
+    happens_before(slot);
+    happens_before(&source);
     if (is_there || slot->error) return slot;
     control.stop();
     return nullptr;
   };
   const auto process = [&](Slot* slot) {
+    happens_after(&failed);
+    happens_after(slot);
     if (slot->error) return slot;
     attempt(slot->error, [&] {
       source.read_images(slot->frame);
@@ -80,9 +88,13 @@ std::size_t run(FrameSource& source, const Rig& rig, const Scene& scene, const O
       if (!slot->result.report.skipped) sink.write_images(slot->frame, slot->result);
     });
     slot->pipeline.pass_turn();
+    happens_before(slot);
     return slot;
   };
   const auto finish = [&](Slot* slot) {
+    happens_after(&failed);
+    happens_after(slot);
+    happens_after(&sink);
     if (!first_error) first_error = slot->error;
     if (!first_error) {
       attempt(first_error, [&] {
@@ -91,9 +103,12 @@ std::size_t run(FrameSource& source, const Rig& rig, const Scene& scene, const O
         if (runner_options.progress) runner_options.progress(frames_done);
       });
     }
+    happens_before(&sink);
+    happens_before(slot);
     free_slots.push(slot);
   };
 
+  happens_before(&failed);
   tbb::task_arena(threads).execute([&] {
     tbb::parallel_pipeline(
         static_cast<std::size_t>(threads),
@@ -101,6 +116,8 @@ std::size_t run(FrameSource& source, const Rig& rig, const Scene& scene, const O
             tbb::make_filter<Slot*, Slot*>(tbb::filter_mode::parallel, process) &
             tbb::make_filter<Slot*, void>(tbb::filter_mode::serial_in_order, finish));
   });
+  happens_after(&source);
+  happens_after(&sink);
   if (first_error) std::rethrow_exception(first_error);
   return frames_done;
 }
