@@ -69,6 +69,9 @@ class DIMINISH_EXPORT Pipeline {
 
   /// `result`'s memory is used again. Never throws for what a camera delivered: that is reported.
   void process(const FrameSet& frame, DiminishedFrame& result);
+  /// The stage that `process` began last; nothing outside it. May be called at any time, from any
+  /// thread: for a watchdog.
+  std::optional<Stage> stage() const;
 
  private:
   struct Implementation;

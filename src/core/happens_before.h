@@ -7,6 +7,14 @@
 #endif
 #endif
 
+/// For a lambda that oneTBB calls: what it captured was written in an order that only oneTBB knows.
+/// What it calls is looked at.
+#ifdef DIMINISH_THREAD_SANITIZER
+#define DIMINISH_UNSANITIZED_THREADS __attribute__((no_sanitize("thread")))
+#else
+#define DIMINISH_UNSANITIZED_THREADS
+#endif
+
 namespace diminish {
 
 // What the thread sanitizer cannot see, since oneTBB is not built with it: whatever a thread did

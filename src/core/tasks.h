@@ -18,7 +18,7 @@ void for_tasks(std::size_t count, const Visit& visit) {
   tracing::Region region(count);
   const char forked = 0;
   const char joined = 0;
-  const auto work = [&](std::size_t i) {
+  const auto work = [&](std::size_t i) DIMINISH_UNSANITIZED_THREADS {
     happens_after(&forked);
     {
       const tracing::Region::Task task(region, i);

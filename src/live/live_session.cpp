@@ -2,6 +2,7 @@
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 #include <condition_variable>
 #include <mutex>
 #include <numeric>
@@ -26,6 +27,8 @@ namespace {
 constexpr std::size_t window_frames = 150;
 /// With fewer, a second frame would only delay the first.
 constexpr int threads_for_two_frames = 4;
+/// A frame that takes longer is said to be stuck.
+constexpr double stuck_after_s = 2;
 
 void check_cameras(const Rig& rig, const std::vector<LiveCamera>& cameras) {
   const auto is_used = [&](const std::string& name) {
@@ -54,8 +57,32 @@ struct Lane {
   Pipeline pipeline;
   Turn publishing;
   std::size_t options_version = 0;  ///< of those that the pipeline has
+  std::atomic<double> begun_s = 0;  ///< its frame, on the monotonic clock; 0: none
   std::thread thread;
 };
+
+/// While a lane works on a frame.
+class Busy {
+ public:
+  explicit Busy(Lane& lane) : lane_(lane) { lane.begun_s = monotonic_now_s(); }
+  ~Busy() { lane_.begun_s = 0; }
+  Busy(const Busy&) = delete;
+  Busy& operator=(const Busy&) = delete;
+
+ private:
+  Lane& lane_;
+};
+
+/// The watchdog: names the stage that does not end.
+void describe_stuck_frame(const Lane& lane, double now_s, LiveStatus& status) {
+  const double begun_s = lane.begun_s;
+  if (begun_s == 0 || now_s - begun_s < stuck_after_s) return;
+  const auto stage = lane.pipeline.stage();
+  status.problems.push_back(
+      fmt::format("a frame takes {:.0f} s so far, in stage: {}", now_s - begun_s,
+                  stage ? stage_names[static_cast<std::size_t>(*stage)]
+                        : "none (a change of options, or a call of on_frame)"));
+}
 
 }  // namespace
 
@@ -135,6 +162,7 @@ struct LiveSession::Implementation {
     while (!stopped) {
       try {
         if (!begin_frame(lane, *frame)) continue;
+        const Busy busy(lane);
         apply_options(lane);
         arena.execute([&] { lane.pipeline.process(frame->input, frame->result); });
         lane.publishing.wait(publishing);
@@ -294,6 +322,7 @@ LiveStatus LiveSession::Implementation::status() const {
   status.quality_level = ladder.level();
   status.quality = QualityLadder::description(options, ladder.level());
   if (!settings_problem.empty()) status.problems.push_back(settings_problem);
+  for (const auto& lane : lanes) describe_stuck_frame(*lane, now_s, status);
   if (!failure.empty()) status.problems.push_back("the last frame failed: " + failure);
   if (latest) describe_last_frame(*latest, status);
   return status;

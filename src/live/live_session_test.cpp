@@ -160,6 +160,19 @@ TEST_F(Live, ARemovedCallDoesNotRunAnyMore) {
   EXPECT_FALSE(ran_after);
 }
 
+TEST_F(Live, SaysWhereAFrameIsStuck) {
+  const auto session = start(cameras());
+  std::atomic<bool> may_end = false;
+  const auto listener = session->on_frame([&may_end](const auto&) {
+    while (!may_end) std::this_thread::sleep_for(milliseconds(1));
+  });
+  const auto problems = [&] { return session->status().problems; };
+  const auto is_stuck = Contains(AllOf(HasSubstr("a frame takes"), HasSubstr("in stage: none")));
+  EXPECT_TRUE(eventually([&] { return ::testing::Value(problems(), is_stuck); }));
+  may_end = true;
+  EXPECT_TRUE(eventually([&] { return !::testing::Value(problems(), is_stuck); }));
+}
+
 TEST_F(Live, SettingsTakeEffectAndWrongOnesChangeNothing) {
   const auto session = start(cameras());
   ASSERT_TRUE(session->wait_for_frame(0, seconds(30)));

@@ -3,6 +3,7 @@
 
 #include <oneapi/tbb/task_arena.h>
 
+#include <atomic>
 #include <functional>
 #include <vector>
 
@@ -64,6 +65,8 @@ void begin(const FrameSet& frame, DiminishedFrame& result) {
   result.reconstruction = {};
   result.surfaces = {};
 }
+
+constexpr int no_stage = -1;
 
 }  // namespace
 
@@ -179,6 +182,7 @@ struct Pipeline::Implementation {
   bool wants_reconstruction = true;
   Doubt doubt;
   FrameTexture texture;
+  std::atomic<int> begun_stage = no_stage;
 };
 
 Pipeline::Pipeline(const Rig& rig, const Scene& scene, const Options& options) {
@@ -240,10 +244,18 @@ void Pipeline::process(const FrameSet& frame, DiminishedFrame& result) {
   take_turn();
   const struct Pass {
     Pipeline& pipeline;
-    ~Pass() { pipeline.pass_turn(); }
+    ~Pass() {
+      pipeline.implementation_->begun_stage = no_stage;
+      pipeline.pass_turn();
+    }
   } pass{*this};
   // A thread that waits for another within this frame must not begin something else.
   oneapi::tbb::this_task_arena::isolate([&] { implementation_->process(frame, result); });
+}
+
+std::optional<Stage> Pipeline::stage() const {
+  const int begun = implementation_->begun_stage;
+  return begun == no_stage ? std::nullopt : std::optional(static_cast<Stage>(begun));
 }
 
 // Meerits & Saito 2015, section 3, in its order.
@@ -259,6 +271,7 @@ void Pipeline::Implementation::process(const FrameSet& given, DiminishedFrame& r
   const ScopedTimer frame_timer(report.frame_ms);
   const auto stage = [&](Stage which, const auto& work) {
     if (backend.has_done(which)) return;
+    begun_stage = static_cast<int>(which);
     const tracing::Scope scope(stage_names[static_cast<std::size_t>(which)]);
     const ScopedTimer timer(report.milliseconds[static_cast<std::size_t>(which)]);
     work();

@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <set>
+#include <thread>
 
 #include "analytic_scene.h"
 #include "diminish/error.h"
@@ -35,6 +38,7 @@ class BundledRecording {
     pipeline_.process(frame, result);
     return true;
   }
+  std::optional<Stage> stage() const { return pipeline_.stage(); }
   void want_reconstruction(bool wanted) { pipeline_.want_reconstruction(wanted); }
   Poses true_poses() const { return truth_.poses(frame.index, recording_.rig); }
   Mask true_mask() const { return read_mask_image(folder_ / "truth/mask" / (frame.name + ".png")); }
@@ -139,6 +143,22 @@ TEST_P(PipelineOnRecordings, ShowsTheSameWhereNobodyLooksAtTheReconstruction) {
     return std::count_if(color.begin(), color.end(), [](const Bgra& c) { return c.a != 0; });
   };
   EXPECT_LT(count_colors(not_looked_at), count_colors(looked_at));
+}
+
+TEST(Pipeline, TellsOtherThreadsWhichStageItIsIn) {
+  BundledRecording recording("calendar");
+  std::set<Stage> seen;
+  std::atomic<bool> has_ended = false;
+  std::thread watcher([&] {
+    while (!has_ended) {
+      if (const auto stage = recording.stage()) seen.insert(*stage);
+    }
+  });
+  while (recording.next()) EXPECT_FALSE(recording.stage());
+  has_ended = true;
+  watcher.join();
+  EXPECT_GT(seen.size(), 3U);
+  EXPECT_TRUE(seen.contains(Stage::poses));
 }
 
 // Nothing is to be drawn: what the memory does not need is not made.

@@ -1,12 +1,12 @@
 #include "diminish/runner.h"
 
-#include <oneapi/tbb/concurrent_queue.h>
 #include <oneapi/tbb/parallel_pipeline.h>
 #include <oneapi/tbb/task_arena.h>
 
 #include <atomic>
 #include <exception>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "core/happens_before.h"
@@ -25,6 +25,27 @@ struct Slot {
   std::exception_ptr error;  ///< why the frame could not be done
 };
 
+/// Those that no frame is in.
+class FreeSlots {
+ public:
+  void put(Slot* slot) {
+    const std::lock_guard lock(mutex_);
+    slots_.push_back(slot);
+  }
+  /// Null if there is none.
+  Slot* take() {
+    const std::lock_guard lock(mutex_);
+    if (slots_.empty()) return nullptr;
+    Slot* const slot = slots_.back();
+    slots_.pop_back();
+    return slot;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<Slot*> slots_;
+};
+
 }  // namespace
 
 std::size_t run(FrameSource& source, const Rig& rig, const Scene& scene, const Options& options,
@@ -32,12 +53,12 @@ std::size_t run(FrameSource& source, const Rig& rig, const Scene& scene, const O
   namespace tbb = oneapi::tbb;
   const int threads = std::max(1, runner_options.threads);
   std::vector<std::unique_ptr<Slot>> slots;
-  tbb::concurrent_bounded_queue<Slot*> free_slots;
+  FreeSlots free_slots;
   for (int i = 0; i < threads; ++i) {
     slots.push_back(std::make_unique<Slot>(Pipeline(rig, scene, options)));
     slots.back()->pipeline.want_reconstruction(runner_options.reconstructions);
     if (i > 0) slots.back()->pipeline.share_memory(slots.front()->pipeline);
-    free_slots.push(slots.back().get());
+    free_slots.put(slots.back().get());
   }
 
   if (runner_options.background) {
@@ -59,15 +80,15 @@ std::size_t run(FrameSource& source, const Rig& rig, const Scene& scene, const O
   };
   const auto read = [&](tbb::flow_control& control) -> Slot* {
     happens_after(&failed);
-    Slot* slot = nullptr;
     happens_after(&source);
     const bool stopped = failed || (runner_options.stop && runner_options.stop->load());
     // There are as many slots as frames in progress, so one is always free here.
-    if (stopped || !free_slots.try_pop(slot)) {
+    Slot* const slot = stopped ? nullptr : free_slots.take();
+    if (!slot) {
+      happens_before(&source);
       control.stop();
       return nullptr;
     }
-    happens_after(slot);
     bool is_there = false;
     slot->error = nullptr;
     attempt(slot->error, [&] { is_there = source.begin(slot->frame); });
@@ -103,9 +124,8 @@ std::size_t run(FrameSource& source, const Rig& rig, const Scene& scene, const O
         if (runner_options.progress) runner_options.progress(frames_done);
       });
     }
+    free_slots.put(slot);
     happens_before(&sink);
-    happens_before(slot);
-    free_slots.push(slot);
   };
 
   happens_before(&failed);

@@ -9,7 +9,10 @@ namespace {
 
 /// Networks that answer in logits are surer than they should be.
 void bound(cv::Mat& margin) {
-  margin.forEach<float>([](float& value, const int*) { value /= 1 + std::abs(value); });
+  for (int y = 0; y < margin.rows; ++y) {
+    float* const row = margin.ptr<float>(y);
+    for (int x = 0; x < margin.cols; ++x) row[x] /= 1 + std::abs(row[x]);
+  }
 }
 
 bool add_object(const cv::Mat& margin, cv::Mat& enlarged, Mask& mask) {

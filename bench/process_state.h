@@ -1,0 +1,36 @@
+#pragma once
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+namespace diminish {
+
+/// What this process holds now.
+struct ProcessState {
+  double memory_mb = 0;  ///< resident
+  long handles = 0;      ///< open files and sockets
+  long threads = 0;
+
+  static ProcessState now() {
+    ProcessState state;
+    long pages = 0;
+    long resident = 0;
+    std::ifstream("/proc/self/statm") >> pages >> resident;
+    state.memory_mb = static_cast<double>(resident) * static_cast<double>(sysconf(_SC_PAGESIZE)) /
+                      (1024. * 1024.);
+    state.handles = count("/proc/self/fd");
+    state.threads = count("/proc/self/task");
+    return state;
+  }
+
+ private:
+  static long count(const char* folder) {
+    return std::distance(std::filesystem::directory_iterator(folder),
+                         std::filesystem::directory_iterator());
+  }
+};
+
+}  // namespace diminish

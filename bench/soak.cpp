@@ -1,0 +1,139 @@
+// Whether frames cost at the end what they cost at the start.
+//   diminish_soak RECORDING [FRAMES [MEMORY]]    (by scripts/soak; MEMORY: as --memory)
+//
+// The recording is played forwards and backwards, at 30 frames a second of its own time, as fast
+// as the machine can. It should find its poses by markers: poses from files end with them. Prints
+// twelve stretches of the frames; ends with 1 if memory, handles or threads grow from the third on,
+// or if a frame takes a fifth more CPU time in the last two than in the third and fourth.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <ctime>
+#include <exception>
+#include <vector>
+
+#include "diminish/diminish.h"
+#include "process_state.h"
+
+namespace diminish {
+namespace {
+
+constexpr std::size_t stretches = 12;
+constexpr double frames_per_second = 30;
+
+struct Stretch {
+  ProcessState state;
+  double cpu_ms = 0;  ///< of all threads, a frame: other programs do not slow it
+  double median_ms = 0, p99_ms = 0;
+};
+
+double cpu_ms() {
+  timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
+}
+
+double quantile(std::vector<double>& values, double share) {
+  const auto at =
+      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+/// Plays frames there and back.
+class Player {
+ public:
+  Player(const Recording& recording, const Options& options)
+      : pipeline_(recording.rig, recording.scene, options) {
+    const auto source = open_recording(recording, options);
+    for (FrameSet frame; source->next(frame);) frames_.push_back(frame);
+    if (frames_.size() < 2) throw Error("expected a recording of two frames or more");
+    pipeline_.want_reconstruction(false);
+  }
+
+  double next_ms() {
+    const std::size_t lap = 2 * frames_.size() - 2;
+    const std::size_t place = played_ % lap;
+    FrameSet& frame = frames_[place < frames_.size() ? place : lap - place];
+    // Each image as old as it was when it was recorded
+    const double later_s = static_cast<double>(played_++) / frames_per_second - frame.stamp_s;
+    frame.stamp_s += later_s;
+    for (RgbdFrame& camera : frame.rgbd) {
+      camera.color_stamp_s += later_s;
+      camera.depth_stamp_s += later_s;
+    }
+    const auto start = std::chrono::steady_clock::now();
+    pipeline_.process(frame, result_);
+    if (result_.report.mask_pixels > 0) ++with_object_;
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
+        .count();
+  }
+  std::size_t with_object() const { return with_object_; }
+
+ private:
+  Pipeline pipeline_;
+  std::vector<FrameSet> frames_;
+  DiminishedFrame result_;
+  std::size_t played_ = 0;
+  std::size_t with_object_ = 0;
+};
+
+/// Returns whether it is the same at the end as at the start.
+bool soak(const Recording& recording, std::size_t frames, const Options& options) {
+  Player player(recording, options);
+  std::printf("%zu frames, %.1f hours at %.0f frames a second; memory %s\n", frames,
+              static_cast<double>(frames) / frames_per_second / 3600, frames_per_second,
+              options.memory.c_str());
+  std::printf("%10s %10s %10s %10s %10s %9s %9s\n", "frames", "CPU ms", "median ms", "99 % ms",
+              "MB", "handles", "threads");
+  std::vector<Stretch> done;
+  std::vector<double> times_ms;
+  times_ms.reserve(frames / stretches + 1);
+  for (std::size_t k = 0; k < stretches; ++k) {
+    times_ms.clear();
+    const double begun_ms = cpu_ms();
+    const std::size_t end = frames * (k + 1) / stretches;
+    for (std::size_t i = frames * k / stretches; i < end; ++i) times_ms.push_back(player.next_ms());
+    const Stretch& stretch = done.emplace_back(
+        Stretch{ProcessState::now(), (cpu_ms() - begun_ms) / static_cast<double>(times_ms.size()),
+                quantile(times_ms, 0.5), quantile(times_ms, 0.99)});
+    std::printf("%10zu %10.2f %10.2f %10.2f %10.1f %9ld %9ld\n", end, stretch.cpu_ms,
+                stretch.median_ms, stretch.p99_ms, stretch.state.memory_mb, stretch.state.handles,
+                stretch.state.threads);
+    std::fflush(stdout);
+  }
+  const Stretch& start = done[2];
+  const Stretch& end = done.back();
+  const double start_ms = done[2].cpu_ms + done[3].cpu_ms;
+  const double end_ms = done[stretches - 2].cpu_ms + end.cpu_ms;
+  constexpr double steady_memory = 1.01;
+  constexpr double steady_time = 1.2;
+  std::printf("an object in %zu frames\n", player.with_object());
+  std::printf("last to first: CPU time %.3f, memory %.4f\n", end_ms / start_ms,
+              end.state.memory_mb / start.state.memory_mb);
+  return end.state.memory_mb <= steady_memory * start.state.memory_mb &&
+         end.state.handles <= start.state.handles && end.state.threads <= start.state.threads &&
+         end_ms <= steady_time * start_ms;
+}
+
+}  // namespace
+}  // namespace diminish
+
+int main(int argc, char** argv) try {
+  constexpr std::size_t hour = 30 * 3600;
+  const std::size_t frames = argc > 2 ? std::stoul(argv[2]) : hour;
+  if (argc < 2 || argc > 4 || frames < 1000) {
+    std::fprintf(stderr, "usage: diminish_soak RECORDING [FRAMES (1000 or more) [MEMORY]]\n");
+    return 2;
+  }
+  diminish::Options options;
+  if (argc > 3) options.memory = argv[3];
+  const bool is_steady = diminish::soak(diminish::load_recording(argv[1]), frames, options);
+  std::puts(is_steady ? "steady" : "NOT steady");
+  return is_steady ? 0 : 1;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "%s\n", error.what());
+  return 1;
+}
