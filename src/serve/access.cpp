@@ -12,6 +12,7 @@ namespace diminish {
 
 bool is_loopback(const std::string& address) {
   constexpr unsigned char network = 127;
+  if (address.find('\0') != std::string::npos) return false;  // where inet_pton would stop
   in_addr four{};
   if (inet_pton(AF_INET, address.c_str(), &four) == 1) {
     return reinterpret_cast<const unsigned char*>(&four)[0] == network;

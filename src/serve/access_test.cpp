@@ -14,6 +14,7 @@ TEST(Access, KnowsLoopback) {
         "127.evil.example", "127.0.0", "::1.evil.example", "127.0.0.1 "}) {
     EXPECT_FALSE(is_loopback(address)) << address;
   }
+  EXPECT_FALSE(is_loopback(std::string("127.0.0.1\0.evil.example", 23)));
 }
 
 TEST(Access, KnowsAHostHeaderOfThisMachine) {
