@@ -10,7 +10,10 @@
 #include "calibrate.h"
 #include "diminish/frame_source.h"
 #include "diminish/rig_calibration.h"
+#include "live/live_frame_source.h"
+#include "live_setup.h"
 #include "setup/calibrate/rig_file.h"
+#include "setup/calibrate/rig_repair.h"
 
 namespace diminish {
 namespace {
@@ -18,14 +21,19 @@ namespace {
 constexpr int done_with_warnings = 3;
 
 struct CalibrateRigCommand {
-  std::filesystem::path recording;
+  LiveSetup setup;
   std::filesystem::path out;
   std::string board;
   bool depth = false;
   bool fixed = false;
+  bool repair = false;
+  double seconds = 3;
   std::size_t frames = 300;
 
-  int execute() const;
+  int execute() const { return repair ? mend() : measure(); }
+  int measure() const;
+  int mend() const;
+  void look(const Recording& input, RigRepair& rig) const;
 };
 
 /// The frames to look at: evenly spread. The source has to read all of them.
@@ -65,9 +73,57 @@ void print(const std::string& name, const ColorFromRgbd& result) {
              t.z(), 1000 * result.deviation_m, result.deviation_deg);
 }
 
-int CalibrateRigCommand::execute() const {
-  const Recording input = load_recording(recording);
-  RigFile rig(out, recording / "rig.yaml");
+void print(const RepairedPose& pose) {
+  fmt::print("{}: turned by {:.2f} degrees and moved by {:.0f} mm\n", pose.camera, pose.turned_deg,
+             1000 * pose.moved_m);
+  fmt::print("  fits the colour camera's pictures by {:.2f}, before by {:.2f}\n", pose.fit,
+             pose.fit_before);
+}
+
+/// Frames spread over a recording, or of live cameras.
+void CalibrateRigCommand::look(const Recording& input, RigRepair& rig) const {
+  FrameSet frame;
+  if (setup.has_live_cameras(input.rig)) {
+    const LiveRun run = setup.start();
+    LiveFrameSource source(*run.session, seconds);
+    while (rig.frames() < RigRepair::most_frames && source.next(frame)) rig.add(frame);
+    return;
+  }
+  const auto source = open_recording(input, Options{});
+  const std::size_t count = source->frame_count();
+  for (std::size_t i = 0; source->next(frame); ++i) {
+    if (i >= rig.frames() * count / RigRepair::most_frames) rig.add(frame);
+  }
+}
+
+int CalibrateRigCommand::mend() const {
+  const Recording input = load_recording(setup.folder);
+  RigFile rig(out, setup.rig_file());
+  RigRepair repair(input.rig, input.scene);
+  look(input, repair);
+  std::vector<std::pair<std::string, RigidTransform>> color_from_rgbd;
+  std::vector<std::string> in_doubt;
+  for (const RepairedPose& pose : repair.repair()) {
+    print(pose);
+    color_from_rgbd.emplace_back(pose.camera, pose.color_from_rgbd);
+    if (pose.fit < Options{}.least_fit) in_doubt.push_back(pose.camera);
+  }
+  for (const std::string& camera : in_doubt) {
+    fmt::print(
+        "Warning: {}: not mended; expected a pose that fits by {:.1f}: calibrate it with a "
+        "board\n",
+        camera, Options{}.least_fit);
+  }
+  if (!in_doubt.empty()) return done_with_warnings;
+  rig.set_fixed_poses(color_from_rgbd);
+  rig.write();
+  fmt::print("Written to {}\n", out.string());
+  return 0;
+}
+
+int CalibrateRigCommand::measure() const {
+  const Recording input = load_recording(setup.folder);
+  RigFile rig(out, setup.rig_file());
   std::optional<Board> known_board;
   if (!board.empty()) known_board = parse_board(board);
   const RigCalibration calibration = collect(input, known_board, frames);
@@ -111,8 +167,10 @@ void add_calibrate_rig(CLI::App& calibrate, int& exit_code) {
   auto command = std::make_shared<CalibrateRigCommand>();
   CLI::App* sub = calibrate.add_subcommand(
       "rig", "Calibrates the poses of fixed cameras from markers or a board that they see");
-  sub->add_option("recording", command->recording,
-                  "A recording of the scene's markers, or of a board, in many places")
+  sub->add_option(
+         "recording", command->setup.folder,
+         "A recording of the scene's markers, or of a board, in many places; with --repair "
+         "of the scene as it is, or a folder with rig.yaml and scene.yaml")
       ->required();
   sub->add_option("--out", command->out,
                   "The rig.yaml to write; if missing, it starts as a copy of the recording's")
@@ -125,6 +183,14 @@ void add_calibrate_rig(CLI::App& calibrate, int& exit_code) {
   sub->add_flag("--depth", command->depth,
                 "Pose of each RGB-D camera's depth sensor in its own colour sensor's frame: "
                 "color_from_depth");
+  sub->add_flag("--repair", command->repair,
+                "Finds fixed poses again after a camera was bumped, from the scene alone: turns of "
+                "up to 4 degrees");
+  command->setup.add_camera_flags(*sub);
+  sub->add_option("--seconds", command->seconds, "How long to watch live cameras (--repair)")
+      ->capture_default_str()
+      ->check(CLI::Range(1.0, 3600.0))
+      ->type_name("S");
   sub->add_option("--frames", command->frames, "Most frames to use from the recording")
       ->capture_default_str()
       ->check(CLI::Range(1, 100000))
