@@ -99,11 +99,11 @@ void CalibrateRigCommand::look(const Recording& input, RigRepair& rig) const {
 int CalibrateRigCommand::mend() const {
   const Recording input = load_recording(setup.folder);
   RigFile rig(out, setup.rig_file());
-  RigRepair repair(input.rig, input.scene);
-  look(input, repair);
+  RigRepair mending(input.rig, input.scene);
+  look(input, mending);
   std::vector<std::pair<std::string, RigidTransform>> color_from_rgbd;
   std::vector<std::string> in_doubt;
-  for (const RepairedPose& pose : repair.repair()) {
+  for (const RepairedPose& pose : mending.repair()) {
     print(pose);
     color_from_rgbd.emplace_back(pose.camera, pose.color_from_rgbd);
     if (pose.fit < Options{}.least_fit) in_doubt.push_back(pose.camera);

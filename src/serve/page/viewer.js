@@ -79,15 +79,26 @@ addEventListener("resize", moveSlider);
 
 // ---- settings
 let complaint = "";
+let changing = Promise.resolve();
+let changesToCome = 0;
 
-async function change(changes, input) {
+// One after the other, in the order of the clicks. An answer that a later change makes old is not shown.
+function change(changes, input) {
+  ++changesToCome;
+  changing = changing.then(() => makeChange(changes, input));
+}
+
+async function makeChange(changes, input) {
   try {
-    showSettings(await post("api/settings", changes));
+    const settings = await post("api/settings", changes);
+    if (changesToCome === 1) showSettings(settings);
     input?.classList.remove("wrong");
     complaint = "";
   } catch (error) {
     input?.classList.add("wrong");
     complaint = error.message;
+  } finally {
+    --changesToCome;
   }
 }
 
@@ -137,14 +148,11 @@ function showSettings({ settings, objects }) {
   }));
 
   const kept = byName.keep.value.split(",").map((name) => name.trim()).filter(Boolean);
-  element("objects").replaceChildren(...objects.map((name) => {
-    const box = make("input", { type: "checkbox", name: `remove ${name}`, checked: !kept.includes(name) });
-    box.onchange = () => {
-      const keep = box.checked ? kept.filter((other) => other !== name) : [...kept, name];
-      change({ keep: keep.join(",") });
-    };
-    return make("label", {}, box, make("span", { textContent: name }), make("small", { id: `object-${name}` }));
-  }));
+  const boxes = objects.map((name) => make("input", { type: "checkbox", name: `remove ${name}`, checked: !kept.includes(name) }));
+  const keep = () => objects.filter((_, i) => !boxes[i].checked).join(",");
+  for (const box of boxes) box.onchange = () => change({ keep: keep() });
+  element("objects").replaceChildren(...objects.map((name, i) =>
+    make("label", {}, boxes[i], make("span", { textContent: name }), make("small", { id: `object-${name}` }))));
 }
 
 // ---- how it does

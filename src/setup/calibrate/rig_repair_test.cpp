@@ -78,7 +78,7 @@ class RigRepairTest : public ::testing::TestWithParam<const char*> {
 
 INSTANTIATE_TEST_SUITE_P(Recordings, RigRepairTest,
                          ::testing::Values("calendar", "workbench", "ball"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& instance) { return std::string(instance.param); });
 
 TEST_P(RigRepairTest, FindsABumpedCameraAgain) {
   for (const Eigen::Vector3d& axis :
