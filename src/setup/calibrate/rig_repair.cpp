@@ -293,11 +293,13 @@ std::vector<RepairedPose> RigRepair::repair() const {
     const auto is_as_good = [&](std::optional<double> other) {
       return other && fit && *other > *fit - width_of_top;
     };
-    if (is_as_good(fit_before)) motion.setZero();
+    const bool was_good = is_as_good(fit_before);
+    if (was_good) motion.setZero();
     const Vector6 polished =
         vector_of(before.inverse() *
                   polish(self.rig, self.frames, source, before, before * transform_of(motion)));
-    if (is_as_good(fine(polished))) motion = polished;
+    const auto polished_fit = fine(polished);
+    if (was_good ? polished_fit > fit_before : is_as_good(polished_fit)) motion = polished;
     fit = fine(motion);
     if (!fit) {
       throw Error(camera.name +
