@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 #include <thread>
 
@@ -69,10 +70,15 @@ TEST_F(RecordingCamera, ALoopGoesOnWithoutAGapInTime) {
   const auto camera = open("color", "?loop&rate=10");
   const std::vector<CameraImage> images = read_all(*camera, 8);
   ASSERT_EQ(images.size(), 8U);
-  for (std::size_t i = 0; i < images.size(); ++i) {
-    EXPECT_NEAR(images[i].stamp_s, epoch_s_ + 0.01 * static_cast<double>(i), 1e-6);
-    EXPECT_EQ(images[i].color(0, 0).b, i % 3);
+  // A busy machine may come too late for one: that is counted.
+  const auto place = [&](const CameraImage& image) {
+    return std::lround((image.stamp_s - epoch_s_) / 0.01);
+  };
+  for (const CameraImage& image : images) {
+    EXPECT_NEAR(image.stamp_s, epoch_s_ + 0.01 * static_cast<double>(place(image)), 1e-6);
+    EXPECT_EQ(image.color(0, 0).b, place(image) % 3);
   }
+  EXPECT_EQ(place(images.back()), 7 + static_cast<long>(camera->dropped()));
 }
 
 TEST_F(RecordingCamera, ALoopReadsAnImageWhenItsTimeComesAndKeepsItIfItIsShort) {
