@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <cstddef>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -13,6 +14,13 @@ struct ProcessState {
   double memory_mb = 0;  ///< resident
   long handles = 0;      ///< open files and sockets
   long threads = 0;
+
+  /// Bytes.
+  static std::size_t address_space() {
+    std::size_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    return pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  }
 
   static ProcessState now() {
     ProcessState state;

@@ -1,5 +1,6 @@
 // Whether frames cost at the end what they cost at the start.
-//   diminish_soak RECORDING [FRAMES [MEMORY]]    (by scripts/soak; MEMORY: as --memory)
+//   diminish_soak RECORDING [FRAMES [MEMORY [SHRINKAGE]]]    (by scripts/soak; MEMORY: as --memory;
+//                                                             SHRINKAGE: of all images' sides)
 //
 // The recording is played forwards and backwards, at 30 frames a second of its own time, as fast
 // as the machine can. It should find its poses by markers: poses from files end with them. Prints
@@ -14,7 +15,9 @@
 #include <exception>
 #include <vector>
 
+#include "core/shrink.h"
 #include "diminish/diminish.h"
+#include "geometry/shrunk_camera.h"
 #include "process_state.h"
 
 namespace diminish {
@@ -42,13 +45,51 @@ double quantile(std::vector<double>& values, double share) {
   return *at;
 }
 
+Rig shrunk_rig(Rig rig, int by) {
+  rig.color = shrunk_camera(rig.color, by);
+  for (RgbdCamera& camera : rig.rgbd) {
+    camera.color = shrunk_camera(camera.color, by);
+    camera.depth = shrunk_camera(camera.depth, by);
+  }
+  return rig;
+}
+
+void shrink_picture(InputImage<Bgr>& picture, int by) {
+  if (picture.empty()) return;
+  Image<Bgr> small;
+  const Rect whole = shrunk_bounds(picture, by);
+  small.resize(whole.width, whole.height);
+  std::vector<std::uint16_t> scratch;
+  shrink(picture, by, whole, scratch, small);
+  picture.own() = std::move(small);
+}
+
+/// Depths are not averaged: those across an edge would lie on nothing.
+void shrink_depth(InputImage<std::uint16_t>& depth, int by) {
+  if (depth.empty()) return;
+  Image<std::uint16_t> small(depth.width() / by, depth.height() / by);
+  for (int y = 0; y < small.height(); ++y) {
+    for (int x = 0; x < small.width(); ++x) {
+      small.row(y)[x] = depth.row(by * y + by / 2)[by * x + by / 2];
+    }
+  }
+  depth.own() = std::move(small);
+}
+
 /// Plays frames there and back.
 class Player {
  public:
-  Player(const Recording& recording, const Options& options)
-      : pipeline_(recording.rig, recording.scene, options) {
+  Player(const Recording& recording, const Options& options, int shrinkage)
+      : pipeline_(shrunk_rig(recording.rig, shrinkage), recording.scene, options) {
     const auto source = open_recording(recording, options);
-    for (FrameSet frame; source->next(frame);) frames_.push_back(frame);
+    for (FrameSet frame; source->next(frame);) {
+      shrink_picture(frame.color, shrinkage);
+      for (RgbdFrame& camera : frame.rgbd) {
+        shrink_picture(camera.color, shrinkage);
+        shrink_depth(camera.depth, shrinkage);
+      }
+      frames_.push_back(frame);
+    }
     if (frames_.size() < 2) throw Error("expected a recording of two frames or more");
     pipeline_.want_reconstruction(false);
   }
@@ -81,11 +122,11 @@ class Player {
 };
 
 /// Returns whether it is the same at the end as at the start.
-bool soak(const Recording& recording, std::size_t frames, const Options& options) {
-  Player player(recording, options);
-  std::printf("%zu frames, %.1f hours at %.0f frames a second; memory %s\n", frames,
+bool soak(const Recording& recording, std::size_t frames, const Options& options, int shrinkage) {
+  Player player(recording, options, shrinkage);
+  std::printf("%zu frames, %.1f hours at %.0f frames a second, %d pixels wide; memory %s\n", frames,
               static_cast<double>(frames) / frames_per_second / 3600, frames_per_second,
-              options.memory.c_str());
+              recording.rig.color.width / shrinkage, options.memory.c_str());
   std::printf("%10s %10s %10s %10s %10s %9s %9s\n", "frames", "CPU ms", "median ms", "99 % ms",
               "MB", "handles", "threads");
   std::vector<Stretch> done;
@@ -124,13 +165,16 @@ bool soak(const Recording& recording, std::size_t frames, const Options& options
 int main(int argc, char** argv) try {
   constexpr std::size_t hour = 30 * 3600;
   const std::size_t frames = argc > 2 ? std::stoul(argv[2]) : hour;
-  if (argc < 2 || argc > 4 || frames < 1000) {
-    std::fprintf(stderr, "usage: diminish_soak RECORDING [FRAMES (1000 or more) [MEMORY]]\n");
+  const int shrinkage = argc > 4 ? std::stoi(argv[4]) : 1;
+  if (argc < 2 || argc > 5 || frames < 1000 || shrinkage < 1 || shrinkage > 16) {
+    std::fprintf(stderr,
+                 "usage: diminish_soak RECORDING [FRAMES (1000 or more) [MEMORY [SHRINKAGE]]]\n");
     return 2;
   }
   diminish::Options options;
   if (argc > 3) options.memory = argv[3];
-  const bool is_steady = diminish::soak(diminish::load_recording(argv[1]), frames, options);
+  const bool is_steady =
+      diminish::soak(diminish::load_recording(argv[1]), frames, options, shrinkage);
   std::puts(is_steady ? "steady" : "NOT steady");
   return is_steady ? 0 : 1;
 } catch (const std::exception& error) {

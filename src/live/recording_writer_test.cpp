@@ -87,6 +87,37 @@ TEST_P(Writer, WhatIsWrittenIsReadAgain) {
   }
 }
 
+TEST_P(Writer, NothingIsLostWhenTheClockIsSetBack) {
+  const std::vector<FrameSet> original = frames_of(source_);
+  const auto copy = folder_.path() / "copy";
+  {
+    const auto writer = write_to(copy);
+    for (const double back_s : {0., 100., 40.}) {
+      for (const FrameSet& frame : original) {
+        auto live = std::make_shared<LiveFrame>();
+        live->input = frame;
+        live->input.stamp_s -= back_s;
+        for (RgbdFrame& rgbd : live->input.rgbd) {
+          rgbd.color_stamp_s -= back_s;
+          rgbd.depth_stamp_s -= back_s;
+        }
+        offer_and_wait(*writer, live);
+      }
+    }
+  }
+  const std::vector<FrameSet> read = frames_of(copy);
+  ASSERT_EQ(read.size(), 3 * original.size());
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    const FrameSet& expected = original[i % original.size()];
+    EXPECT_LT(mean_difference(read[i].color, expected.color), 2);
+    for (std::size_t k = 0; k < read[i].rgbd.size(); ++k) {
+      EXPECT_TRUE(testing::same_pixels(read[i].rgbd[k].depth, expected.rgbd[k].depth));
+      EXPECT_NEAR(read[i].rgbd[k].depth_stamp_s - read[i].stamp_s,
+                  expected.rgbd[k].depth_stamp_s - expected.stamp_s, 1e-5);
+    }
+  }
+}
+
 TEST_P(Writer, WhatNoRgbdCameraSawIsARecordingToo) {
   auto live = std::make_shared<LiveFrame>();
   live->input = frames_of(source_).front();

@@ -16,6 +16,8 @@ namespace diminish {
 namespace {
 
 constexpr int jpeg_quality = 95;
+/// Between two frames, where their timestamps do not tell.
+constexpr double usual_period_s = 1.0 / 30;
 
 void make_folder(const std::filesystem::path& folder) {
   std::error_code error;
@@ -90,18 +92,24 @@ RecordingFolder::Stream RecordingFolder::make_stream(const std::string& list,
   return stream;
 }
 
+void RecordingFolder::follow_clock(double stamp_s) {
+  if (stamp_s + clock_shift_s_ >= color_.last_stamp_s) return;
+  clock_shift_s_ = color_.last_stamp_s + usual_period_s - stamp_s;
+}
+
 void RecordingFolder::write(const FrameSet& frame, const std::string& name) {
+  follow_clock(frame.stamp_s);
   for (std::size_t k = 0; k < frame.rgbd.size(); ++k) {
     const RgbdFrame& rgbd = frame.rgbd[k];
     if (!rgbd_depth_[k] ? !rgbd.has_picture() : !rgbd.available()) continue;
     if (are_equal(rgbd.color, frame.color)) {
-      add(rgbd_color_[k], rgbd.color_stamp_s, file_of(color_, name, true));
+      add(rgbd_color_[k], rgbd.color_stamp_s + clock_shift_s_, file_of(color_, name, true));
     } else {
-      write_image(rgbd_color_[k], rgbd.color, rgbd.color_stamp_s, name);
+      write_image(rgbd_color_[k], rgbd.color, rgbd.color_stamp_s + clock_shift_s_, name);
     }
-    if (rgbd_depth_[k]) write_image(*rgbd_depth_[k], rgbd.depth, rgbd.depth_stamp_s, name);
+    if (rgbd_depth_[k]) write_image(*rgbd_depth_[k], rgbd.depth, rgbd.depth_stamp_s + clock_shift_s_, name);
   }
-  write_image(color_, frame.color, frame.stamp_s, name);
+  write_image(color_, frame.color, frame.stamp_s + clock_shift_s_, name);
 }
 
 std::string RecordingFolder::file_of(const Stream& stream, const std::string& name,
@@ -112,7 +120,7 @@ std::string RecordingFolder::file_of(const Stream& stream, const std::string& na
 template <class Pixel>
 void RecordingFolder::write_image(Stream& stream, const InputImage<Pixel>& image, double stamp_s,
                                   const std::string& name) {
-  // Two frames may share an RGB-D image, and the timestamps in a list must increase.
+  // Two frames may share an RGB-D image.
   if (stamp_s <= stream.last_stamp_s) return;
   constexpr bool is_color = std::is_same_v<Pixel, Bgr>;
   const std::string file = file_of(stream, name, is_color);

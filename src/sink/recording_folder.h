@@ -28,7 +28,8 @@ class RecordingFolder {
   /// scene.yaml's folder.
   std::filesystem::path place_of(const std::filesystem::path& named) const;
   /// Adds a frame; its images are called `name`. An image with the timestamp of the one before is
-  /// that one, and one that is the colour camera's picture is not written again. Throws Error.
+  /// that one, and one that is the colour camera's picture is not written again. If the clock was
+  /// set back, time goes on from the frame before. Throws Error.
   void write(const FrameSet& frame, const std::string& name);
 
  private:
@@ -46,6 +47,8 @@ class RecordingFolder {
   template <class Pixel>
   void write_image(Stream& stream, const InputImage<Pixel>& image, double stamp_s,
                    const std::string& name);
+  /// The timestamps in a list must increase.
+  void follow_clock(double stamp_s);
   void add(Stream& stream, double stamp_s, const std::string& file) const;
 
   std::filesystem::path folder_, scene_file_;
@@ -53,6 +56,7 @@ class RecordingFolder {
   Stream color_;
   std::vector<Stream> rgbd_color_;
   std::vector<std::optional<Stream>> rgbd_depth_;  ///< of cameras that measure depth
+  double clock_shift_s_ = 0;  ///< added to all timestamps
   std::vector<std::uint8_t> bytes_;
 };
 

@@ -11,10 +11,13 @@ namespace diminish {
 namespace {
 
 constexpr double longest_stall_s = 60;
+/// How far a clock is set back. The next time it is set right.
+constexpr double clock_error_s = 3;
 
-/// The probabilities, an image each, of what goes wrong.
+/// The probabilities, an image each, of what goes wrong. resize: at each opening, that all images
+/// have half the size.
 struct Faults {
-  double drop, duplicate, disorder, wrong_size, torn, stall, unplug;
+  double drop, duplicate, disorder, wrong_size, torn, stall, unplug, clock, resize;
   double stall_s;
 };
 
@@ -29,13 +32,16 @@ class FaultCamera : public CameraSource {
                 probability(settings, "torn"),
                 probability(settings, "stall"),
                 probability(settings, "unplug"),
+                probability(settings, "clock"),
+                probability(settings, "resize"),
                 settings.number("stall_s", 1.5, 0, longest_stall_s)} {
     settings.expect_parameters({"seed", "drop", "duplicate", "disorder", "wrong_size", "torn",
-                                "stall", "stall_s", "unplug"});
+                                "stall", "stall_s", "unplug", "clock", "resize"});
     static std::atomic<unsigned> openings = 0;
     const unsigned opening = openings++;
     random_.seed(static_cast<unsigned>(settings.number("seed", 1, 0, 1e9)) + opening);
     if (faults_.unplug > 0 && opening % 3 == 1) settings.fail("unplugged", Error::device);
+    is_resized_ = happens(faults_.resize);
     camera_ = open_camera(uri, request);
   }
 
@@ -51,6 +57,8 @@ class FaultCamera : public CameraSource {
       return Status::nothing;
     }
     double& last_stamp_s = last_stamps_s_[image.sensor == Sensor::depth ? 1 : 0];
+    if (happens(faults_.clock)) clock_error_s_ = clock_error_s_ == 0 ? -clock_error_s : 0;
+    image.stamp_s += clock_error_s_;
     if (happens(faults_.duplicate) && last_stamp_s > 0) image.stamp_s = last_stamp_s;
     if (happens(faults_.disorder)) image.stamp_s -= 0.2;
     last_stamp_s = std::max(last_stamp_s, image.stamp_s);
@@ -58,6 +66,10 @@ class FaultCamera : public CameraSource {
     if (happens(faults_.wrong_size)) {
       image.color.resize(16, 12);
       image.depth.resize(16, 12);
+    }
+    if (is_resized_) {
+      image.color.resize(image.color.width() / 2, image.color.height() / 2);
+      image.depth.resize(image.depth.width() / 2, image.depth.height() / 2);
     }
     return Status::image;
   }
@@ -76,6 +88,8 @@ class FaultCamera : public CameraSource {
   std::unique_ptr<CameraSource> camera_;
   std::mt19937 random_;
   std::array<double, 2> last_stamps_s_{};
+  double clock_error_s_ = 0;
+  bool is_resized_ = false;
   std::size_t dropped_ = 0;
 };
 
