@@ -107,7 +107,8 @@ void RecordingFolder::write(const FrameSet& frame, const std::string& name) {
     } else {
       write_image(rgbd_color_[k], rgbd.color, rgbd.color_stamp_s + clock_shift_s_, name);
     }
-    if (rgbd_depth_[k]) write_image(*rgbd_depth_[k], rgbd.depth, rgbd.depth_stamp_s + clock_shift_s_, name);
+    if (rgbd_depth_[k])
+      write_image(*rgbd_depth_[k], rgbd.depth, rgbd.depth_stamp_s + clock_shift_s_, name);
   }
   write_image(color_, frame.color, frame.stamp_s + clock_shift_s_, name);
 }

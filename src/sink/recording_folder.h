@@ -56,7 +56,7 @@ class RecordingFolder {
   Stream color_;
   std::vector<Stream> rgbd_color_;
   std::vector<std::optional<Stream>> rgbd_depth_;  ///< of cameras that measure depth
-  double clock_shift_s_ = 0;  ///< added to all timestamps
+  double clock_shift_s_ = 0;                       ///< added to all timestamps
   std::vector<std::uint8_t> bytes_;
 };
 
