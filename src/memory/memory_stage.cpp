@@ -80,12 +80,26 @@ void MemoryStage::recall(const RecallInputs& inputs, const SceneSamples& samples
 
 void MemoryStage::merge(const RecallInputs& inputs, ColorMapsBySource color_maps,
                         Reconstruction& reconstruction, MemoryReport& report) {
+  background_fit_.reset();
   if (recalled_ == 0) return;
   const auto recalled = std::span(recollections_).first(recalled_);
   merge_.merge(with_poses(inputs, poses_), recalled, color_maps,
                inputs.options.memory == "witnessed", reconstruction);
-  report_ages(recalled, merge_.count_remembered(recalled_, reconstruction), inputs.frame.stamp_s,
-              report);
+  const std::vector<std::size_t> pixels = merge_.count_remembered(recalled_, reconstruction);
+  report_ages(recalled, pixels, inputs.frame.stamp_s, report);
+  if (report.background_pixels > 0) find_background_fit(inputs, pixels);
+}
+
+void MemoryStage::find_background_fit(const RecallInputs& inputs,
+                                      const std::vector<std::size_t>& pixels) {
+  std::size_t most = recalled_;
+  for (std::size_t i = 0; i < recalled_; ++i) {
+    if (!recollections_[i].keyframe().is_background) continue;
+    if (most == recalled_ || pixels[i] > pixels[most]) most = i;
+  }
+  fits_.assign(1, std::nullopt);
+  fit_.find(inputs.frame.color, inputs.masks.color, recollections_[most].samples(), fits_);
+  background_fit_ = fits_[0];
 }
 
 void MemoryStage::forget() {

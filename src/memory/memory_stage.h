@@ -9,6 +9,7 @@
 #include "diminish/scan.h"
 #include "memory/recall_merge.h"
 #include "memory/scene_memory.h"
+#include "scene/scene_fit.h"
 
 namespace diminish {
 
@@ -17,7 +18,7 @@ namespace diminish {
 class MemoryStage {
  public:
   explicit MemoryStage(const Rig& rig)
-      : shared_(std::make_shared<Shared>(rig)), merge_(rig.color) {}
+      : shared_(std::make_shared<Shared>(rig)), merge_(rig.color), fit_(rig.color) {}
 
   void share(MemoryStage& other) { shared_ = other.shared_; }
   void take_turn() { turn_.take(shared_->turns); }
@@ -34,6 +35,9 @@ class MemoryStage {
   /// Stage::merging. inputs: as in recall(). color_maps: of the RGB-D cameras.
   void merge(const RecallInputs& inputs, ColorMapsBySource color_maps,
              Reconstruction& reconstruction, MemoryReport& report);
+  /// How well the scan's keyframe of which the last `merge` shows most fits the picture: as
+  /// SceneFit. Nothing if it shows none.
+  const std::optional<double>& background_fit() const { return background_fit_; }
   void forget();
 
   /// Fills the memory before the first frame. Throws Error (keyframes_of).
@@ -53,12 +57,18 @@ class MemoryStage {
   template <class Work>
   auto in_turn(const Work& work);
 
+  /// pixels: how many each recollection shows as remembered.
+  void find_background_fit(const RecallInputs& inputs, const std::vector<std::size_t>& pixels);
+
   std::shared_ptr<Shared> shared_;
   Turn turn_;
   Poses poses_;  ///< of this frame, anchored
   std::vector<Recollection> recollections_;
   std::size_t recalled_ = 0;  ///< that are used in this frame
   RecallMerge merge_;
+  SceneFit fit_;
+  std::vector<std::optional<double>> fits_;
+  std::optional<double> background_fit_;
 };
 
 }  // namespace diminish

@@ -56,6 +56,8 @@ class Recollection {
   };
   const std::vector<Beside>& beside() const { return beside_; }
   const Keyframe& keyframe() const { return *keyframe_; }
+  /// What the keyframe's camera saw, where it is in the frame's picture.
+  const SceneSamples& samples() const { return samples_; }
   /// One of the keyframe's colours as it is in the frame.
   Eigen::Array3f mapped(std::uint8_t b, std::uint8_t g, std::uint8_t r) const {
     return {levels_[0][b], levels_[1][g], levels_[2][r]};

@@ -1,12 +1,38 @@
 #include "pipeline/doubt.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <string>
+#include <utility>
 
 namespace diminish {
 namespace {
 
 bool shows_doubtful(const DiminishedFrame& result) {
   return result.report.in_doubt && !result.objects.empty();
+}
+
+bool is_wrong(const MarkerScale& scale) {
+  return scale.ratio > 1 + DepthScale::tolerance || scale.ratio < 1 / (1 + DepthScale::tolerance);
+}
+
+void doubt(std::string message, FrameReport& report) {
+  report.in_doubt = true;
+  report.messages.push_back(std::move(message));
+}
+
+std::string wrong_scale(const RgbdCamera& camera, const MarkerScale& scale) {
+  return fmt::format(
+      "{}: marker {} is {:.3g} times as far away by depth as by its size: correct size_m (measure "
+      "the black square) or depth_unit_m; diminish check says which",
+      camera.name, scale.marker, scale.ratio);
+}
+
+std::string no_fit(const std::string& camera) {
+  return camera +
+         ": what it sees does not fit the picture. Has it moved? diminish calibrate rig --repair. "
+         "Is it late, or its calibration another's? diminish check";
 }
 
 void show_camera(const FrameSet& frame, DiminishedFrame& result) {
@@ -17,14 +43,27 @@ void show_camera(const FrameSet& frame, DiminishedFrame& result) {
 
 }  // namespace
 
-void Doubt::judge(const Rig& rig, const Options& options, FrameReport& report) {
-  for (std::size_t k = 0; k < report.fit.size(); ++k) {
-    if (!report.fit[k] || *report.fit[k] >= options.least_fit) continue;
-    report.in_doubt = true;
-    report.messages.push_back(rig.rgbd[k].name +
-                              ": what it sees does not fit the picture: has it moved, is it late, "
-                              "or is its calibration wrong?");
+void Doubt::judge(const Rig& rig, const Options& options, const Evidence& evidence,
+                  FrameReport& report) {
+  if (options.least_fit <= -1) return;
+  for (std::size_t k = 0; k < rig.rgbd.size(); ++k) {
+    const auto& scale = evidence.scales[k];
+    // What explains more comes first: a wrong scale spoils the fit, too.
+    if (scale && is_wrong(*scale)) {
+      doubt(wrong_scale(rig.rgbd[k], *scale), report);
+    } else if (k < report.fit.size() && report.fit[k] && *report.fit[k] < options.least_fit) {
+      doubt(no_fit(rig.rgbd[k].name), report);
+    }
   }
+}
+
+void Doubt::judge_background(const std::optional<double>& fit, const Options& options,
+                             FrameReport& report) {
+  if (!fit || *fit >= options.least_fit) return;
+  doubt(
+      "the background (diminish scan) does not fit the picture: is it another room's, or has this "
+      "one changed? diminish scan",
+      report);
 }
 
 bool Doubt::act(const FrameSet& frame, const Options& options, DiminishedFrame& result) {

@@ -1,12 +1,15 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <vector>
 
 #include "core/turns.h"
 #include "diminish/diminished_frame.h"
 #include "diminish/frame_set.h"
 #include "diminish/options.h"
 #include "diminish/rig.h"
+#include "pose/depth_scale.h"
 
 namespace diminish {
 
@@ -24,8 +27,17 @@ class Doubt {
   void end_turn() { turn_.end(); }
   void forget();
 
-  /// From `report.fit`: sets `report.in_doubt`, and says why in `report.messages`.
-  static void judge(const Rig& rig, const Options& options, FrameReport& report);
+  /// What a frame shows of its set-up, for each RGB-D camera.
+  struct Evidence {
+    const std::vector<std::optional<MarkerScale>>& scales;
+  };
+  /// From `report.fit` and the evidence: sets `report.in_doubt`, and says in `report.messages` why,
+  /// and what to do.
+  static void judge(const Rig& rig, const Options& options, const Evidence& evidence,
+                    FrameReport& report);
+  /// The same, of what is shown of a scan (MemoryStage::background_fit).
+  static void judge_background(const std::optional<double>& fit, const Options& options,
+                               FrameReport& report);
   /// Shows what the option `on_doubt` says. With `hold`, waits for its turn and ends it. Returns
   /// whether that changed the result.
   bool act(const FrameSet& frame, const Options& options, DiminishedFrame& result);

@@ -22,6 +22,7 @@
 #include "pipeline/methods.h"
 #include "pipeline/stage_timer.h"
 #include "pose/camera_poses.h"
+#include "pose/depth_scale.h"
 #include "pose/frame_markers.h"
 #include "pose/pose_refinement.h"
 #include "scene/background.h"
@@ -87,6 +88,7 @@ struct Pipeline::Implementation {
         refinement(rig.color, PoseRefinement::usual_width, PoseRefinement::usual_last_step, false,
                    PoseRefinement::usual_coarser),
         fit(rig.color),
+        scale(rig, scene),
         background(rig.color),
         backend(rig),
         memory(rig) {}
@@ -172,6 +174,8 @@ struct Pipeline::Implementation {
   SceneSamples samples;
   PoseRefinement refinement;
   SceneFit fit;
+  DepthScale scale;
+  std::vector<std::optional<MarkerScale>> scales;
   Background background;
   ColorMaps color_maps;
   int smoothing = 0;   ///< its share
@@ -320,7 +324,8 @@ void Pipeline::Implementation::process(const FrameSet& given, DiminishedFrame& r
       refine_poses(frame, report.poses);
       report.fit.resize(rig.rgbd.size());
       fit.find(frame.color, masks.color, samples, report.fit);
-      Doubt::judge(rig, options, report);
+      scale.find(frame, report.markers, scales);
+      Doubt::judge(rig, options, {scales}, report);
     });
   };
   const auto recall = [&] {
@@ -367,6 +372,7 @@ void Pipeline::Implementation::process(const FrameSet& given, DiminishedFrame& r
   stage(Stage::merging, [&] {
     if (!methods.remembers) return;
     memory.merge(recalling, color_maps.by_source(), result.reconstruction, report.memory);
+    Doubt::judge_background(memory.background_fit(), options, report);
   });
 
   // 3.4 Compositing, colour correction, inpainting; a backend may have done these

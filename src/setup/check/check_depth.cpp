@@ -10,8 +10,8 @@
 #include <set>
 
 #include "core/robust.h"
+#include "pose/depth_ratio.h"
 #include "setup/check/check_focal_length.h"
-#include "setup/check/depth_ratio.h"
 #include "setup/check/flipped.h"
 
 namespace diminish {

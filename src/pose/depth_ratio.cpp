@@ -1,4 +1,4 @@
-#include "setup/check/depth_ratio.h"
+#include "pose/depth_ratio.h"
 
 #include <cmath>
 
