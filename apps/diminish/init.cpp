@@ -18,17 +18,18 @@ namespace {
 struct InitCommand {
   std::filesystem::path folder;
   std::string color;
-  std::vector<std::string> rgbd;  ///< [NAME=]CAMERA
+  std::vector<std::string> rgbd, color_only;  ///< [NAME=]CAMERA
   double marker_mm = 150;
 
   int execute() const;
 };
 
-std::string name_of_rgbd(std::size_t k) {
-  return fmt::format("rgbd{}", k);
+std::string numbered(const char* kind, const std::vector<InitialRig::Named>& before) {
+  return fmt::format("{}{}", kind, before.size());
 }
 
-/// The connected devices: those that deliver depth, and the first one that does not.
+/// The connected devices: those that deliver depth, and the first one that does not. Without any
+/// depth, the others that do not, too.
 InitialRig search() {
   InitialRig rig;
   using Sources = Registry<CameraSource>;
@@ -37,7 +38,7 @@ InitialRig search() {
     if (!list) continue;
     try {
       for (const CameraDevice& device : list()) {
-        const std::string name = name_of_rgbd(rig.rgbd.size());
+        const std::string name = numbered("rgbd", rig.rgbd);
         try {
           FoundCamera found = look_at_camera(device.uri, name);
           if (found.depth) {
@@ -45,7 +46,7 @@ InitialRig search() {
           } else if (!rig.color.color) {
             rig.color = std::move(found);
           } else {
-            fmt::print("{}: left out; {} is the user's view\n", device.uri, rig.color.uri);
+            rig.color_only.push_back({numbered("camera", rig.color_only), {std::move(found)}});
           }
         } catch (const Error& error) {
           fmt::print(stderr, "diminish: {}\n", error.what());
@@ -55,27 +56,30 @@ InitialRig search() {
       fmt::print(stderr, "diminish: {}\n", error.what());
     }
   }
+  if (rig.rgbd.empty()) return rig;
+  for (const InitialRig::Named& camera : rig.color_only) {
+    fmt::print("{}: left out; {} is the user's view\n", camera.devices[0].uri, rig.color.uri);
+  }
+  rig.color_only.clear();
   return rig;
 }
 
-/// The cameras that the flags name.
-InitialRig look_at(const std::string& color, const std::vector<std::string>& rgbd) {
-  InitialRig rig;
-  rig.color = look_at_camera(color, "color");
-  for (const std::string& text : rgbd) {
+/// Looks at the cameras that a flag names. Without a name they are numbered.
+void look_at(const std::vector<std::string>& flags, const char* kind,
+             std::vector<InitialRig::Named>& cameras) {
+  for (const std::string& text : flags) {
     const std::size_t equals = text.find('=');
     const bool is_named = equals != std::string::npos && equals < text.find(':');
-    const std::string name = is_named ? text.substr(0, equals) : name_of_rgbd(rig.rgbd.size());
+    const std::string name = is_named ? text.substr(0, equals) : numbered(kind, cameras);
     FoundCamera found = look_at_camera(is_named ? text.substr(equals + 1) : text, name);
-    const auto same = std::find_if(rig.rgbd.begin(), rig.rgbd.end(),
+    const auto same = std::find_if(cameras.begin(), cameras.end(),
                                    [&](const auto& camera) { return camera.name == name; });
-    if (same != rig.rgbd.end()) {
+    if (same != cameras.end()) {
       same->devices.push_back(std::move(found));
     } else {
-      rig.rgbd.push_back({name, {std::move(found)}});
+      cameras.push_back({name, {std::move(found)}});
     }
   }
-  return rig;
 }
 
 void print(const FoundCamera& camera, const std::string& name) {
@@ -98,8 +102,16 @@ int InitCommand::execute() const {
       throw Error(file.string() + ": exists already, expected a new folder");
     }
   }
-  if (color.empty() && !rgbd.empty()) throw Error("--color: expected a camera as well as --rgbd");
-  const InitialRig rig = color.empty() ? search() : look_at(color, rgbd);
+  InitialRig rig;
+  if (!color.empty()) {
+    rig.color = look_at_camera(color, "color");
+    look_at(rgbd, "rgbd", rig.rgbd);
+    look_at(color_only, "camera", rig.color_only);
+  } else if (rgbd.empty() && color_only.empty()) {
+    rig = search();
+  } else {
+    throw Error("--color: expected a camera as well as --rgbd or --camera");
+  }
   if (!rig.color.color) {
     throw Error(
         "no camera for the user's view was found, expected one that `diminish devices` lists, or "
@@ -108,24 +120,30 @@ int InitCommand::execute() const {
   const std::string rig_text = initial_rig_yaml(rig);
   std::filesystem::create_directories(folder, ignored);
   write_file(rig_file, rig_text);
-  write_file(scene_file, initial_scene_yaml(marker_mm / 1000));
+  write_file(scene_file, initial_scene_yaml(rig, marker_mm / 1000));
 
   print(rig.color, "color");
-  for (const InitialRig::Rgbd& camera : rig.rgbd) {
-    for (const FoundCamera& device : camera.devices) print(device, camera.name);
-  }
-  if (rig.rgbd.empty()) {
-    fmt::print(
-        "No depth camera was found. Add one with --rgbd CAMERA, or look around first: diminish "
-        "scan --help\n");
+  for (const auto* const cameras : {&rig.rgbd, &rig.color_only}) {
+    for (const InitialRig::Named& camera : *cameras) {
+      for (const FoundCamera& device : camera.devices) print(device, camera.name);
+    }
   }
   fmt::print(
       "\nWritten: {}, {}. Next:\n"
       "  diminish markers --ids 0 --size-mm {:g} --out marker.pdf   # print it, put it where all "
-      "cameras see it\n"
+      "cameras see it\n",
+      rig_file.string(), scene_file.string(), marker_mm);
+  if (rig.rgbd.empty()) {
+    fmt::print(
+        "  diminish markers --ids {} --size-mm {:g} --out object.pdf   # put it on the object: "
+        "without a depth camera (--rgbd CAMERA), a marker tells what is removed; its corners are "
+        "in scene.yaml\n",
+        initial_object_marker, 1000 * initial_object_marker_m);
+  }
+  fmt::print(
       "  diminish serve {}\n"
       "  diminish check {}   # what would make it better\n",
-      rig_file.string(), scene_file.string(), marker_mm, folder.string(), folder.string());
+      folder.string(), folder.string());
   return 0;
 }
 
@@ -141,6 +159,9 @@ void add_init(CLI::App& program, int& exit_code) {
       ->type_name("CAMERA");
   sub->add_option("--rgbd", command->rgbd,
                   "An RGB-D camera; twice with the same NAME for separate colour and depth devices")
+      ->type_name("[NAME=]CAMERA");
+  sub->add_option("--camera", command->color_only,
+                  "A colour camera beside the user's: one sees what is flat, two find depth")
       ->type_name("[NAME=]CAMERA");
   sub->add_option("--marker-mm", command->marker_mm, "The side of the world marker's black square")
       ->check(CLI::Range(10., 2000.))

@@ -157,6 +157,9 @@ TEST_F(BoxOccluderOnPlate, WrongSettingsAreNamed) {
               HasSubstr("s.yaml:3: frame: expected one of world, rgbd0, rgbd1, got 'rgbd7'"));
   EXPECT_THAT(error_with("frame: world\nmin: [0, 2, 0]\nmax: [1, 1, 1]"),
               HasSubstr("s.yaml:5: max: expected three numbers, each above min's"));
+  rig = without_depth(rig);
+  EXPECT_THAT(error_with("frame: world\nmin: [0, 0, 0]\nmax: [1, 1, 1]"),
+              HasSubstr("s.yaml:2: detector: box needs a camera that measures depth (rgbd)"));
 }
 
 }  // namespace

@@ -169,10 +169,13 @@ TEST(DifferenceOccluder, WrongSettingsAreNamed) {
       HasSubstr("s.yaml:3: clearance: expected a number from 0.05 to 0.95"));
   EXPECT_THAT(error_of([&] { make_detector("name: a\ndetector: difference\nfree: 1", rig); }),
               HasSubstr("free"));
-  Rig without = rig;
-  without.rgbd.clear();
-  EXPECT_THAT(error_of([&] { make_detector("name: a\ndetector: difference", without); }),
-              HasSubstr("s.yaml:2: detector: difference needs an RGB-D camera in rig.yaml"));
+  Rig none = rig;
+  none.rgbd.clear();
+  for (const Rig& without : {none, without_depth(rig)}) {
+    EXPECT_THAT(error_of([&] { make_detector("name: a\ndetector: difference", without); }),
+                HasSubstr("s.yaml:2: detector: difference needs a camera that measures depth "
+                          "(rgbd) in rig.yaml"));
+  }
 }
 
 TEST(DifferenceOccluder, SameMasksWhateverTheThreads) {

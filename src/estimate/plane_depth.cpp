@@ -53,12 +53,32 @@ InversePlane in_front(const InversePlane& plane) {
   return cut;
 }
 
+/// Beyond it a depth does not fit into the image.
+double least_inverse_depth(double depth_unit_m) {
+  constexpr double greatest_value = 65535;
+  return 1 / (greatest_value * depth_unit_m);
+}
+
 }  // namespace
+
+bool is_in_view(const InversePlane& plane, const Intrinsics& view, double depth_unit_m) {
+  const InversePlane cut = in_front(plane);
+  if (!plane.corners.empty() && cut.corners.empty()) return false;
+  for (int y = 0; y < view.height; ++y) {
+    const Columns columns = columns_of(cut, view, y);
+    if (columns.first >= columns.last) continue;
+    // Along a row the inverse depth is greatest at one of its ends.
+    for (const int x : {columns.first, columns.last - 1}) {
+      const Eigen::Vector2d ray((x - view.cx) / view.fx, (y - view.cy) / view.fy);
+      if (plane.inverse_depth(ray) > least_inverse_depth(depth_unit_m)) return true;
+    }
+  }
+  return false;
+}
 
 void draw_planes(const std::vector<InversePlane>& planes, const Intrinsics& view,
                  double depth_unit_m, Image<std::uint16_t>& depth) {
-  // Beyond it a depth does not fit into the image.
-  const auto least = static_cast<float>(1 / (65535 * depth_unit_m));
+  const auto least = static_cast<float>(least_inverse_depth(depth_unit_m));
   const auto unit = static_cast<float>(depth_unit_m);
   std::vector<InversePlane> visible;
   for (const InversePlane& plane : planes) {

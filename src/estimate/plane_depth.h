@@ -37,6 +37,10 @@ inline InversePlane transformed(const InversePlane& plane, const RigidTransform&
   return there;
 }
 
+/// Whether any pixel of the camera shows the plane where nothing is in front of it, nearer than
+/// what a depth image can hold. view: a camera without lens distortion.
+bool is_in_view(const InversePlane& plane, const Intrinsics& view, double depth_unit_m);
+
 /// Writes how far away the nearest plane is along each pixel's ray; 0 where there is none. view: a
 /// camera without lens distortion. depth: of its size. Cost: 1 ns per pixel and plane, shared by
 /// threads.

@@ -29,7 +29,9 @@ class PlanesEstimator final : public DepthEstimator {
   void estimate(const Inputs& inputs, std::vector<Image<std::uint16_t>>& depths,
                 std::vector<std::string>& messages) override {
     std::vector<InversePlane> in_user;
-    for (const GivenPlane& plane : planes_) {
+    std::vector<Sight> sights;
+    for (std::size_t i = 0; i < planes_.size(); ++i) {
+      const GivenPlane& plane = planes_[i];
       if (plane.from == GivenPlane::From::features) continue;
       std::string problem;
       const auto found = plane.from == GivenPlane::From::world
@@ -37,6 +39,7 @@ class PlanesEstimator final : public DepthEstimator {
                              : marker_plane(plane, inputs, problem);
       if (found) {
         in_user.push_back(*found);
+        sights.push_back({i, false});
       } else {
         messages.push_back(problem);
       }
@@ -46,15 +49,31 @@ class PlanesEstimator final : public DepthEstimator {
       std::vector<InversePlane> planes;
       planes.reserve(in_user.size());
       const RigidTransform& user_from_depth = *inputs.poses.color_from_depth[k];
-      for (const InversePlane& plane : in_user) {
-        planes.push_back(transformed(plane, user_from_depth));
+      const RgbdCamera& camera = rig_.rgbd[k];
+      for (std::size_t i = 0; i < in_user.size(); ++i) {
+        planes.push_back(transformed(in_user[i], user_from_depth));
+        Sight& sight = sights[i];
+        sight.is_in_any =
+            sight.is_in_any || is_in_view(planes.back(), camera.depth, camera.depth_unit_m);
       }
       add_feature_planes(inputs, k, planes, messages);
-      draw_planes(planes, rig_.rgbd[k].depth, rig_.rgbd[k].depth_unit_m, depths[k]);
+      draw_planes(planes, camera.depth, camera.depth_unit_m, depths[k]);
+    }
+    for (const Sight& sight : sights) {
+      if (sight.is_in_any) continue;
+      messages.push_back(fmt::format(
+          "planes[{}]: no camera that is used sees it: it is behind them or out of their pictures",
+          sight.index));
     }
   }
 
  private:
+  /// Whether any camera sees a plane of the scene.
+  struct Sight {
+    std::size_t index;
+    bool is_in_any;
+  };
+
   static std::optional<InversePlane> world_plane(const GivenPlane& plane, const Inputs& inputs,
                                                  std::string& problem) {
     if (!inputs.poses.color_from_world) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 #include "diminish/frame_source.h"
@@ -105,6 +106,32 @@ TEST(PlaneDepth, WhereThereIsNoPlaneNothingIsKnown) {
   EXPECT_EQ(depth(10, 18), 0);
 }
 
+/// As drawing it tells.
+TEST(PlaneDepth, InViewIsWhatWouldBeDrawn) {
+  const Intrinsics view{.width = 40, .height = 30, .fx = 40, .fy = 40, .cx = 19.5, .cy = 14.5};
+  const auto part = [](double x, double y, double z) {
+    InversePlane plane = InversePlane::through({0, 0, z}, {0, 0, -1});
+    plane.corners = {{x, y, z}, {x + 1, y, z}, {x + 1, y + 1, z}, {x, y + 1, z}};
+    return plane;
+  };
+  const InversePlane wall = InversePlane::through({0, 0, 2}, {0.2, 0, -1});
+  const InversePlane behind = InversePlane::through({0, 0, -1}, {0, 0.1, 1});
+  const InversePlane floor = InversePlane::through({0, 1, 0}, {0, -1, 0});
+  const InversePlane too_far = InversePlane::through({0, 0, 200}, {0, 0, -1});
+  int in_view = 0;
+  for (const InversePlane& plane :
+       {wall, behind, floor, too_far, part(-0.5, -0.5, 2), part(0.95, 0, 2), part(1.1, 0, 2),
+        part(0, -1.9, 2), part(-2.1, 0, 2), part(0, 0, -2)}) {
+    Image<std::uint16_t> depth(view.width, view.height, 0);
+    draw_planes({plane}, view, 0.001, depth);
+    const bool is_drawn =
+        std::any_of(depth.begin(), depth.end(), [](std::uint16_t value) { return value != 0; });
+    EXPECT_EQ(is_in_view(plane, view, 0.001), is_drawn) << plane.inverse.transpose();
+    in_view += is_drawn ? 1 : 0;
+  }
+  EXPECT_EQ(in_view, 4);
+}
+
 /// The bundled calendar, whose wall is the world marker's plane, without its depth.
 struct Wall {
   explicit Wall(const std::string& planes)
@@ -189,6 +216,21 @@ TEST(PlanesEstimator, WithoutAWorldItSaysSo) {
   EXPECT_EQ(wall.estimate()(300, 200), 0);
   ASSERT_EQ(wall.estimation->messages().size(), 1U);
   EXPECT_EQ(wall.estimation->messages()[0], "planes: where the world is, is not known");
+}
+
+/// Behind the camera; a part beside its picture.
+TEST(PlanesEstimator, APlaneOutOfViewIsSaid) {
+  for (const std::string plane : {"{corners: [[0, 0, 6], [1, 0, 6], [1, 1, 6], [0, 1, 6]]}",
+                                  "{corners: [[40, 0, 0], [41, 0, 0], [41, 1, 0], [40, 1, 0]]}"}) {
+    SCOPED_TRACE(plane);
+    Wall wall("planes: [{point: [0, 0, 0], normal: [0, 0, 1]}, " + plane + "]\n");
+    const ImageView<std::uint16_t> depth = wall.estimate();
+    EXPECT_LT(wall.distance_m(depth, 300, 200), 0.001);
+    ASSERT_EQ(wall.estimation->messages().size(), 1U);
+    EXPECT_EQ(
+        wall.estimation->messages()[0],
+        "planes[1]: no camera that is used sees it: it is behind them or out of their pictures");
+  }
 }
 
 TEST(PlanesEstimator, FindsTheWallByItsFeatures) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/rows.h"
@@ -16,6 +17,8 @@ namespace {
 
 /// Cameras nearer to each other than this see no parallax.
 constexpr double least_baseline_m = 0.01;
+/// A camera that sees less than this share of what another may see cannot tell its depth.
+constexpr double least_overlap = 0.05;
 
 /// Depth from two or more colour pictures: each camera's is swept against the picture of the camera
 /// that looks most alike, and kept where a depth image of another camera agrees.
@@ -46,9 +49,7 @@ class StereoEstimator final : public DepthEstimator {
       if (!inputs.wanted[k]) continue;
       camera.partner = find_partner(k);
       if (!camera.partner) {
-        messages.push_back(camera.rig.name +
-                           ": no other camera sees the scene from elsewhere, so its depth is not "
-                           "known");
+        messages.push_back(why_alone(k));
       }
     }
     for_tasks(cameras_.size(), [&](std::size_t k) {
@@ -90,21 +91,62 @@ class StereoEstimator final : public DepthEstimator {
     return cameras_[other].user_from_color->inverse() * *cameras_[k].user_from_color;
   }
 
-  /// The camera that looks in the most similar direction.
+  bool is_elsewhere(std::size_t k, std::size_t other) const {
+    return other != k && cameras_[other].user_from_color &&
+           other_from(k, other).translation.norm() >= least_baseline_m;
+  }
+
+  /// Of the space that a camera sees within its range, the share that another one sees too: of
+  /// points all over its picture, at distances whose inverses are even.
+  double overlap(std::size_t k, std::size_t other) const {
+    const RgbdCamera& camera = cameras_[k].rig;
+    const Intrinsics& view = camera.depth;
+    const Intrinsics& other_view = cameras_[other].rig.depth;
+    const RigidTransform other_from_own = other_from(k, other);
+    constexpr int steps = 8;
+    int seen = 0;
+    for (int i = 0; i < steps * steps * steps; ++i) {
+      const auto part = [i](int stride) { return (i / stride % steps + 0.5) / steps; };
+      const double inverse_depth =
+          1 / camera.farthest_m + part(1) * (1 / camera.nearest_m - 1 / camera.farthest_m);
+      const Eigen::Vector3d ray((part(steps) * view.width - view.cx) / view.fx,
+                                (part(steps * steps) * view.height - view.cy) / view.fy, 1);
+      const Eigen::Vector3d point = other_from_own * (ray / inverse_depth);
+      if (!(point.z() > 0)) continue;
+      const double u = other_view.fx * point.x() / point.z() + other_view.cx;
+      const double v = other_view.fy * point.y() / point.z() + other_view.cy;
+      if (u >= 0 && u < other_view.width && v >= 0 && v < other_view.height) ++seen;
+    }
+    return static_cast<double>(seen) / (steps * steps * steps);
+  }
+
+  /// The camera that looks in the most similar direction, of those that see the same.
   std::optional<std::size_t> find_partner(std::size_t k) const {
     std::optional<std::size_t> best;
     double best_cosine = 0;
     for (std::size_t other = 0; other < cameras_.size(); ++other) {
-      if (other == k || !cameras_[other].user_from_color) continue;
-      const RigidTransform other_from_own = other_from(k, other);
-      if (other_from_own.translation.norm() < least_baseline_m) continue;
-      const double cosine = other_from_own.rotation(2, 2);
-      if (cosine > best_cosine) {
+      if (!is_elsewhere(k, other)) continue;
+      const double cosine = other_from(k, other).rotation(2, 2);
+      if (cosine > best_cosine && overlap(k, other) >= least_overlap) {
         best = other;
         best_cosine = cosine;
       }
     }
     return best;
+  }
+
+  /// Why a camera has no partner.
+  std::string why_alone(std::size_t k) const {
+    const RgbdCamera& camera = cameras_[k].rig;
+    for (std::size_t other = 0; other < cameras_.size(); ++other) {
+      if (!is_elsewhere(k, other)) continue;
+      return fmt::format(
+          "{}: no other camera looks the same way at what it sees between {:g} and {:g} m "
+          "(range_m), so its depth is not known",
+          camera.name, camera.nearest_m, camera.farthest_m);
+    }
+    return camera.name +
+           ": no other camera sees the scene from elsewhere, so its depth is not known";
   }
 
   void sweep(const Inputs& inputs, std::size_t k) {

@@ -2,6 +2,7 @@
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/task_arena.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
@@ -117,6 +118,24 @@ TEST(StereoEstimator, ACameraThatSeesNothingNewIsSaid) {
   ASSERT_EQ(stereo.estimation.messages().size(), 2U);
   EXPECT_EQ(stereo.estimation.messages()[0],
             "left: no other camera sees the scene from elsewhere, so its depth is not known");
+}
+
+/// The same place, but the second camera looks past what the first sees, or away from it.
+TEST(StereoEstimator, CamerasThatDoNotOverlapAreSaid) {
+  for (const double degrees : {75., 180.}) {
+    SCOPED_TRACE(degrees);
+    StereoFrame stereo;
+    RigidTransform turn;
+    turn.rotation =
+        Eigen::AngleAxisd(degrees / 180 * M_PI, Eigen::Vector3d::UnitY()).toRotationMatrix();
+    stereo.poses.color_from_depth[1] = *stereo.poses.color_from_depth[1] * turn;
+    const FrameSet& completed = stereo.estimate(stereo.recording.rig.color.bounds());
+    EXPECT_EQ(compare_with_truth(stereo, completed.rgbd[0].depth).found, 0);
+    ASSERT_EQ(stereo.estimation.messages().size(), 2U);
+    EXPECT_EQ(stereo.estimation.messages()[0],
+              "left: no other camera looks the same way at what it sees between 0.4 and 3 m "
+              "(range_m), so its depth is not known");
+  }
 }
 
 TEST(StereoEstimator, ACameraWithoutPicturesIsLeftOut) {

@@ -43,6 +43,15 @@ void check_triangles(const MarkerSettings& settings, const Config& place) {
   }
 }
 
+/// Estimates come too late: they are made where objects are known.
+void check_measured_depth(const std::string& detector, const Config& place, const Rig* rig) {
+  if (rig == nullptr) return;
+  const bool any = std::any_of(rig->rgbd.begin(), rig->rgbd.end(),
+                               [](const RgbdCamera& camera) { return camera.measures_depth; });
+  if (any) return;
+  place.find("detector").fail(detector + " needs a camera that measures depth (rgbd) in rig.yaml");
+}
+
 }  // namespace
 
 void MarkerSettings::check(const Config& place, const Rig*) const {
@@ -77,6 +86,7 @@ void BoxSettings::check(const Config& place, const Rig* rig) const {
   if ((min_m.array() >= max_m.array()).any()) {
     place.find("max").fail("expected three numbers, each above min's");
   }
+  check_measured_depth("box", place, rig);
   if (rig == nullptr || frame == "world" || find_rgbd_camera(*rig, frame) != nullptr) return;
   std::vector<std::string> known = {"world"};
   for (const RgbdCamera& camera : rig->rgbd) known.push_back(camera.name);
@@ -119,9 +129,7 @@ void DifferenceSettings::check(const Config& place, const Rig* rig) const {
   if (!(clearance >= 0.05 && clearance <= 0.95)) {
     place.find("clearance").fail("expected a number from 0.05 to 0.95");
   }
-  if (rig != nullptr && rig->rgbd.empty()) {
-    place.find("detector").fail("difference needs an RGB-D camera in rig.yaml");
-  }
+  check_measured_depth("difference", place, rig);
 }
 
 }  // namespace diminish

@@ -36,7 +36,7 @@ std::string line(const char* name, const Intrinsics& intrinsics, bool is_guess) 
   return fmt::format("{}: {}{}\n", name, as_yaml(intrinsics), is_guess ? guessed : "");
 }
 
-const FoundCamera& device_with(const InitialRig::Rgbd& camera,
+const FoundCamera& device_with(const InitialRig::Named& camera,
                                std::optional<Intrinsics> FoundCamera::*sensor, const char* what) {
   for (const FoundCamera& device : camera.devices) {
     if (device.*sensor) return device;
@@ -93,12 +93,14 @@ std::string initial_rig_yaml(const InitialRig& rig) {
     text += fmt::format("  - {{camera: {}, uri: {}}}\n", name, nlohmann::json(uri).dump());
   };
   add("color", rig.color.uri);
-  for (const InitialRig::Rgbd& camera : rig.rgbd) {
-    for (const FoundCamera& device : camera.devices) add(camera.name, device.uri);
+  for (const auto* const cameras : {&rig.rgbd, &rig.color_only}) {
+    for (const InitialRig::Named& camera : *cameras) {
+      for (const FoundCamera& device : camera.devices) add(camera.name, device.uri);
+    }
   }
   text += line("color", *rig.color.color, rig.color.color_is_guess);
   text += rig.rgbd.empty() ? "rgbd: []\n" : "rgbd:\n";
-  for (const InitialRig::Rgbd& camera : rig.rgbd) {
+  for (const InitialRig::Named& camera : rig.rgbd) {
     const FoundCamera& color = device_with(camera, &FoundCamera::color, "color");
     const FoundCamera& depth = device_with(camera, &FoundCamera::depth, "depth");
     text += fmt::format("  - name: {}\n", camera.name);
@@ -110,6 +112,13 @@ std::string initial_rig_yaml(const InitialRig& rig) {
         "RECORDING --depth` measures it\n",
         as_yaml(RigidTransform{}));
   }
+  if (!rig.color_only.empty()) text += "cameras:   # without depth, which is estimated\n";
+  for (const InitialRig::Named& camera : rig.color_only) {
+    const FoundCamera& color = device_with(camera, &FoundCamera::color, "color");
+    text += fmt::format("  - name: {}\n", camera.name);
+    text += "    " + line("color", *color.color, color.color_is_guess);
+    text += "    range_m: [0.4, 6]   # where surfaces are; a narrower range saves time\n";
+  }
   text +=
       "pose:\n"
       "  source: marker   # the world marker in scene.yaml, which all cameras must see. For "
@@ -119,15 +128,35 @@ std::string initial_rig_yaml(const InitialRig& rig) {
   return text;
 }
 
-std::string initial_scene_yaml(double marker_size_m) {
-  return fmt::format(
+std::string initial_scene_yaml(const InitialRig& rig, double marker_size_m) {
+  std::string text = fmt::format(
       "# Made by `diminish init`.\n"
       "world_marker: {{id: 0, size_m: {}}}   # the black square's side: measure the printed one\n"
       "occluders:\n"
-      "  - name: object\n"
-      "    detector: difference   # whatever stands free in front of what the RGB-D cameras see\n"
-      "    clearance: 0.3         # how free: the share of the way to the background, at least\n",
+      "  - name: object\n",
       marker_size_m);
+  if (!rig.rgbd.empty()) {
+    return text +
+           "    detector: difference   # whatever stands free in front of what the RGB-D cameras "
+           "see\n"
+           "    clearance: 0.3         # how free: the share of the way to the background, at "
+           "least\n";
+  }
+  text += fmt::format(
+      "    detector: marker   # what carries the marker; `difference` needs a depth camera\n"
+      "    marker: {{id: {}, size_m: {}}}\n"
+      "    # The object's corners in the marker's frame, metres (x right, y up, z out of the "
+      "marker): put in yours.\n"
+      "    vertices: [[-0.1, -0.1, 0], [0.1, -0.1, 0], [-0.1, 0.1, 0], [0.1, 0.1, 0],\n"
+      "               [-0.1, -0.1, -0.02], [0.1, -0.1, -0.02], [-0.1, 0.1, -0.02], [0.1, 0.1, "
+      "-0.02]]\n",
+      initial_object_marker, initial_object_marker_m);
+  if (rig.color_only.size() == 1) {
+    text +=
+        "planes: [{features: 2}]   # what stands behind it: up to two planes, found in the "
+        "pictures\n";
+  }
+  return text;
 }
 
 }  // namespace diminish

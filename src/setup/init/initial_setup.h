@@ -23,21 +23,26 @@ struct FoundCamera {
 /// camera's. Throws Error that names the URI if it delivers none.
 DIMINISH_EXPORT FoundCamera look_at_camera(const std::string& uri, const std::string& name);
 
-/// A rig.yaml, with comments that say what was guessed. color: the user's view. rgbd: delivers
-/// color and depth; one camera for each, or two of the same name, one for each sensor.
+/// The cameras that a set-up begins with. color: the user's view. rgbd: delivers color and depth;
+/// one camera for each, or two of the same name, one for each sensor. color_only: cameras beside
+/// the user's that deliver no depth.
 struct InitialRig {
-  FoundCamera color;
-  struct Rgbd {
+  struct Named {
     std::string name;
     std::vector<FoundCamera> devices;
   };
-  std::vector<Rgbd> rgbd;
+  FoundCamera color;
+  std::vector<Named> rgbd, color_only;
 };
-/// Throws Error where an RGB-D camera lacks a sensor.
+/// A rig.yaml, with comments that say what was guessed. Throws Error where a camera lacks a sensor.
 DIMINISH_EXPORT std::string initial_rig_yaml(const InitialRig& rig);
 
-/// A scene.yaml that removes whatever stands free, with comments. marker_size_m: of the world
-/// marker.
-DIMINISH_EXPORT std::string initial_scene_yaml(double marker_size_m);
+/// The marker on the object where nothing measures depth.
+constexpr int initial_object_marker = 1;
+constexpr double initial_object_marker_m = 0.08;
+
+/// A scene.yaml, with comments. It removes whatever stands free or, where nothing measures depth,
+/// what carries a marker. marker_size_m: of the world marker.
+DIMINISH_EXPORT std::string initial_scene_yaml(const InitialRig& rig, double marker_size_m);
 
 }  // namespace diminish

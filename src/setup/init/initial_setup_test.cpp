@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "diminish/config.h"
+#include "diminish/pipeline.h"
 #include "diminish/scene.h"
+#include "diminish/validate.h"
 #include "expect_error.h"
 #include "paths.h"
 
@@ -55,13 +57,33 @@ TEST(InitialSetup, WritesARigThatIsRead) {
   EXPECT_EQ(rig.live[3].name, "right");
   EXPECT_THAT(yaml, HasSubstr("a guess"));
 
-  const Scene scene = read_scene(Config::parse(initial_scene_yaml(0.15), "scene.yaml"));
+  const Scene scene = read_scene(Config::parse(initial_scene_yaml(initial, 0.15), "scene.yaml"));
+  EXPECT_NO_THROW(validate(scene, rig));
   EXPECT_EQ(scene.occluders.at(0).detector, "difference");
   EXPECT_EQ(scene.world_marker.size_m, 0.15);
 
   initial.rgbd = {{"left", {depth}}};
   EXPECT_THAT(error_of([&] { initial_rig_yaml(initial); }),
               HasSubstr("left: " + depth.uri + " delivers no color images"));
+}
+
+/// With two colour cameras beside the user's, with one, with none: what is written can be run.
+TEST(InitialSetup, WithoutDepthTheSetupCanBeRun) {
+  const std::string stereo = "recording:" + testing::recordings_dir() + "/stereo?loop&rate=10";
+  InitialRig initial;
+  initial.color = look_at_camera(stereo, "color");
+  initial.color_only = {{"left", {look_at_camera(stereo, "left")}},
+                        {"right", {look_at_camera(stereo, "right")}}};
+  for (const std::size_t cameras : {2, 1, 0}) {
+    SCOPED_TRACE(cameras);
+    initial.color_only.resize(cameras);
+    const Rig rig = read_rig(Config::parse(initial_rig_yaml(initial), "rig.yaml"));
+    const Scene scene = read_scene(Config::parse(initial_scene_yaml(initial, 0.15), "scene.yaml"));
+    ASSERT_EQ(rig.rgbd.size(), cameras);
+    EXPECT_EQ(rig.live.size(), cameras + 1);
+    for (const RgbdCamera& camera : rig.rgbd) EXPECT_FALSE(camera.measures_depth);
+    EXPECT_NO_THROW(Pipeline(rig, scene, Options{}));
+  }
 }
 
 TEST(InitialSetup, LiveCamerasOfARigAreChecked) {
