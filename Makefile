@@ -1,6 +1,6 @@
 # The two commands to know: `make demo` and `make test`. Everything they need, they install.
 
-.PHONY: help demo test test-page build deps python bench lint format sanitize fuzz clean
+.PHONY: help demo test test-page build deps python bench lint format sanitize tsan fuzz soak sbom reproducible clean
 
 help:
 	@echo "make demo      remove the objects of the bundled recordings, print the figures"
@@ -11,7 +11,11 @@ help:
 	@echo "make bench     measure each stage beside its peer"
 	@echo "make lint      clang-format and clang-tidy"
 	@echo "make sanitize  all tests under the address and undefined-behaviour sanitizers"
-	@echo "make fuzz      fuzz what parses, a minute each"
+	@echo "make tsan      all tests under the thread sanitizer"
+	@echo "make fuzz      fuzz what reads what comes from outside, a minute each"
+	@echo "make soak      hours of frames, and of all faults at once"
+	@echo "make sbom      what the program is made of: build/release/sbom.json (CycloneDX)"
+	@echo "make reproducible  two builds in two folders, whose bytes must be the same"
 
 deps:
 	@scripts/install-deps
@@ -45,8 +49,20 @@ format:
 sanitize: deps
 	scripts/sanitize
 
+tsan: deps
+	scripts/sanitize tsan
+
 fuzz: deps
 	scripts/fuzz
+
+soak: deps
+	scripts/soak
+
+sbom: build
+	scripts/sbom build/release > build/release/sbom.json
+
+reproducible: deps
+	scripts/reproduce
 
 clean:
 	rm -rf build demo/out
