@@ -110,7 +110,8 @@ class DIMINISH_EXPORT LiveSession {
   /// opened is not an error: its state is `lost` until it can be opened.
   LiveSession(const Rig& rig, const Scene& scene, const Options& options,
               const std::vector<LiveCamera>& cameras, const LiveOptions& live_options);
-  /// Stops the session and waits for its threads.
+  /// Stops the session and waits for its threads. From within a frame's `call` it cannot wait: the
+  /// session stops, and what it holds is given back when its threads have ended.
   ~LiveSession();
   LiveSession(const LiveSession&) = delete;
   LiveSession& operator=(const LiveSession&) = delete;

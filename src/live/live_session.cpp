@@ -141,16 +141,19 @@ struct LiveSession::Implementation {
     return threads() >= threads_for_two_frames ? 2 : 1;
   }
 
+  bool is_own_thread() const {
+    return std::any_of(lanes.begin(), lanes.end(), [](const auto& lane) {
+      return lane->thread.get_id() == std::this_thread::get_id();
+    });
+  }
+
   void stop() {
     stopped = true;
     arrived.notify();
     published.notify();
     for (const auto& feed : feeds) feed->stop();
-    const auto is_this_thread = [](const auto& lane) {
-      return lane->thread.get_id() == std::this_thread::get_id();
-    };
     // A listener's call: its thread ends when the call has returned.
-    if (std::any_of(lanes.begin(), lanes.end(), is_this_thread)) return;
+    if (is_own_thread()) return;
     const std::lock_guard lock(ending);
     for (const auto& lane : lanes) {
       if (lane->thread.joinable()) lane->thread.join();
@@ -332,7 +335,12 @@ LiveSession::LiveSession(const Rig& rig, const Scene& scene, const Options& opti
                          const std::vector<LiveCamera>& cameras, const LiveOptions& live_options)
     : implementation_(
           std::make_unique<Implementation>(rig, scene, options, cameras, live_options)) {}
-LiveSession::~LiveSession() = default;
+LiveSession::~LiveSession() {
+  // From within a frame's call, its thread cannot be waited for here.
+  if (implementation_->is_own_thread()) {
+    std::thread([ending = std::move(implementation_)] { ending->stop(); }).detach();
+  }
+}
 
 const Rig& LiveSession::rig() const {
   return implementation_->rig;

@@ -8,6 +8,8 @@
 
 #include "diminish/frame_source.h"
 #include "diminish/pipeline.h"
+#include "diminish/reconstructor.h"
+#include "diminish/registry.h"
 #include "expect_error.h"
 #include "paths.h"
 #include "same_pixels.h"
@@ -143,6 +145,49 @@ TEST_F(Live, StopsFromItsOwnCallAndFromSeveralThreads) {
   other.join();
   EXPECT_EQ(calls, 1);
   EXPECT_FALSE(session->status().running);
+}
+
+TEST_F(Live, MayBeDestroyedWithinItsOwnCall) {
+  const auto held = std::make_shared<int>(1);
+  auto session = start(cameras());
+  std::atomic<bool> is_destroyed = false;
+  auto listener = session->on_frame([&, held](const auto&) {
+    session.reset();
+    is_destroyed = true;
+  });
+  ASSERT_TRUE(eventually([&] { return is_destroyed.load(); }));
+  listener.reset();
+  EXPECT_TRUE(eventually([&] { return held.use_count() == 1; })) << "its threads have ended";
+}
+
+/// As slow to set up as a GPU whose shaders are compiled: it waits until it may end.
+struct SlowBackend : Reconstructor {
+  static inline std::atomic<bool> is_being_made = false, may_end = false, was_made = false;
+
+  SlowBackend() {
+    is_being_made = true;
+    for (int i = 0; i < 1000 && !may_end; ++i) std::this_thread::sleep_for(milliseconds(10));
+    was_made = true;
+  }
+  void reconstruct(const FrameSet&, const DepthImages&, const Poses&, const OcclusionMasks&,
+                   const TiledRegion&, const Options&, Reconstruction&) override {
+    throw Error("only slow");
+  }
+};
+
+TEST_F(Live, WhileOptionsTakeEffectTheStatusIsNotWaitedFor) {
+  Registry<Reconstructor>::add("slow", [](const Rig&) { return std::make_unique<SlowBackend>(); });
+  const auto session = start(cameras());
+  ASSERT_TRUE(session->wait_for_frame(0, seconds(30)));
+  options_.backend = "slow";
+  session->set_options(options_);
+  ASSERT_TRUE(eventually([] { return SlowBackend::is_being_made.load(); }));
+  EXPECT_TRUE(session->status().running);
+  EXPECT_EQ(session->options().backend, "slow");
+  EXPECT_FALSE(SlowBackend::was_made);
+  SlowBackend::may_end = true;
+  const std::size_t shown = session->status().frames;
+  EXPECT_TRUE(session->wait_for_frame(shown, seconds(30))) << "drawn by the CPU";
 }
 
 TEST_F(Live, ARemovedCallDoesNotRunAnyMore) {

@@ -1,12 +1,11 @@
 #include "diminish/virtual_camera.h"
 
-#include <atomic>
-#include <mutex>
 #include <opencv2/videoio.hpp>
-#include <thread>
+#include <optional>
 
 #include "core/mat.h"
 #include "diminish/error.h"
+#include "live/frame_forwarder.h"
 
 namespace diminish {
 namespace {
@@ -21,30 +20,9 @@ std::string pipeline_to(const std::string& target) {
 }  // namespace
 
 struct VirtualCamera::Implementation {
-  /// Until stopped, or the session is.
-  void write_frames(const LiveSession& session) {
-    constexpr std::chrono::milliseconds patience{100};
-    std::size_t number = 0;
-    while (!stopped) {
-      const auto frame = session.wait_for_frame(number, patience);
-      if (!frame && !session.status().running) break;
-      if (!frame) continue;
-      number = frame->number;
-      video.write(as_mat(frame->result.picture));
-    }
-    video.release();
-  }
-  void fail(const std::string& what) {
-    const std::lock_guard lock(mutex);
-    problem = target + ": " + what;
-  }
-
   std::string target;
   cv::VideoWriter video;
-  std::atomic<bool> stopped = false;
-  mutable std::mutex mutex;  ///< guards the problem
-  std::string problem;
-  std::thread thread;
+  std::optional<FrameForwarder> forwarder;  ///< last: it writes the video
 };
 
 VirtualCamera::VirtualCamera(const LiveSession& session, const std::string& target,
@@ -58,25 +36,15 @@ VirtualCamera::VirtualCamera(const LiveSession& session, const std::string& targ
     throw Error(Error::device,
                 target + ": cannot be opened for writing video; is v4l2loopback loaded?");
   }
-  self.thread = std::thread([&self, &session] {
-    try {
-      self.write_frames(session);
-    } catch (const std::exception& error) {
-      self.fail(error.what());
-    } catch (...) {
-      self.fail("an unknown error");
-    }
-  });
+  self.forwarder.emplace(session,
+                         [&self](const Image<Bgr>& picture) { self.video.write(as_mat(picture)); });
 }
 
 std::string VirtualCamera::problem() const {
-  const std::lock_guard lock(implementation_->mutex);
-  return implementation_->problem;
+  const std::string what = implementation_->forwarder->problem();
+  return what.empty() ? what : implementation_->target + ": " + what;
 }
 
-VirtualCamera::~VirtualCamera() {
-  implementation_->stopped = true;
-  implementation_->thread.join();
-}
+VirtualCamera::~VirtualCamera() = default;
 
 }  // namespace diminish

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <string>
 
+#include "core/limits.h"
 #include "core/number_lines.h"
 #include "diminish/error.h"
 
@@ -22,6 +23,10 @@ std::vector<StampedPose> read_pose_list(std::istream& stream, const std::filesys
     if (v.size() != 8) fail("expected 'timestamp tx ty tz qx qy qz qw'");
     const Eigen::Quaterniond rotation(v[7], v[4], v[5], v[6]);
     if (std::abs(rotation.norm() - 1) > 1e-2) fail("expected a quaternion of length 1");
+    if (std::any_of(v.begin() + 1, v.begin() + 4,
+                    [](double t) { return std::abs(t) > largest_coordinate_m; })) {
+      fail("expected metres, got more than a kilometre");
+    }
     if (!poses.empty() && !(v[0] > poses.back().stamp_s)) fail("expected ascending timestamps");
     poses.push_back({v[0], {rotation.normalized().toRotationMatrix(), {v[1], v[2], v[3]}}});
   });

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <clocale>
 #include <fstream>
+#include <locale>
 #include <sstream>
 
 #include "analytic_scene.h"
@@ -172,6 +174,29 @@ TEST(PoseList, NamesTheLineThatIsWrong) {
   EXPECT_EQ(message(good + good), "poses.txt:2: expected ascending timestamps");
   EXPECT_EQ(message("1 0 0 0 0 0 0 0\n"), "poses.txt:1: expected a quaternion of length 1");
   EXPECT_EQ(message("# nothing\n"), "poses.txt: expected at least one pose");
+  EXPECT_EQ(message(good + "2 0 1e308 0 0 0 0 1\n"),
+            "poses.txt:2: expected metres, got more than a kilometre");
+}
+
+// A program that shows its user's language sets the locale for the whole process. No machine need
+// have one with a decimal comma: this one is C++'s own.
+TEST(PoseList, NumbersDoNotFollowTheLocale) {
+  struct DecimalComma : std::numpunct<char> {
+    char do_decimal_point() const override { return ','; }
+    char do_thousands_sep() const override { return '.'; }
+    std::string do_grouping() const override { return "\3"; }
+  };
+  const std::locale before = std::locale::global(std::locale(std::locale(), new DecimalComma));
+  for (const char* name : {"de_DE.UTF-8", "fr_FR.UTF-8"}) {
+    if (std::setlocale(LC_NUMERIC, name) != nullptr) break;  // strtod's
+  }
+  std::istringstream stream("1234.5 0.25 -1.5e-1 1000 0 0 0 1\n");
+  const auto poses = read_pose_list(stream, "poses.txt");
+  std::locale::global(before);
+  std::setlocale(LC_NUMERIC, "C");
+  ASSERT_EQ(poses.size(), 1U);
+  EXPECT_EQ(poses[0].stamp_s, 1234.5);
+  EXPECT_EQ(poses[0].world_from_camera.translation, Eigen::Vector3d(0.25, -0.15, 1000));
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <set>
 #include <utility>
@@ -13,6 +12,7 @@
 #include "diminish/error.h"
 #include "score/csv_table.h"
 #include "sink/indexed_png.h"
+#include "source/image_file.h"
 #include "source/stream_list.h"
 
 namespace diminish {
@@ -20,13 +20,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-cv::Mat read_image(const fs::path& file, int flags) {
+cv::Mat read_image(const fs::path& file) {
   std::error_code ignored;
   if (file.empty() || !fs::exists(file, ignored)) return {};
-  cv::Mat image = cv::imread(file.string(), flags | cv::IMREAD_IGNORE_ORIENTATION);
-  if (image.empty())
-    throw Error(Error::input, file.string() + ": cannot be decoded, expected an image");
-  return image;
+  try {
+    return decode<Bgr>(read_bytes(file));
+  } catch (const Error& error) {
+    throw Error(Error::input, file.string() + ": expected an image: " + error.what());
+  }
+}
+
+cv::Mat read_mask(const fs::path& file) {
+  cv::Mat mask = read_image(file);
+  if (!mask.empty()) cv::cvtColor(mask, mask, cv::COLOR_BGR2GRAY);
+  return mask;
 }
 
 nlohmann::json read_json(const fs::path& file) {
@@ -166,19 +173,19 @@ fs::path RunFolder::find(const fs::path& folder, const std::string& stem) const 
 
 cv::Mat RunFolder::input(const std::string& frame) const {
   const auto found = inputs_.find(frame);
-  return found == inputs_.end() ? cv::Mat() : read_image(found->second, cv::IMREAD_COLOR);
+  return found == inputs_.end() ? cv::Mat() : read_image(found->second);
 }
 cv::Mat RunFolder::truth(const std::string& frame) const {
-  return read_image(find(recording_ / "truth" / "background", frame), cv::IMREAD_COLOR);
+  return read_image(find(recording_ / "truth" / "background", frame));
 }
 cv::Mat RunFolder::true_mask(const std::string& frame) const {
-  return read_image(find(recording_ / "truth" / "mask", frame), cv::IMREAD_GRAYSCALE);
+  return read_mask(find(recording_ / "truth" / "mask", frame));
 }
 cv::Mat RunFolder::result(const std::string& frame) const {
-  return read_image(run_ / "result" / (frame + ".png"), cv::IMREAD_COLOR);
+  return read_image(run_ / "result" / (frame + ".png"));
 }
 cv::Mat RunFolder::mask(const std::string& frame) const {
-  return read_image(run_ / "mask" / (frame + ".png"), cv::IMREAD_GRAYSCALE);
+  return read_mask(run_ / "mask" / (frame + ".png"));
 }
 cv::Rect RunFolder::surroundings(const cv::Mat& mask) {
   constexpr int margin_px = 40;

@@ -5,10 +5,20 @@
 
 #include <algorithm>
 #include <random>
-#include <regex>
 #include <string_view>
 
 namespace diminish {
+namespace {
+
+/// What stands behind an address: nothing, or a colon and up to five digits.
+bool is_port_or_nothing(std::string_view text) {
+  constexpr std::size_t most_characters = sizeof ":65535" - 1;
+  if (text.empty()) return true;
+  return text.size() > 1 && text.size() <= most_characters && text[0] == ':' &&
+         text.find_first_not_of("0123456789", 1) == std::string_view::npos;
+}
+
+}  // namespace
 
 bool is_loopback(const std::string& address) {
   constexpr unsigned char network = 127;
@@ -45,12 +55,15 @@ bool equals_secretly(const std::string& a, const std::string& b) {
 }
 
 bool names_loopback(const std::string& host_header) {
-  static const std::regex pattern(R"((?:\[([0-9A-Fa-f:.]+)\]|([^:\[\]]+))(?::\d{1,5})?)");
-  std::smatch parts;
-  if (!std::regex_match(host_header, parts, pattern)) return false;
-  const std::string host = parts[1].matched ? parts[1] : parts[2];
   // An IPv6 address stands in brackets, and nothing else does.
-  return is_loopback(host) && parts[1].matched == (host.find(':') != std::string::npos);
+  const bool in_brackets = host_header.starts_with('[');
+  const std::size_t end =
+      in_brackets ? host_header.find(']') : std::min(host_header.find(':'), host_header.size());
+  if (end == std::string::npos) return false;
+  const std::size_t begin = in_brackets ? 1 : 0;
+  const std::string host = host_header.substr(begin, end - begin);
+  return is_loopback(host) && in_brackets == (host.find(':') != std::string::npos) &&
+         is_port_or_nothing(std::string_view(host_header).substr(end + begin));
 }
 
 bool is_same_site(const std::string& origin_header, const std::string& host_header) {

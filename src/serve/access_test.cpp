@@ -21,11 +21,34 @@ TEST(Access, KnowsAHostHeaderOfThisMachine) {
   for (const char* host : {"localhost", "localhost:8080", "127.0.0.1:80", "[::1]:8080", "[::1]"}) {
     EXPECT_TRUE(names_loopback(host)) << host;
   }
-  for (const char* host : {"evil.example", "evil.example:8080", "", "[", "localhost.evil.example",
-                           "[fe80::1]:80", "127.0.0.1.evil.example", "127.0.0.1.evil.example:8080",
-                           "[::1].evil.example", "[::1]evil.example:80", "[127.0.0.1]", "::1",
-                           "localhost:", "localhost:80:80", "localhost:evil"}) {
+  for (const char* host : {"evil.example",
+                           "evil.example:8080",
+                           "",
+                           "[",
+                           "localhost.evil.example",
+                           "[fe80::1]:80",
+                           "127.0.0.1.evil.example",
+                           "127.0.0.1.evil.example:8080",
+                           "[::1].evil.example",
+                           "[::1]evil.example:80",
+                           "[127.0.0.1]",
+                           "::1",
+                           "localhost:",
+                           "localhost:80:80",
+                           "localhost:evil",
+                           "localhost:123456",
+                           "[::1]:",
+                           "[::1]]",
+                           "[[::1]]",
+                           "[localhost]",
+                           "[::1",
+                           "::1]"}) {
     EXPECT_FALSE(names_loopback(host)) << host;
+  }
+  const std::string very_long(16 << 20, 'a');
+  for (const std::string& host : {very_long, "[" + very_long + "]", "localhost:" + very_long,
+                                  "[::1]:" + std::string(16 << 20, '1')}) {
+    EXPECT_FALSE(names_loopback(host));
   }
 }
 

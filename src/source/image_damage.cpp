@@ -48,6 +48,7 @@ const char* damage_of_png(Bytes bytes) {
 
 const char* damage_of(std::span<const std::uint8_t> bytes) {
   if (is_png(bytes)) return damage_of_png(bytes);
+  if (bytes.size() < least_bytes(bytes)) return cut_short;
   return is_jpeg(bytes) && is_jpeg_cut_short(bytes) ? cut_short : nullptr;
 }
 

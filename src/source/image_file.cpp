@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <new>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <system_error>
@@ -19,15 +20,23 @@ namespace {
 
 /// More than any camera has.
 constexpr std::int64_t most_pixels = 1 << 28;
+constexpr std::streamoff most_bytes = 2'000'000'000;
 
 std::int64_t pixels_of(const cv::Size& size) {
   return static_cast<std::int64_t>(size.width) * size.height;
 }
 
+[[noreturn]] void fail_for_memory() {
+  throw Error(Error::input, "there is not enough memory for it");
+}
+
 /// Throws Error.
 void check(const std::vector<std::uint8_t>& bytes) {
   if (bytes.empty()) throw Error(Error::input, "the file is empty");
-  if (const auto size = declared_size(bytes); size && pixels_of(*size) > most_pixels) {
+  const auto size = declared_size(bytes);
+  if (!size)
+    throw Error(Error::input, "cannot be decoded, expected PNG, JPEG, BMP, TIFF, WebP, PGM or PPM");
+  if (pixels_of(*size) > most_pixels) {
     throw Error(Error::input, fmt::format("expected at most {} million pixels, got {}x{}",
                                           most_pixels / 1'000'000, size->width, size->height));
   }
@@ -38,7 +47,10 @@ cv::Mat decode_checked(const std::vector<std::uint8_t>& bytes, int flags) {
   cv::Mat image;
   try {
     image = cv::imdecode(bytes, flags);
-  } catch (const cv::Exception&) {
+  } catch (const std::bad_alloc&) {
+    fail_for_memory();
+  } catch (const cv::Exception& error) {
+    if (error.code == cv::Error::StsNoMem) fail_for_memory();
   }
   if (image.empty()) throw Error(Error::input, "cannot be decoded");
   return image;
@@ -63,7 +75,13 @@ std::vector<std::uint8_t> read_bytes(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary | std::ios::ate);
   const std::streamoff size = stream.tellg();
   if (!stream || size < 0) throw Error(Error::io, "cannot be opened");
-  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(size));
+  if (size > most_bytes) throw Error(Error::input, "expected an image of at most 2 GB");
+  std::vector<std::uint8_t> bytes;
+  try {
+    bytes.resize(static_cast<std::size_t>(size));
+  } catch (const std::bad_alloc&) {
+    fail_for_memory();
+  }
   stream.seekg(0);
   if (size > 0 && !stream.read(reinterpret_cast<char*>(bytes.data()), size)) {
     throw Error(Error::io, "cannot be read");
@@ -75,7 +93,11 @@ template <>
 cv::Mat decode<Bgr>(const std::vector<std::uint8_t>& bytes) {
   check(bytes);
   if (is_jpeg(bytes)) {
-    if (cv::Mat image = decode_jpeg(bytes); !image.empty()) return image;
+    try {
+      if (cv::Mat image = decode_jpeg(bytes); !image.empty()) return image;
+    } catch (const cv::Exception&) {  // its pixels cannot be allocated
+      fail_for_memory();
+    }
   }
   return decode_checked(bytes, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <new>
 #include <system_error>
 
 #include "core/mat.h"
@@ -79,6 +80,9 @@ void ImageStream<Pixel>::read(std::size_t index, Image<Pixel>& image) {
   } catch (const Error& error) {
     image.resize(0, 0);
     throw Error(Error::input, describe(entry) + ": " + error.what());
+  } catch (const std::bad_alloc&) {
+    image.resize(0, 0);
+    throw Error(Error::input, describe(entry) + ": there is not enough memory for it");
   }
 }
 

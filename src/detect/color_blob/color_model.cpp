@@ -8,7 +8,6 @@
 #include <complex>
 #include <fstream>
 #include <numbers>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <random>
 #include <string>
@@ -17,6 +16,8 @@
 
 #include "diminish/config.h"
 #include "diminish/error.h"
+#include "diminish/image.h"
+#include "source/image_file.h"
 
 namespace diminish {
 namespace {
@@ -67,10 +68,12 @@ struct Statistics {
   double smallest_area = 1;
 };
 
-cv::Mat read_image(const fs::path& file, int mode) {
-  cv::Mat image = cv::imread(file.string(), mode);
-  if (image.empty()) throw Error(Error::input, file.string() + ": expected an image");
-  return image;
+cv::Mat read_image(const fs::path& file) {
+  try {
+    return decode<Bgr>(read_bytes(file));
+  } catch (const Error& error) {
+    throw Error(Error::input, file.string() + ": expected an image: " + error.what());
+  }
 }
 
 void add_image(const fs::path& file, Statistics& statistics) {
@@ -79,8 +82,9 @@ void add_image(const fs::path& file, Statistics& statistics) {
     throw Error(Error::input, mask_file.string() + ": expected the mask of " +
                                   file.filename().string() + ", there is no such file");
   }
-  const cv::Mat image = read_image(file, cv::IMREAD_COLOR);
-  cv::Mat mask = read_image(mask_file, cv::IMREAD_GRAYSCALE);
+  const cv::Mat image = read_image(file);
+  cv::Mat mask;
+  cv::cvtColor(read_image(mask_file), mask, cv::COLOR_BGR2GRAY);
   if (mask.size() != image.size()) {
     throw Error(Error::input, fmt::format("{}: expected {}'s size {} x {}, got {} x {}",
                                           mask_file.string(), file.filename().string(), image.cols,
