@@ -3,11 +3,12 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <vector>
 
 #include "diminish/pipeline.h"
 #include "pose/camera_poses.h"
-#include "setup/check/photometric_agreement.h"
+#include "setup/check/bias_explanations.h"
 #include "setup/check/setup_checks.h"
 
 namespace diminish {
@@ -24,16 +25,13 @@ constexpr double most_moved_by_marker_m = 0.024;
 /// A mean that is fewer standard errors long may be noise of each frame's pose.
 constexpr double least_standard_errors = 3;
 
+/// What brings back less of the agreement than this share of the best is not the cause.
+constexpr double least_share = 0.5;
+
 using Vector6 = Eigen::Matrix<double, 6, 1>;  ///< rotation vector, translation
 
-struct Moved {
-  const SetupSurvey::Kept* frame;
-  Poses measured;
-  Vector6 by;  ///< the refinement, in the colour camera's frame
-};
-
-/// How the refinement moves the colour camera in the frames that were kept.
-std::vector<Moved> refinements(const Diagnosis& setup) {
+/// How the refinement moves the colour camera, in its own frame, in the frames that were kept.
+std::vector<Vector6> refinements(const Diagnosis& setup) {
   Options options;
   options.memory = "off";
   options.color_correct = "none";
@@ -43,7 +41,7 @@ std::vector<Moved> refinements(const Diagnosis& setup) {
   pipeline.want_reconstruction(false);
   CameraPoses camera_poses(setup.rig, setup.scene);
   DiminishedFrame result;
-  std::vector<Moved> all;
+  std::vector<Vector6> all;
   for (const SetupSurvey::Kept& kept : setup.survey.kept) {
     if (kept.frame.color.empty()) continue;
     Poses measured;
@@ -56,7 +54,7 @@ std::vector<Moved> refinements(const Diagnosis& setup) {
       const Eigen::AngleAxisd turn(by.rotation);
       Vector6 moved;
       moved << turn.angle() * turn.axis(), by.translation;
-      all.push_back({&kept, measured, moved});
+      all.push_back(moved);
       break;
     }
   }
@@ -70,42 +68,43 @@ RigidTransform transform_of(const Vector6& moved) {
   return {Eigen::AngleAxisd(angle, axis).toRotationMatrix(), moved.tail<3>()};
 }
 
-/// How well the cameras' pictures agree if the colour camera is moved in each frame.
-double agreement(const Diagnosis& setup, const Rig& rig, const std::vector<Moved>& frames,
-                 const Vector6& by) {
-  PhotometricAgreement photometric(rig);
-  const RigidTransform correction = transform_of(by);
-  double sum = 0;
-  std::size_t count = 0;
-  for (const Moved& frame : frames) {
-    Poses poses = frame.measured;
-    for (auto& pose : poses.color_from_depth) {
-      if (pose) pose = correction * *pose;
-    }
-    for (std::size_t k = 0; k < rig.rgbd.size(); ++k) {
-      if (!setup.usable[k]) continue;
-      if (const auto value = photometric.of(frame.frame->frame, poses, k)) {
-        sum += *value;
-        ++count;
-      }
-    }
+/// ", with a principal point of (639, 504) by 0.50"
+std::string figures_of(const std::vector<BiasExplanation>& explanations) {
+  std::string text;
+  for (const BiasExplanation& explanation : explanations) {
+    text += fmt::format(", with {} by {:.2f}", explanation.corrected,
+                        mean_agreement(explanation.agreements));
   }
-  return count > 0 ? sum / static_cast<double>(count) : 0;
+  return text;
+}
+
+std::string name_of(BiasExplanation::Kind kind) {
+  switch (kind) {
+    case BiasExplanation::Kind::pose:
+      return "pose";
+    case BiasExplanation::Kind::principal_point:
+      return "principal point";
+    case BiasExplanation::Kind::focal_length:
+      return "focal length";
+    case BiasExplanation::Kind::distortion:
+      return "distortion";
+  }
+  return {};
 }
 
 }  // namespace
 
 void check_pose_bias(Diagnosis& setup) {
   if (setup.explained) return;
-  const std::vector<Moved> frames = refinements(setup);
+  const std::vector<Vector6> frames = refinements(setup);
   if (frames.size() < least_frames) return;
   Vector6 mean = Vector6::Zero();
-  for (const Moved& frame : frames) mean += frame.by / static_cast<double>(frames.size());
+  for (const Vector6& by : frames) mean += by / static_cast<double>(frames.size());
   double turn_variance = 0;
   double move_variance = 0;
-  for (const Moved& frame : frames) {
-    turn_variance += (frame.by - mean).head<3>().squaredNorm() / static_cast<double>(frames.size());
-    move_variance += (frame.by - mean).tail<3>().squaredNorm() / static_cast<double>(frames.size());
+  for (const Vector6& by : frames) {
+    turn_variance += (by - mean).head<3>().squaredNorm() / static_cast<double>(frames.size());
+    move_variance += (by - mean).tail<3>().squaredNorm() / static_cast<double>(frames.size());
   }
   const auto is_bias = [&](double length, double variance) {
     return length >
@@ -122,26 +121,30 @@ void check_pose_bias(Diagnosis& setup) {
                      is_bias(moved_m, move_variance);
   if (!turns && !moves) return;
 
-  // A turn looks much like a shift of the principal point.
-  Rig shifted = setup.rig;
-  const double dx = setup.rig.color.fx * mean(1);
-  const double dy = -setup.rig.color.fy * mean(0);
-  shifted.color.cx += dx;
-  shifted.color.cy += dy;
-  const double as_is = agreement(setup, setup.rig, frames, Vector6::Zero());
-  const double by_pose = agreement(setup, setup.rig, frames, mean);
-  const double by_center = agreement(setup, shifted, frames, Vector6::Zero());
-  setup.find(
-      Finding::Severity::warning, "pose-bias",
-      "the colour camera's pose is wrong in the same way in every frame",
-      fmt::format("refinement turns it by {:.1f} degrees and moves it by {:.0f} mm; with that the "
-                  "cameras' pictures agree by {:.2f}, as they are by {:.2f}, with the colour "
-                  "camera's principal point at ({:.0f}, {:.0f}) by {:.2f}",
-                  turned_deg, moved_m * 1000, by_pose, as_is, shifted.color.cx, shifted.color.cy,
-                  by_center),
-      by_center > by_pose
-          ? "diminish calibrate intrinsics --camera color"
-          : "measure again how the tracker or marker is mounted: diminish calibrate rig");
+  const std::vector<BiasExplanation> explanations = explain_bias(setup, transform_of(mean));
+  const BiasExplanation& best = explanations.front();
+  const double as_is = mean_agreement(agreements_as_is(setup));
+  const double best_gained = mean_agreement(best.agreements) - as_is;
+  std::string cause = name_of(best.kind);
+  bool may_be_pose = !best.is_lens();
+  bool may_be_lens = best.is_lens();
+  for (std::size_t i = 1; i < explanations.size(); ++i) {
+    const double gained = mean_agreement(explanations[i].agreements) - as_is;
+    if (is_better(best, explanations[i]) || gained < least_share * best_gained) continue;
+    cause += " or " + name_of(explanations[i].kind);
+    (explanations[i].is_lens() ? may_be_lens : may_be_pose) = true;
+  }
+  const std::string calibrate_lens = "diminish calibrate intrinsics --camera color";
+  const std::string calibrate_pose =
+      "measure again how the tracker or marker is mounted: diminish calibrate rig";
+  setup.find(Finding::Severity::warning, "pose-bias",
+             "the colour camera's " + cause + " is wrong, in the same way in every frame",
+             fmt::format("refinement turns it by {:.1f} degrees and moves it by {:.0f} mm; the "
+                         "cameras' pictures agree by {:.2f}{}",
+                         turned_deg, moved_m * 1000, as_is, figures_of(explanations)),
+             !may_be_lens   ? calibrate_pose
+             : !may_be_pose ? calibrate_lens
+                            : calibrate_lens + "; if that changes little, " + calibrate_pose);
 }
 
 }  // namespace diminish

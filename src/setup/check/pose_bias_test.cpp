@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <numbers>
 
@@ -24,9 +25,16 @@ std::string line_of(double stamp_s, const RigidTransform& world_from_camera) {
                      q.z(), q.w());
 }
 
+/// What is replaced in a file.
+struct WrongNumber {
+  std::string from, to;
+};
+
 /// A bundled recording with a tracker's poses: the truth's, the colour camera's moved by `wrong` as
 /// a tracker that is mounted otherwise than was measured has them. No marker is left to say so.
-SetupReport check_with_poses(const RigidTransform& wrong, const char* name) {
+/// number: of the colour camera in rig.yaml.
+SetupReport check_with_poses(const RigidTransform& wrong, const char* name,
+                             const WrongNumber& number = {}) {
   const fs::path source = fs::path(testing::recordings_dir()) / name;
   const TemporaryFolder copy;
   fs::copy(source, copy.path(), fs::copy_options::recursive);
@@ -49,8 +57,9 @@ SetupReport check_with_poses(const RigidTransform& wrong, const char* name) {
     copy.write(file, rgbd[k]);
     files += ", " + original.rig.rgbd[k].name + ": " + file;
   }
-  copy.write("rig.yaml", read_text_file(source / "rig.yaml", 1 << 20) +
-                             "pose: {source: file, files: {" + files + "}}\n");
+  std::string rig = read_text_file(source / "rig.yaml", 1 << 20);
+  rig.replace(rig.find(number.from), number.from.size(), number.to);
+  copy.write("rig.yaml", rig + "pose: {source: file, files: {" + files + "}}\n");
   copy.write("scene.yaml",
              "world_marker: {id: 7, size_m: 0.2}\noccluders:\n  - {name: box, detector: box, "
              "frame: world, "
@@ -66,11 +75,44 @@ TEST(CheckPoseBias, FindsATrackerThatIsMountedOtherwise) {
       check_with_poses({Eigen::AngleAxisd(angle, axis).toRotationMatrix(), {0, 0, 0}}, "workbench");
   ASSERT_EQ(report.findings.size(), 1U) << setup_report_text(report);
   EXPECT_EQ(report.findings[0].code, "pose-bias");
+  EXPECT_THAT(report.findings[0].what, ::testing::HasSubstr("camera's pose is"));
+  EXPECT_THAT(report.findings[0].remedy, ::testing::StartsWith("measure again"));
   const auto turned = std::find_if(
       report.figures.begin(), report.figures.end(),
       [](const SetupFigure& figure) { return figure.name.starts_with("refinement turns"); });
   ASSERT_NE(turned, report.figures.end());
   EXPECT_NEAR(turned->value, angle * 180 / std::numbers::pi, 0.2);
+}
+
+/// The number that stands behind `text` in what was measured.
+double number_after(const std::string& text, const Finding& finding) {
+  const std::size_t at = finding.figure.find(text);
+  if (at == std::string::npos) return std::nan("");
+  return std::stod(finding.figure.substr(at + text.size()));
+}
+
+TEST(CheckPoseBias, TellsAWrongFocalLengthFromAWrongPose) {
+  for (const char* name : {"calendar", "workbench"}) {
+    const SetupReport report = check_with_poses({}, name, {"[1131.4, 1130.7,", "[1165.3, 1164.6,"});
+    ASSERT_EQ(report.findings.size(), 1U) << setup_report_text(report);
+    const Finding& finding = report.findings[0];
+    EXPECT_EQ(finding.code, "pose-bias");
+    EXPECT_THAT(finding.what, ::testing::HasSubstr("camera's focal length")) << finding.figure;
+    EXPECT_THAT(finding.remedy, ::testing::StartsWith("diminish calibrate intrinsics"));
+    EXPECT_NEAR(number_after("focal length of ", finding), 1131.4, 12);
+  }
+}
+
+TEST(CheckPoseBias, TellsAWrongDistortionFromAWrongPose) {
+  for (const char* name : {"calendar", "workbench"}) {
+    const SetupReport report =
+        check_with_poses({}, name, {"distortion: [-0.11,", "distortion: [-0.31,"});
+    ASSERT_EQ(report.findings.size(), 1U) << setup_report_text(report);
+    const Finding& finding = report.findings[0];
+    EXPECT_EQ(finding.code, "pose-bias");
+    EXPECT_THAT(finding.what, ::testing::HasSubstr("camera's distortion")) << finding.figure;
+    EXPECT_NEAR(number_after("distortion coefficient of ", finding), -0.11, 0.04);
+  }
 }
 
 // The world marker is nowhere, but nobody needs it.
