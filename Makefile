@@ -1,6 +1,6 @@
 # The two commands to know: `make demo` and `make test`. Everything they need, they install.
 
-.PHONY: help demo test test-page build deps python bench lint format sanitize tsan fuzz soak sbom reproducible clean
+.PHONY: help demo test test-page build deps python bench lint format sanitize tsan fuzz soak sbom reproducible clean bench-gl
 
 help:
 	@echo "make demo      remove the objects of the bundled recordings, print the figures"
@@ -9,6 +9,7 @@ help:
 	@echo "make build     build the program: build/release/diminish"
 	@echo "make python    build the Python module: build/release/python"
 	@echo "make bench     measure each stage beside its peer"
+	@echo "make bench-gl  measure what runs on the GPU"
 	@echo "make lint      clang-format and clang-tidy"
 	@echo "make sanitize  all tests under the address and undefined-behaviour sanitizers"
 	@echo "make tsan      all tests under the thread sanitizer"
@@ -39,6 +40,9 @@ python: deps
 
 bench: deps
 	scripts/bench
+
+bench-gl: deps
+	scripts/bench --gl
 
 lint: deps
 	scripts/lint

@@ -1,6 +1,6 @@
-// What each stage of a frame costs in instructions, for callgrind to count; times on shared
-// machines say less.   diminish_frame_cost RECORDING [MEMORY]    (by scripts/check-baselines, under
-// valgrind; MEMORY: as --memory)
+// What each stage of a frame costs in instructions, for callgrind to count (times on shared machines
+// say less), and how much memory it allocates.   diminish_frame_cost RECORDING [MEMORY]
+// (by scripts/check-baselines, under valgrind; MEMORY: as --memory)
 //
 // Callgrind writes what it counted at each reading of the clock. Stages read it when they begin and
 // end. The clock here is no clock: its n-th reading in a frame is 2^n ns, so that a stage's time
@@ -19,6 +19,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "allocations.h"
 #include "diminish/diminish.h"
 
 namespace {
@@ -59,7 +60,7 @@ const char* stage_of(int stretch, const StageTimes& milliseconds) {
 }
 
 /// Prints the vector instructions and the number of frames, then the stage of each of callgrind's
-/// dumps.
+/// dumps, then the bytes that were allocated (-1: not counted).
 void count(const Recording& recording, const Options& options) {
   const auto source = open_recording(recording, options);
   std::vector<FrameSet> frames;
@@ -70,19 +71,23 @@ void count(const Recording& recording, const Options& options) {
   pipeline.want_reconstruction(false);
   DiminishedFrame result;
   for (const FrameSet& frame : frames) pipeline.process(frame, result);  // memory grows to its size
+  long long allocated = count_allocations ? 0 : -1;
   CALLGRIND_START_INSTRUMENTATION;
   for (const FrameSet& frame : frames) {
     readings = 0;
     is_counting = true;
+    const std::size_t before = count_allocations ? count_allocations().bytes : 0;
     CALLGRIND_ZERO_STATS;
     pipeline.process(frame, result);
     CALLGRIND_DUMP_STATS;
     is_counting = false;
+    if (count_allocations) allocated += static_cast<long long>(count_allocations().bytes - before);
     if (readings > 50) throw std::runtime_error("more readings of the clock than a time has bits");
     std::puts("between");
     for (int i = 0; i < readings; ++i) std::puts(stage_of(i, result.report.milliseconds));
   }
   CALLGRIND_STOP_INSTRUMENTATION;
+  std::printf("%lld\n", allocated);
 }
 
 }  // namespace

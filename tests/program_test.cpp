@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <set>
@@ -334,8 +335,55 @@ TEST_F(ProgramTest, BenchMeasuresEveryStage) {
   EXPECT_LE(one_after_the_other, latency.at("avg").get<double>());
   EXPECT_NEAR(average("paper_poses"), average("poses") + average("objects"), 1e-6);
   EXPECT_NEAR(average("paper_compositing"), average("compositing") + average("finish"), 1e-6);
+  EXPECT_GT(json.at("span_ms"), 0);
+  EXPECT_LE(json.at("span_ms"), json.at("work_ms"));
+  EXPECT_GT(json.at("parallel_regions"), 0);
+  EXPECT_GE(json.at("tasks"), 2 * json.at("parallel_regions").get<int>());
+  double chain_ms = 0;
+  for (const auto& [stage, ms] : json.at("span_by_stage_ms").items()) chain_ms += ms.get<double>();
+  EXPECT_NEAR(chain_ms, json.at("span_ms").get<double>(), 0.5 * json.at("span_ms").get<double>());
   EXPECT_GT(json.at("throughput_fps"), 0);
   EXPECT_GT(json.at("peak_memory_bytes"), 1000000);
+}
+
+/// Events of a Chrome trace: each "complete" event of a thread lies within another or beside it.
+TEST_F(ProgramTest, BenchWritesATrace) {
+  const fs::path file = recording.path("trace.json");
+  const auto outcome = Program::run(
+      {"bench", recording.folder(), "--seconds", "0.01", "--trace", file.string()});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const auto json = nlohmann::json::parse(read_text_file(file, 1 << 24));
+  struct Event {
+    double begin_us, end_us;
+  };
+  std::map<int, std::vector<Event>> by_thread;
+  std::map<std::string, int> count;
+  int parts = 0;
+  for (const auto& event : json.at("traceEvents")) {
+    EXPECT_EQ(event.at("ph"), "X");
+    EXPECT_EQ(event.at("pid"), 1);
+    const double begin_us = event.at("ts");
+    const double duration_us = event.at("dur");
+    EXPECT_GE(begin_us, 0);
+    EXPECT_GE(duration_us, 0);
+    by_thread[event.at("tid").get<int>()].push_back({begin_us, begin_us + duration_us});
+    const bool is_part = event.contains("args");
+    if (is_part) EXPECT_GE(event.at("args").at("part"), 0);
+    parts += is_part ? 1 : 0;
+    if (!is_part) ++count[event.at("name").get<std::string>()];
+  }
+  EXPECT_EQ(count["frame"], 3);
+  for (const std::string stage : stage_names) EXPECT_GE(count[stage], 3) << stage;
+  EXPECT_GT(parts, 0);
+  constexpr double rounding_us = 0.01;
+  for (const auto& [thread, events] : by_thread) {
+    std::vector<double> ends_us;  // of those that the event lies in
+    for (const Event& event : events) {
+      while (!ends_us.empty() && ends_us.back() <= event.begin_us + rounding_us) ends_us.pop_back();
+      if (!ends_us.empty()) EXPECT_LE(event.end_us, ends_us.back() + rounding_us);
+      ends_us.push_back(event.end_us);
+    }
+  }
 }
 
 TEST_F(ProgramTest, BenchSaysWhatIsWrong) {

@@ -296,6 +296,11 @@ void print(const Figures& figures, int threads) {
   fmt::print("Work {:.2f} ms, span {:.2f} ms: at best {:.1f} times as fast as on one core\n",
              figures.cost.work_ms, figures.cost.span_ms,
              figures.cost.work_ms / std::max(figures.cost.span_ms, 1e-6));
+  fmt::print("Longest chain, ms:");
+  for (const auto& [stage, ms] : figures.cost.chain_ms) fmt::print(" {} {:.2f}", stage, ms);
+  fmt::print("\nParallel regions: {}, with {} tasks of {:.0f} us\n", figures.cost.regions,
+             figures.cost.tasks,
+             1000 * figures.cost.work_ms / std::max(figures.cost.tasks, 1));
   fmt::print("Pipelined, {} threads: {:.1f} frames/s\n", threads, figures.throughput_fps);
   fmt::print("From files: {:.1f} frames/s; reading alone {:.1f} frames/s, ratio {:.2f}\n",
              figures.run_fps, figures.reading_fps, figures.run_fps / figures.reading_fps);
@@ -360,6 +365,9 @@ void write_json(const BenchCommand& command, const Figures& figures) {
   json["reading_fps"] = figures.reading_fps;
   json["work_ms"] = figures.cost.work_ms;
   json["span_ms"] = figures.cost.span_ms;
+  for (const auto& [stage, ms] : figures.cost.chain_ms) json["span_by_stage_ms"][stage] = ms;
+  json["parallel_regions"] = figures.cost.regions;
+  json["tasks"] = figures.cost.tasks;
   for (std::size_t row = 0; row < time_row_count; ++row) {
     json["stages"][time_rows()[row].key] = to_json(figures.times_ms[row]);
   }

@@ -26,22 +26,41 @@ Pipeline warm_pipeline(const Recording& input, const std::vector<FrameSet>& fram
 
 WorkAndSpan measure_work_and_span(const Recording& input, const std::vector<FrameSet>& frames,
                                   const Options& options) {
-  std::vector<double> work_ms;
-  std::vector<double> span_ms;
+  constexpr std::size_t fewest_frames = 20;
+  std::vector<tracing::Cost> costs;
   oneapi::tbb::task_arena(1).execute([&] {
     DiminishedFrame result;
     Pipeline pipeline = warm_pipeline(input, frames, options, result);
-    for (std::size_t i = 0; i < std::max(frames.size(), most_traced); ++i) {
-      tracing::start();
+    for (std::size_t i = 0; i < std::max(frames.size(), fewest_frames); ++i) {
+      tracing::start(tracing::thread_now_ns);
       const tracing::Measurement measurement;
       pipeline.process(frames[i % frames.size()], result);
-      const tracing::Cost cost = measurement.cost();
+      costs.push_back(measurement.cost());
       tracing::stop();
-      work_ms.push_back(static_cast<double>(cost.work_ns) / 1e6);
-      span_ms.push_back(static_cast<double>(cost.span_ns) / 1e6);
     }
   });
-  return {distribution_of(std::move(work_ms)).p50, distribution_of(std::move(span_ms)).p50};
+  const auto median = [&](const auto& figure) {
+    std::vector<double> values;
+    for (const tracing::Cost& cost : costs) values.push_back(static_cast<double>(figure(cost)));
+    return distribution_of(std::move(values)).p50;
+  };
+  constexpr double ns_per_ms = 1e6;
+  using tracing::Cost;
+  WorkAndSpan median_cost{
+      median([](const Cost& cost) { return cost.work_ns; }) / ns_per_ms,
+      median([](const Cost& cost) { return cost.span_ns; }) / ns_per_ms,
+      static_cast<int>(median([](const Cost& cost) { return cost.regions; })),
+      static_cast<int>(median([](const Cost& cost) { return cost.tasks; })),
+      {}};
+  for (const char* const name : stage_names) {
+    const double ns = median([&](const Cost& cost) {
+      const auto link = std::find_if(cost.chain.begin(), cost.chain.end(),
+                                     [&](const Cost::Link& each) { return each.name == name; });
+      return link == cost.chain.end() ? 0 : link->ns;
+    });
+    if (ns > 0) median_cost.chain_ms.emplace_back(name, ns / ns_per_ms);
+  }
+  return median_cost;
 }
 
 void write_trace(const Recording& input, const std::vector<FrameSet>& frames,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <utility>
 #include <vector>
 
 #include "diminish/diminish.h"
@@ -16,9 +17,12 @@ Pipeline warm_pipeline(const Recording& input, const std::vector<FrameSet>& fram
 struct WorkAndSpan {
   double work_ms;  ///< on one thread
   double span_ms;  ///< the longest chain of parts that wait for one another: any number of threads
+  int regions;     ///< in which threads share tasks
+  int tasks;
+  std::vector<std::pair<const char*, double>> chain_ms;  ///< the longest chain by stage
 };
 
-/// Measured on one thread, so that nothing else takes part.
+/// Measured on one thread, so that nothing else takes part, by that thread's own clock.
 WorkAndSpan measure_work_and_span(const Recording& input, const std::vector<FrameSet>& frames,
                                   const Options& options);
 

@@ -4,6 +4,7 @@
 #include <oneapi/tbb/task_arena.h>
 
 #include <atomic>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -74,6 +75,35 @@ TEST_F(Tracing, TasksInTasksCountBySpan) {
   });
   EXPECT_EQ(cost.work_ns, 12 + 2 + 5);
   EXPECT_EQ(cost.span_ns, 6);
+}
+
+TEST_F(Tracing, TheLongestChainIsToldByScope) {
+  const tracing::Cost cost = cost_of([] {
+    {
+      const tracing::Scope stage("poses");
+      take(4);
+      for_tasks(2, [](std::size_t i) { take(i == 0 ? 6 : 3); });
+    }
+    do_all(
+        [] {
+          const tracing::Scope stage("memory");
+          take(5);
+        },
+        [] {
+          take(1);
+          const tracing::Scope stage("drawing");
+          for_tasks(2, [](std::size_t) { take(8); });
+        });
+  });
+  std::map<std::string, std::int64_t> ns;
+  for (const tracing::Cost::Link& link : cost.chain) ns[link.name] = link.ns;
+  EXPECT_EQ(ns["poses"], 4 + 6);
+  EXPECT_EQ(ns["drawing"], 8);
+  EXPECT_EQ(ns[""], 1);
+  EXPECT_EQ(ns["memory"], 0) << "not on it";
+  EXPECT_EQ(cost.span_ns, 10 + 9);
+  EXPECT_EQ(cost.regions, 3);
+  EXPECT_EQ(cost.tasks, 6);
 }
 
 TEST_F(Tracing, SpansBearTheNameOfTheScopeAround) {

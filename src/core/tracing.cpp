@@ -1,5 +1,7 @@
 #include "core/tracing.h"
 
+#include <time.h>
+
 #include <algorithm>
 #include <chrono>
 #include <mutex>
@@ -41,10 +43,22 @@ void record(const char* name, int part, std::int64_t begin_ns, std::int64_t end_
   all.spans.push_back({name, part, this_thread.number, begin_ns, end_ns});
 }
 
-/// Adds what was done since the chain's last region.
+void add_link(Cost& cost, const Cost::Link& added) {
+  const auto same = std::find_if(cost.chain.begin(), cost.chain.end(),
+                                 [&](const Cost::Link& link) { return link.name == added.name; });
+  if (same == cost.chain.end()) {
+    cost.chain.push_back(added);
+  } else {
+    same->ns += added.ns;
+  }
+}
+
+/// Adds what this thread has done since the chain's last region or change of name.
 void close_segment(Chain& chain, std::int64_t now_ns) {
-  chain.cost.work_ns += now_ns - chain.since_ns;
-  chain.cost.span_ns += now_ns - chain.since_ns;
+  const std::int64_t ns = now_ns - chain.since_ns;
+  chain.cost.work_ns += ns;
+  chain.cost.span_ns += ns;
+  add_link(chain.cost, {this_thread.name, ns});
   chain.since_ns = now_ns;
 }
 
@@ -52,6 +66,12 @@ void close_segment(Chain& chain, std::int64_t now_ns) {
 
 std::int64_t steady_now_ns() {
   return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
+}
+
+std::int64_t thread_now_ns() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return std::chrono::nanoseconds(std::chrono::seconds(now.tv_sec)).count() + now.tv_nsec;
 }
 
 void start(Clock clock) {
@@ -76,14 +96,17 @@ std::vector<Span> stop() {
 Scope::Scope(const char* name) {
   if (!is_on()) return;
   name_ = name;
-  name_before_ = std::exchange(this_thread.name, name);
   begin_ns_ = recorder().now_ns();
+  if (this_thread.chain) close_segment(*this_thread.chain, begin_ns_);
+  name_before_ = std::exchange(this_thread.name, name);
 }
 
 Scope::~Scope() {
   if (!name_) return;
+  const std::int64_t end_ns = recorder().now_ns();
+  if (this_thread.chain) close_segment(*this_thread.chain, end_ns);
   this_thread.name = name_before_;
-  record(name_, -1, begin_ns_, recorder().now_ns());
+  record(name_, -1, begin_ns_, end_ns);
 }
 
 Measurement::Measurement() {
@@ -111,12 +134,18 @@ Region::Region(std::size_t tasks) : is_on_(tracing::is_on()) {
 
 Region::~Region() {
   if (!is_on_ || !around_) return;
-  Cost longest;
-  for (const Cost& cost : costs_) {
-    around_->cost.work_ns += cost.work_ns;
-    longest.span_ns = std::max(longest.span_ns, cost.span_ns);
+  Cost& cost = around_->cost;
+  ++cost.regions;
+  for (const Cost& task : costs_) {
+    cost.work_ns += task.work_ns;
+    cost.regions += task.regions;
+    cost.tasks += 1 + task.tasks;
   }
-  around_->cost.span_ns += longest.span_ns;
+  const Cost& longest =
+      *std::max_element(costs_.begin(), costs_.end(),
+                        [](const Cost& a, const Cost& b) { return a.span_ns < b.span_ns; });
+  cost.span_ns += longest.span_ns;
+  for (const Cost::Link& link : longest.chain) add_link(cost, link);
   around_->since_ns = recorder().now_ns();
 }
 

@@ -25,9 +25,18 @@ struct Span {
 /// wait for one another. True if all threads are idle otherwise: measured on one thread.
 struct Cost {
   std::int64_t work_ns = 0, span_ns = 0;
+  int regions = 0;  ///< in which threads share tasks
+  int tasks = 0;
+  struct Link {
+    const char* name;  ///< of the scope, the innermost
+    std::int64_t ns;
+  };
+  std::vector<Link> chain;  ///< the longest, by name
 };
 
 std::int64_t steady_now_ns();
+/// What the calling thread has computed: another program on its core does not add to it.
+std::int64_t thread_now_ns();
 
 /// Begins a trace of all threads.
 void start(Clock clock = steady_now_ns);

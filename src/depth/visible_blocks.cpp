@@ -6,6 +6,7 @@
 
 #include "core/rows.h"
 #include "geometry/ray_table.h"
+#include "geometry/shared_table.h"
 
 #ifndef DIMINISH_DEPTH_VISIBLE_BLOCKS_COLUMNS
 #define DIMINISH_DEPTH_VISIBLE_BLOCKS_COLUMNS
@@ -90,11 +91,16 @@ VisibleBlocks::VisibleBlocks(const RgbdCamera& camera, const Intrinsics& color)
       image_width_(camera.depth.width),
       image_height_(camera.depth.height) {
   visible_.resize((image_width_ + width - 1) / width, (image_height_ + height - 1) / height);
-  const std::shared_ptr<const RayTable> rays = RayTable::of(camera.depth);
-  for (int row = 0; row < visible_.rows(); ++row) {
-    for (int column = 0; column < visible_.columns(); ++column) {
+  rays_ = shared_table<BlockRays>(camera.depth);
+  depth_m_.resize(rays_->of_block.size());
+}
+
+VisibleBlocks::BlockRays::BlockRays(const Intrinsics& depth) {
+  const std::shared_ptr<const RayTable> rays = RayTable::of(depth);
+  for (int row = 0; row * height < depth.height; ++row) {
+    for (int column = 0; column * width < depth.width; ++column) {
       // A block is small: its other rays lie beyond these by less than the margin.
-      const Rect pixels = with_neighbours(column, row, camera.depth.bounds());
+      const Rect pixels = with_neighbours(column, row, depth.bounds());
       Eigen::Array2f least = (*rays)(pixels.x, pixels.y);
       Eigen::Array2f greatest = least;
       for (const int y : {pixels.y, pixels.y + pixels.height / 2, pixels.bottom() - 1}) {
@@ -104,10 +110,9 @@ VisibleBlocks::VisibleBlocks(const RgbdCamera& camera, const Intrinsics& color)
           greatest = greatest.max(ray);
         }
       }
-      rays_.push_back({{least.x(), greatest.x()}, {least.y(), greatest.y()}});
+      of_block.push_back({{least.x(), greatest.x()}, {least.y(), greatest.y()}});
     }
   }
-  depth_m_.resize(rays_.size());
 }
 
 void VisibleBlocks::begin(const RigidTransform& color_from_depth, const Rect& region) {
@@ -124,7 +129,7 @@ void VisibleBlocks::find(float nearest_m, float farthest_m, const RigidTransform
       const Range depth_m = {nearest_m, farthest_m};
       depth_m_[visible_.index(column, row)] = depth_m;
       visible_(column, row) =
-          is_inside(sides_, rays_[visible_.index(column, row)], depth_m) ? 1 : 0;
+          is_inside(sides_, rays_->of_block[visible_.index(column, row)], depth_m) ? 1 : 0;
     }
   }
   find_part();
@@ -153,7 +158,7 @@ void VisibleBlocks::find(ImageView<std::uint16_t> depth, const RigidTransform& c
         Range& depth_m = depth_m_[visible_.index(column, row)];
         depth_m = {static_cast<float>(nearest) * unit_m_, static_cast<float>(farthest) * unit_m_};
         visible_(column, row) =
-            farthest > 0 && is_inside(sides_, rays_[visible_.index(column, row)], depth_m) ? 1 : 0;
+            farthest > 0 && is_inside(sides_, rays_->of_block[visible_.index(column, row)], depth_m) ? 1 : 0;
       }
     }
   });

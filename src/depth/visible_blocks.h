@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "core/rows.h"
@@ -76,6 +77,11 @@ class VisibleBlocks {
   struct Rays {
     Range x, y;
   };
+  /// Those of a camera, by block.
+  struct BlockRays {
+    explicit BlockRays(const Intrinsics& depth);
+    std::vector<Rays> of_block;
+  };
   /// Of the columns of a row of blocks.
   struct Depths {
     std::vector<std::uint16_t> nearest, farthest;
@@ -99,7 +105,7 @@ class VisibleBlocks {
   Lens color_;
   float unit_m_;
   int image_width_, image_height_;
-  std::vector<Rays> rays_;  ///< by block
+  std::shared_ptr<const BlockRays> rays_;
   RigidTransform color_from_depth_;
   Sides sides_;
   Depths depths_[most_bands];

@@ -1,11 +1,7 @@
 #include "geometry/ray_table.h"
 
-#include <oneapi/tbb/task_arena.h>
-
-#include <mutex>
-#include <utility>
-
 #include "core/rows.h"
+#include "geometry/shared_table.h"
 
 namespace diminish {
 
@@ -29,19 +25,7 @@ RayTable::RayTable(const Intrinsics& camera)
 }
 
 std::shared_ptr<const RayTable> RayTable::of(const Intrinsics& camera) {
-  static std::mutex mutex;
-  static std::vector<std::pair<Intrinsics, std::weak_ptr<const RayTable>>> tables;
-  const std::lock_guard lock(mutex);
-  std::erase_if(tables, [](const auto& entry) { return entry.second.expired(); });
-  for (const auto& [intrinsics, held] : tables) {
-    auto table = held.lock();
-    if (table && intrinsics == camera) return table;
-  }
-  std::shared_ptr<const RayTable> table;
-  // While this thread waits for the others, it must not begin what would ask for a table, too.
-  oneapi::tbb::this_task_arena::isolate([&] { table = std::make_shared<const RayTable>(camera); });
-  tables.emplace_back(camera, table);
-  return table;
+  return shared_table<RayTable>(camera);
 }
 
 }  // namespace diminish

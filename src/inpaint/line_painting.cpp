@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "core/channels.h"
 #include "core/rows.h"
@@ -97,8 +98,9 @@ void LinePainting::match(const std::vector<RimLine>& lines) {
       pairs_.push_back({(offset_a + offset_b) / most + 2 * difference / color_difference, i, k});
     }
   }
-  std::stable_sort(pairs_.begin(), pairs_.end(),
-                   [](const Pair& a, const Pair& b) { return a.misfit < b.misfit; });
+  std::sort(pairs_.begin(), pairs_.end(), [](const Pair& a, const Pair& b) {
+    return std::tie(a.misfit, a.first, a.second) < std::tie(b.misfit, b.first, b.second);
+  });
   for (const Pair& pair : pairs_) {
     int& first = mates_[static_cast<std::size_t>(pair.first)];
     int& second = mates_[static_cast<std::size_t>(pair.second)];

@@ -2,10 +2,17 @@
 
 #include <algorithm>
 
+#include "core/rows.h"
 #include "core/runs.h"
 
 namespace diminish {
 namespace {
+
+/// Open cells; fewer are relaxed sooner by one thread.
+constexpr std::size_t fewest_shared = 8192;
+/// A multiple of 32 (band_height), so wide that what is left out at its two ends does not meet.
+constexpr int least_shared_rows = 32;
+static_assert(least_shared_rows >= 2 * SmoothFilling::most_half_sweeps);
 
 /// The cells that hold the rectangle's.
 Rect coarser_box(const Rect& box) {
@@ -36,6 +43,13 @@ void SmoothFilling::Grid::find_open() {
     }
   }
   row_begin.push_back(runs.size());
+}
+
+/// For for_rows: as many as are worth a task.
+int SmoothFilling::Grid::shared_rows() const {
+  std::size_t cells = 0;
+  for (const Run run : runs) cells += static_cast<std::size_t>(run.last - run.first);
+  return cells < fewest_shared ? box.height : least_shared_rows;
 }
 
 /// What is beside an open cell is listed if it is known, else has no colour; all other known cells
@@ -117,15 +131,40 @@ void SmoothFilling::Grid::relax_row(int y, int parity, float factor) {
   filling_rows::relax(own, y, parity, factor, color_row(y - 1), color_row(y + 1), color_row(y));
 }
 
-/// All sweeps go over the grid together, each a row behind the one before it: what they read is in
-/// the cache.
+/// All sweeps go over a band of rows together, each a row behind the one before it: what they read
+/// is in the cache. Where a band meets the next, each sweep stops a row before the last one did: it
+/// lacks what is beyond. Once all bands are done, what was left out there follows. So every cell
+/// becomes what it would become without bands.
 void SmoothFilling::Grid::refine(const Grid& coarse, const Relaxation& relaxation) {
   const int half_sweeps = relaxation.half_sweeps;
   float factors[most_half_sweeps];
   for (int k = 0; k < half_sweeps; ++k) factors[k] = relaxation.factor(k);
-  for (int y = box.y; y < box.bottom() + half_sweeps; ++y) {
-    interpolate_row(coarse, y);
-    for (int k = 0; k < half_sweeps; ++k) relax_row(y - 1 - k, k % 2, factors[k]);
+  const int least = shared_rows();
+  for_rows(
+      box.height,
+      [&](Rows rows) {
+        const bool meets_above = rows.first > 0;
+        const bool meets_below = rows.last < box.height;
+        for (int at = rows.first; at < rows.last + half_sweeps; ++at) {
+          if (at < rows.last) interpolate_row(coarse, box.y + at);
+          for (int k = 0; k < half_sweeps; ++k) {
+            const int relaxed = at - 1 - k;
+            if (relaxed < rows.first + (meets_above ? 1 + k : 0) ||
+                relaxed >= rows.last - (meets_below ? 1 + k : 0)) {
+              continue;
+            }
+            relax_row(box.y + relaxed, k % 2, factors[k]);
+          }
+        }
+      },
+      least);
+  const int height = band_height(box.height, least);
+  for (int border = height; border < box.height; border += height) {
+    for (int k = 0; k < half_sweeps; ++k) {
+      for (int at = border - 1 - k; at < border + 1 + k; ++at) {
+        relax_row(box.y + at, k % 2, factors[k]);
+      }
+    }
   }
 }
 

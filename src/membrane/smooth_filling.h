@@ -103,6 +103,7 @@ class SmoothFilling {
     void coarsen(const Grid& fine);
     void interpolate_row(const Grid& coarse, int y);
     void relax_row(int y, int parity, float factor);
+    int shared_rows() const;
     void refine(const Grid& coarse, const Relaxation& relaxation);
   };
 

@@ -9,17 +9,19 @@ namespace diminish {
 namespace {
 
 /// Fills the open pixels of a window from a colour known everywhere else; the filled picture.
+/// top: the first row that holds open ones.
 template <class IsOpen, class Color>
-Image<Eigen::Array3f> fill(int width, int height, const IsOpen& is_open, const Color& color) {
+Image<Eigen::Array3f> fill(int width, int height, const IsOpen& is_open, const Color& color,
+                           int top = 0) {
   SmoothFilling filling;
   Image<Eigen::Array3f> picture(width, height, Eigen::Array3f::Zero());
   // Twice: what the first left behind must not matter.
   for (int run = 0; run < 2; ++run) {
-    Image<SmoothFilling::Kind>& kinds = filling.begin(picture.bounds());
+    Image<SmoothFilling::Kind>& kinds = filling.begin({0, top, width, height - top});
     kinds.fill(SmoothFilling::absent);
-    for (int y = 0; y < height; ++y) {
+    for (int y = top; y < height; ++y) {
       for (int x = 0; x < width; ++x) {
-        kinds(x + 1, y + 1) = is_open(x, y) ? SmoothFilling::open : SmoothFilling::known;
+        kinds(x + 1, y - top + 1) = is_open(x, y) ? SmoothFilling::open : SmoothFilling::known;
       }
     }
     EXPECT_TRUE(filling.connect(color));
@@ -77,6 +79,30 @@ TEST(SmoothFilling, ReachesWhatHangsTogetherWithNothingKnown) {
   });
   EXPECT_NEAR(picture(63, 15)[0], 50, 0.01F);
   EXPECT_NEAR(picture(0, 0)[2], 70, 0.01F);
+}
+
+// Rows are shared in bands of the box, which begin elsewhere if something far above is open, too.
+TEST(SmoothFilling, BandsLeaveNoTrace) {
+  constexpr int width = 200;
+  constexpr int height = 460;
+  const auto color = [](int x, int y) -> Eigen::Array3f {
+    return {static_cast<float>((x * 37 + y * 91) % 256), static_cast<float>((x * y) % 256),
+            static_cast<float>((x + 2 * y) % 256)};
+  };
+  const auto hole = [](int x, int y) {
+    return std::hypot(x - 100, y - 280) < 95 + 20 * std::sin(0.1 * x) && (x * 11 + y * 5) % 23 != 0;
+  };
+  const Image<Eigen::Array3f> picture = fill(width, height, hole, color, 160);
+  for (const int above : {30, 101, 130}) {
+    const Image<Eigen::Array3f> other = fill(
+        width, height, [&](int x, int y) { return hole(x, y) || (x == 100 && y == above); }, color,
+        above);
+    for (int y = 160; y < height; ++y) {
+      for (int x = 0; x < width; ++x) {
+        ASSERT_TRUE((picture(x, y) == other(x, y)).all()) << above << ": " << x << ", " << y;
+      }
+    }
+  }
 }
 
 TEST(SmoothFilling, SaysThatNothingIsKnown) {

@@ -320,8 +320,11 @@ void Pipeline::Implementation::process(const FrameSet& given, DiminishedFrame& r
   const auto drawn = [&] { return options.remove_shadows ? rig.color.bounds() : surroundings(); };
   const auto sample = [&] {
     stage(Stage::samples, [&] { sampler.sample(frame, measured_poses, masks, samples); });
+    stage(Stage::refinement, [&] { refine_poses(frame, report.poses); });
+  };
+  // Nothing that is drawn waits for this; what is learnt from the frame does.
+  const auto judge = [&] {
     stage(Stage::refinement, [&] {
-      refine_poses(frame, report.poses);
       report.fit.resize(rig.rgbd.size());
       fit.find(frame.color, masks.color, samples, report.fit);
       scale.find(frame, report.markers, scales);
@@ -332,7 +335,10 @@ void Pipeline::Implementation::process(const FrameSet& given, DiminishedFrame& r
     stage(Stage::memory, [&] {
       if (!methods.remembers) return;
       // Where nothing is drawn, samples are taken only for a keyframe.
-      const std::function<void()> sample_now = [&sample] { sample(); };
+      const std::function<void()> sample_now = [&] {
+        sample();
+        judge();
+      };
       memory.recall(recalling, samples, report.occluders, looks ? nullptr : sample_now,
                     report.memory);
     });
@@ -358,15 +364,19 @@ void Pipeline::Implementation::process(const FrameSet& given, DiminishedFrame& r
           if (!learns_while_drawing) learn();
         });
   }
+  const auto judge_and_recall = [&] {
+    if (looks) judge();
+    recall();
+  };
   choose_region();
   if (learns_while_drawing) {
-    do_all(recall, draw, learn, prepare);
+    do_all(judge_and_recall, draw, learn, prepare);
   } else {
     drawing.planes = background.planes();
     drawing.shadows = background.shadows();
     drawing.color_maps = color_maps.by_source();
     drawing.smoothing_share = smoothing;
-    do_all(recall, draw);
+    do_all(judge_and_recall, draw);
     prepare();
   }
   stage(Stage::merging, [&] {

@@ -1,318 +1,70 @@
 #include "pose/pose_refinement.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
-#include <numeric>
 
-#include "core/robust.h"
 #include "core/tasks.h"
 
 namespace diminish {
 namespace {
 
 constexpr int most_iterations = 10;
-constexpr float nearest_m = 1e-3F;
-constexpr std::size_t fewest_points = 150;
+constexpr std::size_t fewest_samples = 150;
 constexpr std::size_t most_points = 2400;
 
 /// What a marker leaves open, and what is taken for a mistake.
 constexpr float rotation_deviation = 0.5F * std::numbers::pi_v<float> / 180;
 constexpr float translation_deviation_m = 0.012F;
 constexpr float largest_deviations = 4;
-/// Neighbouring samples' errors are not independent: they count for less than their number.
-constexpr float independent_share = 0.1F;
 
-RigidTransform exponential(const Eigen::Matrix<double, 6, 1>& twist) {
-  return {rotation_by(twist.tail<3>()), twist.head<3>()};
+DirectAlignment::Twist deviations() {
+  DirectAlignment::Twist all;
+  all.head<3>().setConstant(translation_deviation_m);
+  all.tail<3>().setConstant(rotation_deviation);
+  return all;
 }
 
 }  // namespace
 
 PoseRefinement::PoseRefinement(const Intrinsics& color, int small_width, float last_step,
                                bool extrapolates, int coarser)
-    : projection_(Lens(color)),
-      coarser_(coarser),
-      fine_{std::max(1, (color.width + small_width / 2) / small_width), most_points, last_step,
-            extrapolates},
-      lines_(256) {}
-
-/// The brightness around each sample that may be in the picture, over about the area of a pixel of
-/// the small one.
-void PoseRefinement::collect(const FrameSet& frame, const std::vector<SceneSample>& samples) {
-  constexpr int reach = 2;
-  const int spacing = level_.shrinkage / 2;
-  const int rim = reach * spacing;
-  const Rect picture = frame.color.bounds();
-  points_.clear();
-  const std::size_t step = (samples.size() + level_.most_points - 1) / level_.most_points;
-  for (std::size_t i = 0; i < samples.size(); i += step) {
-    const SceneSample& sample = samples[i];
-    if (!picture.contains(static_cast<int>(sample.pixel.x()), static_cast<int>(sample.pixel.y()))) {
-      continue;
-    }
-    const ImageView<Bgr> image = frame.rgbd[sample.source - 1U].color;
-    const int u = static_cast<int>(std::lrint(sample.texture.x()));
-    const int v = static_cast<int>(std::lrint(sample.texture.y()));
-    if (u < rim || v < rim || u >= image.width() - rim || v >= image.height() - rim) continue;
-    int blue = 0;
-    int green = 0;
-    int red = 0;
-    for (int j = -reach; j <= reach; ++j) {
-      const Bgr* const row = image.row(v + j * spacing);
-      for (int k = -reach; k <= reach; ++k) {
-        const int x = u + k * spacing;
-        const Bgr& color = row[x];
-        blue += color.b;
-        green += color.g;
-        red += color.r;
-      }
-    }
-    constexpr float taps = (2 * reach + 1) * (2 * reach + 1);
-    add(sample.point_m, brightness(blue, green, red) / taps, sample.source);
+    : fine_(color,
+            {std::max(1, (color.width + small_width / 2) / small_width), most_points, last_step,
+             extrapolates},
+            deviations()),
+      projection_(Lens(color)) {
+  const int shrinkage = std::max(1, (color.width + small_width / 2) / small_width);
+  for (; coarser > 0; --coarser) {
+    coarser_.emplace_back(
+        color,
+        DirectAlignment::Settings{shrinkage << coarser, most_points / 2, 5 * last_step, true},
+        deviations());
   }
-}
-
-void PoseRefinement::add(const Eigen::Vector3f& point_m, float brightness, std::uint8_t source) {
-  if (points_.empty() || points_.back().count == lanes || points_.back().source != source) {
-    // What is left over is never seen.
-    Points& points = points_.emplace_back();
-    points.x_m = points.y_m = points.z_m = points.brightness = Lanes::Zero();
-    points.source = source;
-    points.count = 0;
-  }
-  Points& points = points_.back();
-  const int i = points.count++;
-  points.x_m[i] = point_m.x();
-  points.y_m[i] = point_m.y();
-  points.z_m[i] = point_m.z();
-  points.brightness[i] = brightness;
-}
-
-std::size_t PoseRefinement::linearise(const RigidTransform& correction) {
-  const Eigen::Matrix3f r = correction.rotation.cast<float>();
-  const Eigen::Vector3f t = correction.translation.cast<float>();
-  const Projection& lens = projection_;
-  const float scale = 1 / static_cast<float>(level_.shrinkage);
-  // Of the four pixels that make one of the small picture.
-  const int half = level_.shrinkage / 2;
-  const float center = static_cast<float>(half) / 2;
-  const auto last_column = static_cast<float>(small_.width() - 2);
-  const auto last_row = static_cast<float>(small_.height() - 2);
-  const auto linearise_some = [&](Points& points) {
-    std::size_t count = 0;
-    const auto coordinate = [&](int i) {
-      return r(i, 0) * points.x_m + r(i, 1) * points.y_m + r(i, 2) * points.z_m + t[i];
-    };
-    const Lanes px = coordinate(0);
-    const Lanes py = coordinate(1);
-    const Lanes pz = coordinate(2).max(nearest_m);
-    const Lanes inverse_z = 1 / pz;
-    const Lanes x = px * inverse_z;
-    const Lanes y = py * inverse_z;
-    const Lanes r2 = x * x + y * y;
-    Lanes distorted_x;
-    Lanes distorted_y;
-    with_lens_model(lens.model, [&](auto model) {
-      plain::distort_ray<decltype(model)::value>(
-          lens.distortion, [](float value) { return value; }, x, y, r2, distorted_x, distorted_y);
-    });
-    const Lanes column = (lens.fx * distorted_x + lens.cx - center) * scale;
-    const Lanes row = (lens.fy * distorted_y + lens.cy - center) * scale;
-    Lanes dx = Lanes::Zero();
-    Lanes dy = Lanes::Zero();
-    points.seen.setZero();
-    points.is_seen.setZero();
-    for (int i = 0; i < points.count; ++i) {
-      if (!(pz[i] > nearest_m && r2[i] < lens.max_radius_squared && column[i] >= 1 && row[i] >= 1 &&
-            column[i] < last_column && row[i] < last_row)) {
-        continue;
-      }
-      ShrunkPicture::Brightness found;
-      if (!small_.look_up(column[i], row[i], found)) continue;
-      points.seen[i] = found.level;
-      points.is_seen[i] = 1;
-      dx[i] = found.dx;
-      dy[i] = found.dy;
-      ++count;
-    }
-    // The lens' distortion hardly changes the derivative.
-    const Lanes u = dx * inverse_z * (scale * lens.fx);
-    const Lanes v = dy * inverse_z * (scale * lens.fy);
-    const Lanes w = -(u * x + v * y);
-    points.derivative = {u, v, w, py * w - pz * v, pz * u - px * w, px * v - py * u};
-    return count;
-  };
-  constexpr std::size_t tasks = 8;
-  std::array<std::size_t, tasks> counts{};
-  for_tasks(tasks, [&](std::size_t task) {
-    for (std::size_t i = task * points_.size() / tasks; i < (task + 1) * points_.size() / tasks;
-         ++i) {
-      counts[task] += linearise_some(points_[i]);
-    }
-  });
-  return std::accumulate(counts.begin(), counts.end(), std::size_t{0});
-}
-
-void PoseRefinement::fit_lines() {
-  using Sum = Eigen::Array<double, lanes, 1>;
-  for (auto points = points_.begin(); points != points_.end();) {
-    const std::uint8_t source = points->source;
-    Sum n = Sum::Zero();
-    Sum x = Sum::Zero();
-    Sum y = Sum::Zero();
-    Sum xx = Sum::Zero();
-    Sum xy = Sum::Zero();
-    for (; points != points_.end() && points->source == source; ++points) {
-      const Sum weight = points->weight.cast<double>();
-      const Sum brightness = points->brightness.cast<double>();
-      const Sum seen = points->seen.cast<double>();
-      const Sum weighted = weight * brightness;
-      n += weight;
-      x += weighted;
-      y += weight * seen;
-      xx += weighted * brightness;
-      xy += weighted * seen;
-    }
-    const double determinant = n.sum() * xx.sum() - x.sum() * x.sum();
-    if (!(determinant > 1)) continue;
-    const double gain = (n.sum() * xy.sum() - x.sum() * y.sum()) / determinant;
-    lines_[source] = {static_cast<float>(gain),
-                      static_cast<float>((y.sum() - gain * x.sum()) / n.sum())};
-  }
-}
-
-void PoseRefinement::find_residuals() {
-  for (Points& points : points_) {
-    const Line& line = lines_[points.source];
-    points.residual = points.is_seen * (points.seen - line.gain * points.brightness - line.offset);
-  }
-}
-
-float PoseRefinement::find_scale() {
-  magnitudes_.clear();
-  for (const Points& points : points_) {
-    for (int i = 0; i < points.count; ++i) {
-      if (points.is_seen[i] != 0) magnitudes_.push_back(std::abs(points.residual[i]));
-    }
-  }
-  return std::max(1.F, 1.48F * median(magnitudes_));
-}
-
-/// As tukey_weight does.
-void PoseRefinement::weigh(float scale) {
-  const float end = 4.7F * scale;
-  for (Points& points : points_) {
-    const Lanes relative = (points.residual.abs() / end).min(1.F);
-    points.weight = points.is_seen * (1 - relative.square()).square();
-  }
-}
-
-PoseRefinement::Equations PoseRefinement::add_up() const {
-  std::array<Lanes, 21> squares;
-  std::array<Lanes, 6> products;
-  squares.fill(Lanes::Zero());
-  products.fill(Lanes::Zero());
-  Lanes cost = Lanes::Zero();
-  for (const Points& points : points_) {
-    auto square = squares.begin();
-    for (std::size_t i = 0; i < 6; ++i) {
-      const Lanes weighted = points.weight * points.derivative[i];
-      products[i] -= weighted * points.residual;
-      for (std::size_t j = 0; j <= i; ++j) *square++ += weighted * points.derivative[j];
-    }
-    // Of one scale, so that iterations compare (Geman & McClure 1985).
-    constexpr float same_scale = 400;
-    const Lanes squared = points.residual.square();
-    cost += squared / (squared + same_scale);
-  }
-  Equations sums;
-  auto square = squares.begin();
-  for (Eigen::Index i = 0; i < 6; ++i) {
-    sums.products[i] = products[static_cast<std::size_t>(i)].sum();
-    for (Eigen::Index j = 0; j <= i; ++j) {
-      sums.squares(i, j) = sums.squares(j, i) = (square++)->sum();
-    }
-  }
-  sums.cost = cost.sum();
-  return sums;
-}
-
-PoseRefinement::Twist PoseRefinement::further(const Twist& step, const Twist& last) {
-  const float squared = last.squaredNorm();
-  if (!(squared > 0)) return step;
-  const float ratio = step.dot(last) / squared;
-  constexpr float most = 0.8F;
-  return step / (1 - std::clamp(ratio, 0.F, most));
 }
 
 std::optional<RigidTransform> PoseRefinement::refine(const FrameSet& frame, const Mask& occlusion,
                                                      const SceneSamples& scene) {
-  if (scene.surfaces.size() < fewest_points) return std::nullopt;
-  Estimate estimate;
-  for (int coarser = coarser_; coarser > 0; --coarser) {
-    level_ = {fine_.shrinkage << coarser, fine_.most_points / 2, 5 * fine_.last_step, true};
-    if (!begin_level(frame, occlusion, scene) || !iterate(most_iterations, estimate)) estimate = {};
-  }
-  level_ = fine_;
-  if (!begin_level(frame, occlusion, scene)) return std::nullopt;
+  if (scene.surfaces.size() < fewest_samples) return std::nullopt;
   // The pose as it was measured is to be bettered.
-  Estimate measured;
-  if (!iterate(0, measured) || !iterate(most_iterations, estimate)) return std::nullopt;
+  DirectAlignment::Estimate measured;
+  DirectAlignment::Estimate estimate;
+  bool is_seen = false;
+  do_all([&] { is_seen = fine_.begin(frame, occlusion, scene) && fine_.iterate(0, measured); },
+         [&] {
+           for (DirectAlignment& level : coarser_) {
+             if (!level.begin(frame, occlusion, scene) ||
+                 !level.iterate(most_iterations, estimate)) {
+               estimate = {};
+             }
+           }
+         });
+  if (!is_seen || !fine_.iterate(most_iterations, estimate)) return std::nullopt;
   if (!(estimate.cost < measured.cost) ||
       estimate.twist.head<3>().norm() > largest_deviations * translation_deviation_m ||
       estimate.twist.tail<3>().norm() > largest_deviations * rotation_deviation) {
     return std::nullopt;
   }
   return estimate.correction;
-}
-
-bool PoseRefinement::begin_level(const FrameSet& frame, const Mask& occlusion,
-                                 const SceneSamples& scene) {
-  const int smallest_side = 8 * level_.shrinkage;
-  if (std::min(frame.color.width(), frame.color.height()) < smallest_side) return false;
-  small_.begin(frame.color, occlusion, level_.shrinkage);
-  collect(frame, scene.surfaces);
-  std::fill(lines_.begin(), lines_.end(), Line{});
-  return true;
-}
-
-bool PoseRefinement::iterate(int iterations, Estimate& estimate) {
-  Twist prior;
-  prior.head<3>().setConstant(1 / (translation_deviation_m * translation_deviation_m));
-  prior.tail<3>().setConstant(1 / (rotation_deviation * rotation_deviation));
-  Twist last = Twist::Zero();
-  float scale = 0;
-  for (int iteration = 0;; ++iteration) {
-    const std::size_t seen = linearise(estimate.correction);
-    if (seen < fewest_points) return false;
-    if (iteration == 0) {
-      for (Points& points : points_) points.weight = points.is_seen;
-    } else {
-      find_residuals();
-      weigh(scale);
-    }
-    // Later on the lines hardly change.
-    const int passes = iteration == 0 ? 3 : 1;
-    for (int pass = 0; pass < passes; ++pass) {
-      fit_lines();
-      find_residuals();
-      scale = find_scale();
-      weigh(scale);
-    }
-    Equations equations = add_up();
-    estimate.cost = equations.cost / static_cast<float>(seen);
-    if (iteration == iterations) return true;
-    const Twist held = prior * (scale * scale / independent_share);
-    equations.squares.diagonal() += held;
-    equations.products -= held.cwiseProduct(estimate.twist);
-    Twist step = equations.solve();
-    if (level_.extrapolates) step = further(step, last);
-    if (step.cwiseAbs().maxCoeff() < level_.last_step) return true;
-    last = step;
-    estimate.twist += step;
-    estimate.correction = exponential(step.cast<double>()) * estimate.correction;
-  }
 }
 
 void PoseRefinement::apply(const RigidTransform& correction, Poses& poses,

@@ -1,19 +1,15 @@
 #pragma once
 
-#include <Eigen/Core>
-#include <array>
-#include <cstdint>
 #include <optional>
 #include <vector>
 
-#include "core/shrunk_picture.h"
 #include "diminish/frame_set.h"
 #include "diminish/intrinsics.h"
 #include "diminish/occlusion_masks.h"
 #include "diminish/poses.h"
 #include "diminish/scene_samples.h"
 #include "geometry/projection.h"
-#include "geometry/rigid_least_squares.h"
+#include "pose/direct_alignment.h"
 
 namespace diminish {
 
@@ -50,67 +46,9 @@ class PoseRefinement {
   void apply(const RigidTransform& correction, Poses& poses, SceneSamples& samples) const;
 
  private:
-  /// A shift, then a rotation.
-  using Twist = Eigen::Matrix<float, 6, 1>;
-
-  /// Points that one RGB-D camera sees, worked on together; those after the last have no depth.
-  static constexpr int lanes = 8;
-  using Lanes = Eigen::Array<float, lanes, 1>;
-  struct Points {
-    Lanes x_m, y_m, z_m;  ///< in the colour camera's frame, as measured
-    Lanes brightness;     ///< what the RGB-D camera saw
-    /// What the colour camera sees there, linearised; all 0 where it sees nothing, or an object.
-    Lanes is_seen, seen;
-    std::array<Lanes, 6> derivative;  ///< of `seen`, by the camera's motion
-    Lanes residual, weight;
-    std::uint8_t source;
-    int count;
-  };
-  struct Line {
-    float gain = 1, offset = 0;
-  };
-  /// How one shrunk picture is aligned.
-  struct Level {
-    int shrinkage;
-    std::size_t most_points;
-    float last_step;
-    bool extrapolates;
-  };
-  struct Estimate {
-    RigidTransform correction;
-    Twist twist = Twist::Zero();  ///< the sum of the steps
-    float cost = 0;
-  };
-  struct Equations : NormalEquations<float> {
-    float cost = 0;
-  };
-
-  /// Robust weights and gains follow slowly: where steps go on in the same direction, as far as
-  /// they would go in the end.
-  static Twist further(const Twist& step, const Twist& last);
-  /// Shrinks the picture and collects points. False if the picture is too small.
-  bool begin_level(const FrameSet& frame, const Mask& occlusion, const SceneSamples& scene);
-  /// Betters the estimate, and finds its cost. False if the colour camera sees too few points.
-  bool iterate(int iterations, Estimate& estimate);
-  void collect(const FrameSet& frame, const std::vector<SceneSample>& samples);
-  void add(const Eigen::Vector3f& point_m, float brightness, std::uint8_t source);
-  /// Returns how many points the colour camera sees.
-  std::size_t linearise(const RigidTransform& correction);
-  /// Gain and offset of each camera, by the weights.
-  void fit_lines();
-  void find_residuals();
-  /// Of the residuals.
-  float find_scale();
-  void weigh(float scale);
-  Equations add_up() const;
-
+  DirectAlignment fine_;
+  std::vector<DirectAlignment> coarser_;  ///< the smallest picture first
   Projection projection_;
-  int coarser_;
-  Level fine_, level_;  ///< the last one; the one at hand
-  ShrunkPicture small_;
-  std::vector<Points> points_;
-  std::vector<float> magnitudes_;
-  std::vector<Line> lines_;
 };
 
 }  // namespace diminish
