@@ -1,5 +1,5 @@
-// What each stage of a frame costs in instructions, for callgrind to count (times on shared machines
-// say less), and how much memory it allocates.   diminish_frame_cost RECORDING [MEMORY]
+// What each stage of a frame costs in instructions, for callgrind to count (times on shared
+// machines say less), and how much memory it allocates.   diminish_frame_cost RECORDING [MEMORY]
 // (by scripts/check-baselines, under valgrind; MEMORY: as --memory)
 //
 // Callgrind writes what it counted at each reading of the clock. Stages read it when they begin and

@@ -349,8 +349,8 @@ TEST_F(ProgramTest, BenchMeasuresEveryStage) {
 /// Events of a Chrome trace: each "complete" event of a thread lies within another or beside it.
 TEST_F(ProgramTest, BenchWritesATrace) {
   const fs::path file = recording.path("trace.json");
-  const auto outcome = Program::run(
-      {"bench", recording.folder(), "--seconds", "0.01", "--trace", file.string()});
+  const auto outcome =
+      Program::run({"bench", recording.folder(), "--seconds", "0.01", "--trace", file.string()});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const auto json = nlohmann::json::parse(read_text_file(file, 1 << 24));
   struct Event {

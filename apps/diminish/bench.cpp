@@ -299,8 +299,7 @@ void print(const Figures& figures, int threads) {
   fmt::print("Longest chain, ms:");
   for (const auto& [stage, ms] : figures.cost.chain_ms) fmt::print(" {} {:.2f}", stage, ms);
   fmt::print("\nParallel regions: {}, with {} tasks of {:.0f} us\n", figures.cost.regions,
-             figures.cost.tasks,
-             1000 * figures.cost.work_ms / std::max(figures.cost.tasks, 1));
+             figures.cost.tasks, 1000 * figures.cost.work_ms / std::max(figures.cost.tasks, 1));
   fmt::print("Pipelined, {} threads: {:.1f} frames/s\n", threads, figures.throughput_fps);
   fmt::print("From files: {:.1f} frames/s; reading alone {:.1f} frames/s, ratio {:.2f}\n",
              figures.run_fps, figures.reading_fps, figures.run_fps / figures.reading_fps);

@@ -46,12 +46,11 @@ WorkAndSpan measure_work_and_span(const Recording& input, const std::vector<Fram
   };
   constexpr double ns_per_ms = 1e6;
   using tracing::Cost;
-  WorkAndSpan median_cost{
-      median([](const Cost& cost) { return cost.work_ns; }) / ns_per_ms,
-      median([](const Cost& cost) { return cost.span_ns; }) / ns_per_ms,
-      static_cast<int>(median([](const Cost& cost) { return cost.regions; })),
-      static_cast<int>(median([](const Cost& cost) { return cost.tasks; })),
-      {}};
+  WorkAndSpan median_cost{median([](const Cost& cost) { return cost.work_ns; }) / ns_per_ms,
+                          median([](const Cost& cost) { return cost.span_ns; }) / ns_per_ms,
+                          static_cast<int>(median([](const Cost& cost) { return cost.regions; })),
+                          static_cast<int>(median([](const Cost& cost) { return cost.tasks; })),
+                          {}};
   for (const char* const name : stage_names) {
     const double ns = median([&](const Cost& cost) {
       const auto link = std::find_if(cost.chain.begin(), cost.chain.end(),

@@ -133,7 +133,7 @@ Region::Region(std::size_t tasks) : is_on_(tracing::is_on()) {
 }
 
 Region::~Region() {
-  if (!is_on_ || !around_) return;
+  if (!is_on_ || !around_ || costs_.empty()) return;
   Cost& cost = around_->cost;
   ++cost.regions;
   for (const Cost& task : costs_) {

@@ -158,7 +158,9 @@ void VisibleBlocks::find(ImageView<std::uint16_t> depth, const RigidTransform& c
         Range& depth_m = depth_m_[visible_.index(column, row)];
         depth_m = {static_cast<float>(nearest) * unit_m_, static_cast<float>(farthest) * unit_m_};
         visible_(column, row) =
-            farthest > 0 && is_inside(sides_, rays_->of_block[visible_.index(column, row)], depth_m) ? 1 : 0;
+            farthest > 0 && is_inside(sides_, rays_->of_block[visible_.index(column, row)], depth_m)
+                ? 1
+                : 0;
       }
     }
   });

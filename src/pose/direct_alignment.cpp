@@ -22,7 +22,7 @@ RigidTransform exponential(const Eigen::Matrix<double, 6, 1>& twist) {
 }  // namespace
 
 bool DirectAlignment::begin(const FrameSet& frame, const Mask& occlusion,
-                                 const SceneSamples& scene) {
+                            const SceneSamples& scene) {
   const int smallest_side = 8 * level_.shrinkage;
   if (std::min(frame.color.width(), frame.color.height()) < smallest_side) return false;
   small_.begin(frame.color, occlusion, level_.shrinkage);

@@ -49,15 +49,15 @@ std::optional<RigidTransform> PoseRefinement::refine(const FrameSet& frame, cons
   DirectAlignment::Estimate measured;
   DirectAlignment::Estimate estimate;
   bool is_seen = false;
-  do_all([&] { is_seen = fine_.begin(frame, occlusion, scene) && fine_.iterate(0, measured); },
-         [&] {
-           for (DirectAlignment& level : coarser_) {
-             if (!level.begin(frame, occlusion, scene) ||
-                 !level.iterate(most_iterations, estimate)) {
-               estimate = {};
-             }
-           }
-         });
+  do_all(
+      [&] { is_seen = fine_.begin(frame, occlusion, scene) && fine_.iterate(0, measured); },
+      [&] {
+        for (DirectAlignment& level : coarser_) {
+          if (!level.begin(frame, occlusion, scene) || !level.iterate(most_iterations, estimate)) {
+            estimate = {};
+          }
+        }
+      });
   if (!is_seen || !fine_.iterate(most_iterations, estimate)) return std::nullopt;
   if (!(estimate.cost < measured.cost) ||
       estimate.twist.head<3>().norm() > largest_deviations * translation_deviation_m ||
