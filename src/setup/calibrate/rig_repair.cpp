@@ -224,7 +224,8 @@ struct RigRepair::Implementation {
         poses(rig, scene),
         occluders(rig, scene),
         markers(rig, scene.marker_dictionary, poses.needs_markers() || occluders.needs_markers()),
-        sampler(rig) {}
+        sampler(rig),
+        seen(rig.rgbd.size(), false) {}
 
   Rig rig;
   Intrinsics small, usual;
@@ -233,12 +234,16 @@ struct RigRepair::Implementation {
   FrameMarkers markers;
   SceneSampler sampler;
   std::vector<Kept> frames;
+  std::vector<bool> seen;  ///< whether this RGB-D camera had images at all
   Poses last;
 };
 
 RigRepair::RigRepair(const Rig& rig, const Scene& scene) {
   if (rig.pose_source != "fixed") {
     throw Error("rig.yaml: pose.source: expected fixed to repair; got " + rig.pose_source);
+  }
+  if (rig.rgbd.empty()) {
+    throw Error("rig.yaml: rgbd: expected an RGB-D camera whose pose to repair; there is none");
   }
   implementation_ = std::make_unique<Implementation>(rig, scene);
 }
@@ -247,6 +252,15 @@ RigRepair::~RigRepair() = default;
 void RigRepair::add(const FrameSet& frame) {
   Implementation& self = *implementation_;
   if (frame.color.empty() || self.frames.size() == most_frames) return;
+  bool is_whole = true;
+  for (std::size_t k = 0; k < frame.rgbd.size(); ++k) {
+    const RgbdFrame& camera = frame.rgbd[k];
+    const bool is_there =
+        self.rig.rgbd[k].measures_depth ? camera.available() : camera.has_picture();
+    if (is_there) self.seen[k] = true;
+    is_whole = is_whole && is_there;
+  }
+  if (!is_whole) return;
   Markers markers;
   markers.rgbd.resize(self.rig.rgbd.size());
   self.markers.find(frame, markers);
@@ -276,11 +290,16 @@ std::vector<RepairedPose> RigRepair::repair() const {
   constexpr std::size_t frames_for_grid = 3;
   constexpr double width_of_top = 0.04;
   const Implementation& self = *implementation_;
+  if (self.frames.empty()) {
+    const auto unseen = std::find(self.seen.begin(), self.seen.end(), false) - self.seen.begin();
+    const std::size_t blamed = std::min<std::size_t>(unseen, self.rig.rgbd.size() - 1);
+    throw Error(self.rig.rgbd[blamed].name +
+                ": expected frames with its images and those of all other cameras");
+  }
   std::vector<RepairedPose> repaired;
   for (std::size_t k = 0; k < self.rig.rgbd.size(); ++k) {
     const RgbdCamera& camera = self.rig.rgbd[k];
     const auto source = static_cast<std::uint8_t>(k + 1);
-    if (self.frames.empty()) throw Error(camera.name + ": expected frames with its images");
     const RigidTransform before = *self.last.color_from_depth[k];
     Fit coarse(self.small, self.frames, &Kept::small, frames_for_grid, source, before);
     Fit fine(self.usual, self.frames, &Kept::usual, most_frames, source, before);
@@ -289,17 +308,19 @@ std::vector<RepairedPose> RigRepair::repair() const {
     motion = climb(fine, motion, 0.2 * degree, 0.01 * degree);
     const auto fit_before = fine(Vector6::Zero());
     auto fit = fine(motion);
-    // The fit tells where the hill is; on its top, a few pixels wide, the refinement knows better.
+    // The fit tells where the hill is; on its top, a few pixels wide, the refinement knows better,
+    // but no better than a calibration that is there already.
     const auto is_as_good = [&](std::optional<double> other) {
       return other && fit && *other > *fit - width_of_top;
     };
-    const bool was_good = is_as_good(fit_before);
-    if (was_good) motion.setZero();
-    const Vector6 polished =
-        vector_of(before.inverse() *
-                  polish(self.rig, self.frames, source, before, before * transform_of(motion)));
-    const auto polished_fit = fine(polished);
-    if (was_good ? polished_fit > fit_before : is_as_good(polished_fit)) motion = polished;
+    if (is_as_good(fit_before)) {
+      motion.setZero();
+    } else {
+      const Vector6 polished =
+          vector_of(before.inverse() *
+                    polish(self.rig, self.frames, source, before, before * transform_of(motion)));
+      if (is_as_good(fine(polished))) motion = polished;
+    }
     fit = fine(motion);
     if (!fit) {
       throw Error(camera.name +

@@ -34,13 +34,13 @@ class RigRepair {
   RigRepair& operator=(const RigRepair&) = delete;
 
   static constexpr std::size_t most_frames = 12;
-  /// Copies what it needs of a frame; a few are enough, and further ones are not looked at. Objects
-  /// to remove are left out.
+  /// Copies what it needs of a frame; a few are enough, and further ones are not looked at, nor are
+  /// those without all cameras' images. Objects to remove are left out.
   void add(const FrameSet& frame);
   std::size_t frames() const;
 
-  /// One for each RGB-D camera. About a second each. Throws Error that names the camera if too
-  /// little of what it sees is in the pictures.
+  /// One for each RGB-D camera. About a second each. Throws Error that names the camera if it had
+  /// no images, or too little of what it sees is in the pictures.
   std::vector<RepairedPose> repair() const;
 
  private:

@@ -14,6 +14,7 @@
 #include "run_program.h"
 #include "setup/calibrate/rig_file.h"
 #include "source/read_rigid_transform.h"
+#include "source/tiny_recording.h"
 #include "temporary_folder.h"
 #include "truth_poses.h"
 
@@ -132,11 +133,79 @@ TEST_P(RigRepairTest, TheProgramWritesWhatItFinds) {
   }
 }
 
+/// Cameras that stand still: the recording's first frame for ever.
+TEST_P(RigRepairTest, TheProgramMendsFromLivePictures) {
+  const TemporaryFolder folder;
+  std::filesystem::copy(recording.folder / "scene.yaml", folder.path());
+  for (const auto& entry : std::filesystem::directory_iterator(recording.folder)) {
+    const std::string name = entry.path().filename().string();
+    if (entry.is_directory() || name.ends_with(".obj")) {
+      std::filesystem::create_symlink(entry.path(), folder.path() / name);
+    }
+    if (!name.ends_with(".txt")) continue;
+    std::ifstream list(entry.path());
+    std::string stamp_s;
+    std::string image;
+    while (stamp_s.empty() || stamp_s[0] == '#') list >> stamp_s&& std::getline(list, image);
+    image.erase(0, 1);
+    // A frame's name is unique.
+    const std::string again = "again" + std::filesystem::path(image).extension().string();
+    std::filesystem::create_symlink(recording.folder / image, folder.path() / (name + "_" + again));
+    folder.write(name, "1 " + image + "\n1.1 " + name + "_" + again + "\n");
+  }
+  write_bumped(folder.path() / "rig.yaml", 2, {0, 1, 0}, {0, 0, 0});
+  const std::string replay = "recording:" + folder.path().string() + "?loop";
+  const std::string out = (folder.path() / "mended.yaml").string();
+  std::vector<std::string> arguments = {
+      "calibrate", "rig", folder.path().string(), "--repair", "--out", out, "--seconds", "10",
+      "--color",   replay};
+  for (std::size_t k = 0; k < truth.size(); ++k) {
+    arguments.insert(arguments.end(), {"--rgbd", replay});
+  }
+  const auto run = Program::run(arguments);
+  EXPECT_EQ(run.exit_code, 0) << run.out << run.err;
+  const Rig mended = load_rig(out);
+  const Config poses = mended.pose.at("color_from_rgbd");
+  for (std::size_t k = 0; k < truth.size(); ++k) {
+    EXPECT_LT(error_px(read_rigid_transform(poses.at(mended.rgbd[k].name)), k), 4);
+  }
+}
+
+// A live camera's images come late now and then, mostly in the beginning.
+TEST_P(RigRepairTest, FramesWithoutAllImagesAreNotLookedAt) {
+  RigRepair repair(bumped(2.3, Eigen::Vector3d::UnitY(), {0, 0, 0}), recording.scene);
+  FrameSet incomplete = frame;
+  incomplete.rgbd.back().missing = "late";
+  for (int i = 0; i < 3; ++i) repair.add(incomplete);
+  EXPECT_EQ(repair.frames(), 0U);
+  EXPECT_THAT(error_of([&] { repair.repair(); }),
+              HasSubstr(recording.rig.rgbd.back().name + ": expected frames with its images"));
+  repair.add(frame);
+  for (std::size_t k = 0; k < truth.size(); ++k) {
+    EXPECT_LT(error_px(repair.repair()[k].color_from_rgbd, k), 4);
+  }
+}
+
 TEST(RigRepairOf, PosesThatAreNotFixedIsRefused) {
   const Recording recording =
       load_recording(std::filesystem::path(testing::recordings_dir()) / "calendar");
   EXPECT_THAT(error_of([&] { RigRepair(recording.rig, recording.scene); }),
               HasSubstr("pose.source: expected fixed to repair; got marker"));
+}
+
+TEST(RigRepairOf, ARigWithoutRgbdCamerasIsRefusedAndNothingIsWritten) {
+  const TinyRecording recording;
+  recording.write("rig.yaml",
+                  "color: {width: 40, height: 30, camera_matrix: [40, 40, 20, 15],"
+                  " distortion: [0, 0, 0, 0, 0]}\n"
+                  "rgbd: []\n"
+                  "pose: {source: fixed}\n");
+  const std::string out = recording.path("mended.yaml").string();
+  const auto run =
+      Program::run({"calibrate", "rig", recording.path("").string(), "--repair", "--out", out});
+  EXPECT_EQ(run.exit_code, 1) << run.out;
+  EXPECT_THAT(run.err, HasSubstr("rgbd: expected an RGB-D camera whose pose to repair"));
+  EXPECT_FALSE(std::filesystem::exists(out));
 }
 
 }  // namespace
