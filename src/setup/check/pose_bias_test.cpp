@@ -92,27 +92,24 @@ double number_after(const std::string& text, const Finding& finding) {
 }
 
 TEST(CheckPoseBias, TellsAWrongFocalLengthFromAWrongPose) {
-  for (const char* name : {"calendar", "workbench"}) {
-    const SetupReport report = check_with_poses({}, name, {"[1131.4, 1130.7,", "[1165.3, 1164.6,"});
-    ASSERT_EQ(report.findings.size(), 1U) << setup_report_text(report);
-    const Finding& finding = report.findings[0];
-    EXPECT_EQ(finding.code, "pose-bias");
-    EXPECT_THAT(finding.what, ::testing::HasSubstr("camera's focal length")) << finding.figure;
-    EXPECT_THAT(finding.remedy, ::testing::StartsWith("diminish calibrate intrinsics"));
-    EXPECT_NEAR(number_after("focal length of ", finding), 1131.4, 12);
-  }
+  const SetupReport report =
+      check_with_poses({}, "workbench", {"[1131.4, 1130.7,", "[1165.3, 1164.6,"});
+  ASSERT_EQ(report.findings.size(), 1U) << setup_report_text(report);
+  const Finding& finding = report.findings[0];
+  EXPECT_EQ(finding.code, "pose-bias");
+  EXPECT_THAT(finding.what, ::testing::HasSubstr("camera's focal length is")) << finding.figure;
+  EXPECT_THAT(finding.remedy, ::testing::StartsWith("diminish calibrate intrinsics"));
+  EXPECT_NEAR(number_after("focal length of ", finding), 1131.4, 12);
 }
 
 TEST(CheckPoseBias, TellsAWrongDistortionFromAWrongPose) {
-  for (const char* name : {"calendar", "workbench"}) {
-    const SetupReport report =
-        check_with_poses({}, name, {"distortion: [-0.11,", "distortion: [-0.31,"});
-    ASSERT_EQ(report.findings.size(), 1U) << setup_report_text(report);
-    const Finding& finding = report.findings[0];
-    EXPECT_EQ(finding.code, "pose-bias");
-    EXPECT_THAT(finding.what, ::testing::HasSubstr("camera's distortion")) << finding.figure;
-    EXPECT_NEAR(number_after("distortion coefficient of ", finding), -0.11, 0.04);
-  }
+  const SetupReport report =
+      check_with_poses({}, "calendar", {"distortion: [-0.11,", "distortion: [-0.31,"});
+  ASSERT_EQ(report.findings.size(), 1U) << setup_report_text(report);
+  const Finding& finding = report.findings[0];
+  EXPECT_EQ(finding.code, "pose-bias");
+  EXPECT_THAT(finding.what, ::testing::HasSubstr("camera's distortion is")) << finding.figure;
+  EXPECT_NEAR(number_after("distortion coefficient of ", finding), -0.11, 0.04);
 }
 
 // The world marker is nowhere, but nobody needs it.
