@@ -82,6 +82,35 @@ TEST(JpegDecoder, RefusesDamagedPixels) {
   EXPECT_GE(refused, 20);
 }
 
+// A webcam's torn picture must not take the next ones with it.
+TEST(JpegDecoder, ADamagedPictureDoesNotSpoilTheNext) {
+  const Bytes good = encoded(".jpg", picture());
+  const cv::Mat expected = decode_jpeg(good);
+  const auto place_of = [&](std::uint8_t marker) {
+    const Bytes bytes = {0xff, marker};
+    const auto found = std::search(good.begin(), good.end(), bytes.begin(), bytes.end());
+    return static_cast<std::size_t>(found - good.begin());
+  };
+  const std::size_t tables_begin = place_of(0xc4);  // Huffman tables, up to the pixels
+  const std::size_t tables_end = place_of(0xda);
+  std::mt19937 random(4);
+  int refused = 0;
+  for (int i = 0; i < 500; ++i) {
+    Bytes spoilt = good;
+    for (int k = 0; k < 3; ++k) {
+      spoilt[tables_begin + random() % (tables_end - tables_begin)] =
+          static_cast<std::uint8_t>(random());
+    }
+    try {
+      decode_jpeg(spoilt);
+    } catch (const Error&) {
+      ++refused;
+    }
+    ASSERT_TRUE(is_same(decode_jpeg(good), expected)) << i;
+  }
+  EXPECT_GT(refused, 100);
+}
+
 TEST(JpegDecoder, BytesBetweenMarkersAreNoDamage) {
   Bytes bytes = encoded(".jpg", picture());
   const cv::Mat expected = decode_jpeg(bytes);

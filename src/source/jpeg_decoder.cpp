@@ -40,8 +40,9 @@ bool is_harmless(tjhandle handle) {
 }  // namespace
 
 cv::Mat decode_jpeg(std::span<const std::uint8_t> bytes) {
-  thread_local const std::unique_ptr<std::remove_pointer_t<tjhandle>, Destroy> owner(
-      tjInitDecompress());
+  // A new one for each image: it keeps an image's tables, and a damaged image's spoil the next
+  // ones.
+  const std::unique_ptr<std::remove_pointer_t<tjhandle>, Destroy> owner(tjInitDecompress());
   const tjhandle handle = owner.get();
   if (handle == nullptr) return {};
   int width = 0;
