@@ -2,6 +2,7 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <httplib.h>
 #include <sys/resource.h>
 
 #include <thread>
@@ -84,7 +85,8 @@ void WebRoutes::add_to(httplib::Server& server) {
   server.set_default_headers(page_rules());
   server.set_pre_routing_handler([this](const auto& request, auto& response) {
     lower_priority_of_this_thread();
-    return check_access(request, response);
+    return check_access(request, response) ? httplib::Server::HandlerResponse::Unhandled
+                                           : httplib::Server::HandlerResponse::Handled;
   });
   server.set_exception_handler([](const auto&, auto& response, const std::exception_ptr& error) {
     try {
@@ -132,41 +134,39 @@ std::string WebRoutes::given_token(const httplib::Request& request) const {
   return cookie_of(request.get_header_value("Cookie"), cookie_name());
 }
 
-httplib::Server::HandlerResponse WebRoutes::check_access(const httplib::Request& request,
-                                                         httplib::Response& response) const {
-  const auto handled = httplib::Server::HandlerResponse::Handled;
+bool WebRoutes::check_access(const httplib::Request& request, httplib::Response& response) const {
   const std::string host = request.get_header_value("Host");
   if (!is_same_site(request.get_header_value("Origin"), host)) {
     refuse(response, 403, "Origin: expected this program's own page");
-    return handled;
+    return false;
   }
   if (options_.token.empty()) {
     if (!names_loopback(host)) {
       refuse(response, 403, "Host: expected this machine's own name, such as localhost");
-      return handled;
+      return false;
     }
   } else {
     const bool has_token = equals_secretly(given_token(request), options_.token);
     // The page's own files hold no secrets.
     if (request.path.starts_with("/api/") && !has_token) {
       refuse(response, 401, "expected the token that diminish printed when it started");
-      return handled;
+      return false;
     }
     // From the first visit on a cookie holds the token: no history and no log then does.
     if (request.path == "/" && request.has_param("token") && has_token) {
       response.set_header("Set-Cookie", fmt::format("{}={}; HttpOnly; SameSite=Strict; Path=/",
                                                     cookie_name(), options_.token));
       response.set_redirect("/", 303);
-      return handled;
+      return false;
     }
   }
   // A form on another site can send a request without asking, but not as JSON.
   if (request.method == "POST" &&
       !request.get_header_value("Content-Type").starts_with("application/json")) {
     refuse(response, 415, "Content-Type: expected application/json");
-    return handled;
+    return false;
   }
-  return httplib::Server::HandlerResponse::Unhandled;
+  return true;
 }
 
 std::shared_ptr<WebRoutes::Viewer> WebRoutes::admit(std::atomic<std::size_t>& viewers,

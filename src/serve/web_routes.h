@@ -1,7 +1,5 @@
 #pragma once
 
-#include <httplib.h>
-
 #include <atomic>
 #include <memory>
 #include <mutex>
@@ -12,6 +10,12 @@
 #include "diminish/recording_writer.h"
 #include "diminish/web_server.h"
 #include "serve/picture_encoder.h"
+
+namespace httplib {
+class Server;
+struct Request;
+struct Response;
+}  // namespace httplib
 
 namespace diminish {
 
@@ -52,8 +56,8 @@ class WebRoutes {
   /// Browsers send a host's cookies to all of its ports.
   std::string cookie_name() const { return "diminish-" + std::to_string(port_); }
   std::string given_token(const httplib::Request& request) const;
-  httplib::Server::HandlerResponse check_access(const httplib::Request& request,
-                                                httplib::Response& response) const;
+  /// Whether the request may go on; if not, it has been answered.
+  bool check_access(const httplib::Request& request, httplib::Response& response) const;
   /// Adds a viewer; answers with a refusal and returns nullptr if there are too many.
   std::shared_ptr<Viewer> admit(std::atomic<std::size_t>& viewers,
                                 httplib::Response& response) const;

@@ -1,8 +1,10 @@
 #include "sink/indexed_png.h"
 
+#include <fmt/format.h>
 #include <png.h>
 
 #include <array>
+#include <cstdint>
 #include <string>
 
 #include "core/mat.h"
@@ -20,6 +22,8 @@ struct PngImage : png_image {
   PngImage(const PngImage&) = delete;
   PngImage& operator=(const PngImage&) = delete;
 };
+
+constexpr std::uint64_t most_pixels = 1 << 28;  ///< more than any camera has
 
 using Palette = std::array<Bgr, 256>;
 
@@ -42,6 +46,10 @@ Image<std::uint8_t> read_indexed_png(const std::filesystem::path& file) {
     fail(file, "cannot be read, expected an indexed-colour PNG");
   }
   if ((png.format & PNG_FORMAT_FLAG_COLORMAP) == 0) fail(file, "expected indexed colours");
+  if (std::uint64_t{png.width} * png.height > most_pixels) {
+    fail(file, fmt::format("expected at most {} million pixels, got {}x{}", most_pixels / 1'000'000,
+                           png.width, png.height));
+  }
   png.format = PNG_FORMAT_BGR | PNG_FORMAT_FLAG_COLORMAP;
   Palette palette;
   Image<std::uint8_t> indices(static_cast<int>(png.width), static_cast<int>(png.height));
