@@ -35,14 +35,46 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+/// Of all threads together, since the process began.
+double cpu_s() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+/// How fast frames go by, and what each costs.
+struct Rate {
+  double fps = 0, cpu_ms = 0;
+};
+
+/// Counts from the frame on at which it is started.
+class RateMeter {
+ public:
+  void start() {
+    start_ = Clock::now();
+    cpu_s_ = cpu_s();
+  }
+  Rate rate(std::size_t frames) const {
+    const auto count = static_cast<double>(frames);
+    return {count / seconds_since(start_), 1000 * (cpu_s() - cpu_s_) / count};
+  }
+
+ private:
+  Clock::time_point start_ = Clock::now();
+  double cpu_s_ = cpu_s();
+};
+
 /// What was measured.
 struct Figures {
   std::size_t frames = 0, left_out = 0, measured = 0;
   StartUp start_up{};
   std::array<Distribution, time_row_count> times_ms;  ///< by row of the table of times
   double throughput_fps = 0;
-  double reading_fps = 0, run_fps = 0;  ///< from files: without the pipeline, and with it
-  std::string device;                   ///< the GPU; empty: the CPU
+  Rate reading, run;   ///< from files: without the pipeline, and with it
+  std::string device;  ///< the GPU; empty: the CPU
   std::vector<std::pair<std::string, double>> gpu_passes_ms;  ///< medians
   double frame_ms = 0, cpu_frame_ms = 0;                      ///< medians, by turns
   double remembering_frame_ms = 0, forgetful_frame_ms = 0;    ///< medians, by turns
@@ -78,8 +110,8 @@ struct BenchCommand {
                       Figures& figures) const;
   void measure_throughput(const Recording& input, std::vector<FrameSet> frames,
                           Figures& figures) const;
-  double run_fps(const Recording& input, FrameSource& source) const;
-  double reading_fps(FrameSource& source) const;
+  Rate run_rate(const Recording& input, FrameSource& source) const;
+  Rate reading_rate(FrameSource& source) const;
 };
 
 Allocations allocations_until_now() {
@@ -233,34 +265,34 @@ void BenchCommand::measure_throughput(const Recording& input, std::vector<FrameS
       warm_up() + std::max<std::size_t>(
                       20, static_cast<std::size_t>(seconds / std::max(frame_s, 1e-6) * threads));
   PreloadedSource preloaded(std::move(loaded), count);
-  figures.throughput_fps = run_fps(input, preloaded);
+  figures.throughput_fps = run_rate(input, preloaded).fps;
   LoopedRecording to_read(input, options, count);
-  figures.reading_fps = reading_fps(to_read);
+  figures.reading = reading_rate(to_read);
   LoopedRecording to_run(input, options, count);
-  figures.run_fps = run_fps(input, to_run);
+  figures.run = run_rate(input, to_run);
 }
 
-/// Frames a second of a run that writes nothing.
-double BenchCommand::run_fps(const Recording& input, FrameSource& source) const {
+/// Of a run that writes nothing.
+Rate BenchCommand::run_rate(const Recording& input, FrameSource& source) const {
   NoSink sink;
   RunnerOptions runner;
   runner.threads = threads;
   runner.reconstructions = false;
-  Clock::time_point start;
+  RateMeter meter;
   std::size_t timed = 0;
   runner.progress = [&](std::size_t done) {
-    if (done == warm_up()) start = Clock::now();
+    if (done == warm_up()) meter.start();
     timed = done - std::min(done, warm_up());
   };
   run(source, input.rig, input.scene, options, sink, runner);
-  return static_cast<double>(timed) / seconds_since(start);
+  return meter.rate(timed);
 }
 
-/// Frames a second that as many threads read and decode.
-double BenchCommand::reading_fps(FrameSource& source) const {
+/// Of as many threads that read and decode.
+Rate BenchCommand::reading_rate(FrameSource& source) const {
   std::mutex order;
   std::size_t begun = 0;
-  Clock::time_point start;
+  RateMeter meter;
   {
     std::vector<std::jthread> readers;
     readers.reserve(static_cast<std::size_t>(threads));
@@ -269,12 +301,12 @@ double BenchCommand::reading_fps(FrameSource& source) const {
         for (FrameSet frame;; source.read_images(frame)) {
           const std::lock_guard lock(order);
           if (!source.begin(frame)) return;
-          if (begun++ == warm_up()) start = Clock::now();
+          if (begun++ == warm_up()) meter.start();
         }
       });
     }
   }
-  return static_cast<double>(begun - warm_up()) / seconds_since(start);
+  return meter.rate(begun - warm_up());
 }
 
 void print(const Figures& figures, int threads) {
@@ -302,7 +334,10 @@ void print(const Figures& figures, int threads) {
              figures.cost.tasks, 1000 * figures.cost.work_ms / std::max(figures.cost.tasks, 1));
   fmt::print("Pipelined, {} threads: {:.1f} frames/s\n", threads, figures.throughput_fps);
   fmt::print("From files: {:.1f} frames/s; reading alone {:.1f} frames/s, ratio {:.2f}\n",
-             figures.run_fps, figures.reading_fps, figures.run_fps / figures.reading_fps);
+             figures.run.fps, figures.reading.fps, figures.run.fps / figures.reading.fps);
+  fmt::print("  each core busy: {:.1f} ms a frame, {:.1f} of them for reading: a ratio of {:.2f}\n",
+             figures.run.cpu_ms, figures.reading.cpu_ms,
+             figures.reading.cpu_ms / figures.run.cpu_ms);
   if (figures.frame_ms > 0) {
     fmt::print("Frame on {}: p50 {:.2f} ms; with the CPU backend {:.2f} ms, ratio {:.2f}\n",
                figures.device.empty() ? "the CPU" : figures.device, figures.frame_ms,
@@ -360,8 +395,10 @@ void write_json(const BenchCommand& command, const Figures& figures) {
   json["latency_ms"] = to_json(total);
   json["latency_fps"] = 1000 / total.average;
   json["throughput_fps"] = figures.throughput_fps;
-  json["from_files_fps"] = figures.run_fps;
-  json["reading_fps"] = figures.reading_fps;
+  json["from_files_fps"] = figures.run.fps;
+  json["reading_fps"] = figures.reading.fps;
+  json["from_files_cpu_ms"] = figures.run.cpu_ms;
+  json["reading_cpu_ms"] = figures.reading.cpu_ms;
   json["work_ms"] = figures.cost.work_ms;
   json["span_ms"] = figures.cost.span_ms;
   for (const auto& [stage, ms] : figures.cost.chain_ms) json["span_by_stage_ms"][stage] = ms;

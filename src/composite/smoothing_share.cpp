@@ -6,6 +6,7 @@
 
 #include "composite/color_smoothing.h"
 #include "core/bilinear.h"
+#include "core/tasks.h"
 
 namespace diminish {
 namespace {
@@ -61,15 +62,15 @@ Color mean(const Window& colors) {
   return sum / static_cast<float>(side * side);
 }
 
-/// Sums over samples, of what smoothing changes and of what the colour camera sees instead.
-struct Sums {
-  float change_residual = 0, change_change = 0, squares = 0;
-  int count = 0;
+/// Of a sample: what smoothing changes, and what the colour camera sees instead.
+struct Term {
+  bool is_found = false;
+  float change_residual = 0, change_change = 0;
 };
 
 /// step: the RGB-D camera's pixels in one of the colour camera's.
-void add(ImageView<Bgr> camera, const Mask& occlusion, ImageView<Bgr> rgbd, float step,
-         const SceneSample& sample, const ColorMap& map, Sums& sums) {
+Term term_of(ImageView<Bgr> camera, const Mask& occlusion, ImageView<Bgr> rgbd, float step,
+             const SceneSample& sample, const ColorMap& map) {
   constexpr float most = 60;  // levels: more is another surface
   const float margin = step * reach + 1;
   const Eigen::Vector2f& texture = sample.texture;
@@ -80,7 +81,7 @@ void add(ImageView<Bgr> camera, const Mask& occlusion, ImageView<Bgr> rgbd, floa
         texture.x() < static_cast<float>(rgbd.width() - 1) - margin &&
         texture.y() < static_cast<float>(rgbd.height() - 1) - margin) ||
       intersect(around, camera.bounds()) != around || count_nonzero(occlusion, around) > 0) {
-    return;
+    return {};
   }
   Window drawn;
   Window seen;
@@ -101,12 +102,8 @@ void add(ImageView<Bgr> camera, const Mask& occlusion, ImageView<Bgr> rgbd, floa
   const Eigen::Array3f own = mapped(drawn[reach][reach]);
   const Eigen::Array3f change = mapped(smoothed(drawn)) - own;
   const Eigen::Array3f residual = seen_apart.head<3>() - (own - mapped(mean(drawn)));
-  if (!(residual.abs() < most).all()) return;
-  const float product = (change * residual).sum();
-  sums.change_residual += product;
-  sums.squares += product * product;
-  sums.change_change += change.square().sum();
-  ++sums.count;
+  if (!(residual.abs() < most).all()) return {};
+  return {true, (change * residual).sum(), change.square().sum()};
 }
 
 }  // namespace
@@ -116,17 +113,33 @@ int smoothing_share(const Rig& rig, const FrameSet& frame, const Mask& occlusion
   constexpr std::size_t wanted = 300;
   constexpr int fewest = 50;
   const std::size_t stride = std::max<std::size_t>(1, samples.size() / wanted);
-  Sums sums;
-  for (std::size_t i = 0; i < samples.size(); i += stride) {
-    const SceneSample& sample = samples[i];
-    const std::size_t k = sample.source - 1U;
-    const auto step = static_cast<float>(rig.rgbd[k].color.fx / rig.color.fx);
-    add(frame.color, occlusion, frame.rgbd[k].color, step, sample, maps[sample.source], sums);
+  const std::size_t count = (samples.size() + stride - 1) / stride;
+  std::array<Term, 2 * wanted> terms;
+  constexpr std::size_t parts = 4;
+  for_tasks(parts, [&](std::size_t part) {
+    for (std::size_t i = part * count / parts; i < (part + 1) * count / parts; ++i) {
+      const SceneSample& sample = samples[i * stride];
+      const std::size_t k = sample.source - 1U;
+      const auto step = static_cast<float>(rig.rgbd[k].color.fx / rig.color.fx);
+      terms[i] =
+          term_of(frame.color, occlusion, frame.rgbd[k].color, step, sample, maps[sample.source]);
+    }
+  });
+  int found = 0;
+  float change_residual = 0;
+  float change_change = 0;
+  float squares = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Term& term = terms[i];
+    if (!term.is_found) continue;
+    ++found;
+    change_residual += term.change_residual;
+    change_change += term.change_change;
+    squares += term.change_residual * term.change_residual;
   }
   constexpr int whole = ColorSmoothing::whole_change;
-  if (sums.count < fewest) return whole;
-  const float share =
-      (sums.change_residual + std::sqrt(sums.squares)) / std::max(sums.change_change, 1e-6F);
+  if (found < fewest) return whole;
+  const float share = (change_residual + std::sqrt(squares)) / std::max(change_change, 1e-6F);
   return static_cast<int>(std::lrint(whole * std::clamp(share, 0.F, 1.F)));
 }
 

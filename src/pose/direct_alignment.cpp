@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "core/robust.h"
+#include "core/median_of_magnitudes.h"
 #include "core/tasks.h"
 
 namespace diminish {
@@ -186,13 +186,16 @@ void DirectAlignment::find_residuals() {
 }
 
 float DirectAlignment::find_scale() {
-  magnitudes_.clear();
+  magnitudes_.resize(lanes * points_.size());
+  std::size_t count = 0;
   for (const Points& points : points_) {
-    for (int i = 0; i < points.count; ++i) {
-      if (points.is_seen[i] != 0) magnitudes_.push_back(std::abs(points.residual[i]));
+    for (int i = 0; i < lanes; ++i) {
+      magnitudes_[count] = std::abs(points.residual[i]);
+      count += points.is_seen[i] != 0 ? 1 : 0;
     }
   }
-  return std::max(1.F, 1.48F * median(magnitudes_));
+  magnitudes_.resize(count);
+  return std::max(1.F, 1.48F * median_of_magnitudes(magnitudes_));
 }
 
 /// As tukey_weight does.

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
+#include "core/median_of_magnitudes.h"
 #include "core/robust.h"
 
 namespace diminish {
@@ -115,7 +116,7 @@ void ColorMapFit::weigh() {
     values_.insert(values_.end(), pairs.residual.data(), pairs.residual.data() + pairs.count);
   }
   // Where Tukey's weights become 0: 4.7 standard deviations.
-  const float end = 4.7F * std::max(least_scale, 0.65F * median(values_));
+  const float end = 4.7F * std::max(least_scale, 0.65F * median_of_magnitudes(values_));
   for (Pairs& pairs : pairs_) {
     const Lanes relative = (pairs.residual / end).min(1.F);
     pairs.weight = (1 - relative.square()).square();

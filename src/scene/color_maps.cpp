@@ -18,25 +18,26 @@ bool is_exposed(const Eigen::Array3f& levels) {
 /// Pairs of each RGB-D camera: more do not improve the map.
 constexpr std::size_t most_pairs = 2000;
 
-void add_pair(ImageView<Bgr> camera, const Mask& occlusion, const SceneSample& sample,
-              std::vector<ColorPair>& pairs) {
+/// Returns whether the sample makes a pair.
+bool find_pair(ImageView<Bgr> camera, const Mask& occlusion, const SceneSample& sample,
+               ColorPair& pair) {
   constexpr int rim = even_color_reach_px;
   const int x = static_cast<int>(std::lrint(sample.pixel.x()));
   const int y = static_cast<int>(std::lrint(sample.pixel.y()));
   if (!sample.even || x < rim || y < rim || x >= camera.width() - rim ||
       y >= camera.height() - rim) {
-    return;
+    return false;
   }
   for (const int dy : {-rim, 0, rim}) {
     for (const int dx : {-rim, 0, rim}) {
-      if (occlusion(x + dx, y + dy) != 0) return;
+      if (occlusion(x + dx, y + dy) != 0) return false;
     }
   }
   const EvenColor color = even_color(camera, x, y);
-  const ColorPair pair{sample.pixel,
-                       to_channels(sample.color),
-                       {color.channels[0], color.channels[1], color.channels[2]}};
-  if (color.even && is_exposed(pair.rgbd) && is_exposed(pair.camera)) pairs.push_back(pair);
+  pair = {sample.pixel,
+          to_channels(sample.color),
+          {color.channels[0], color.channels[1], color.channels[2]}};
+  return color.even && is_exposed(pair.rgbd) && is_exposed(pair.camera);
 }
 
 }  // namespace
@@ -56,13 +57,27 @@ void ColorMaps::fit(ImageView<Bgr> camera, const Mask& occlusion,
   }
   for_tasks(sources_.size(), [&](std::size_t k) {
     const auto [begin, end] = sources_[k];
-    pairs_[k].clear();
-    const std::size_t step = (end - begin + most_pairs - 1) / most_pairs;
-    for (std::size_t i = begin; i < end; i += step) {
-      add_pair(camera, occlusion, samples[i], pairs_[k]);
-    }
-    maps_[samples[begin].source] = fits_[k].fit(pairs_[k], model, camera.bounds());
+    find_pairs(camera, occlusion, std::span(samples).subspan(begin, end - begin), k);
+    maps_[samples[begin].source] = fits_[k].fit(pairs_[k].all, model, camera.bounds());
   });
+}
+
+/// In parts, which follow one another in the end.
+void ColorMaps::find_pairs(ImageView<Bgr> camera, const Mask& occlusion,
+                           std::span<const SceneSample> samples, std::size_t k) {
+  const std::size_t step = (samples.size() + most_pairs - 1) / most_pairs;
+  for_tasks(parts, [&](std::size_t part) {
+    std::vector<ColorPair>& pairs = pairs_[k].of_part[part];
+    pairs.clear();
+    const std::size_t count = (samples.size() + step - 1) / step;
+    for (std::size_t i = part * count / parts; i < (part + 1) * count / parts; ++i) {
+      ColorPair pair{};
+      if (find_pair(camera, occlusion, samples[i * step], pair)) pairs.push_back(pair);
+    }
+  });
+  std::vector<ColorPair>& all = pairs_[k].all;
+  all.clear();
+  for (const auto& pairs : pairs_[k].of_part) all.insert(all.end(), pairs.begin(), pairs.end());
 }
 
 }  // namespace diminish

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <span>
 #include <vector>
 
 #include "diminish/image.h"
@@ -26,9 +29,18 @@ class ColorMaps {
   struct Source {
     std::size_t begin, end;
   };
+  static constexpr std::size_t parts = 4;
+  struct Pairs {
+    std::array<std::vector<ColorPair>, parts> of_part;
+    std::vector<ColorPair> all;
+  };
+
+  void find_pairs(ImageView<Bgr> camera, const Mask& occlusion,
+                  std::span<const SceneSample> samples, std::size_t k);
+
   std::vector<Source> sources_;
-  std::vector<std::vector<ColorPair>> pairs_;  ///< of each source
-  std::vector<ColorMapFit> fits_;              ///< likewise
+  std::vector<Pairs> pairs_;       ///< of each source
+  std::vector<ColorMapFit> fits_;  ///< likewise
   std::vector<ColorMap> maps_ = std::vector<ColorMap>(256);
 };
 
