@@ -138,7 +138,7 @@ std::size_t DirectAlignment::linearise(const RigidTransform& correction) {
     return count;
   };
   constexpr std::size_t most_tasks = 8;
-  constexpr std::size_t least_in_task = 64;  // fewer are linearised sooner by one thread
+  constexpr std::size_t least_in_task = 100;  // fewer are linearised sooner by one thread
   const std::size_t tasks = std::clamp<std::size_t>(points_.size() / least_in_task, 1, most_tasks);
   std::array<std::size_t, most_tasks> counts{};
   for_tasks(tasks, [&](std::size_t task) {
