@@ -16,6 +16,9 @@ struct Holes {
   const Mask& missing;
   const Mask& occlusion;     ///< the objects to remove; contains all of `missing`
   const Surfaces& surfaces;  ///< empty unless declared to be used
+  /// z of what was drawn, in the colour camera's frame; 0: nothing was. Known in
+  /// `surfaces.region`. Empty: not known.
+  ImageView<float> depth_m = {};
 };
 
 /// Fills pixels that no camera sees. Registered by name; chosen by the option `inpaint`.

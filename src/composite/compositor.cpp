@@ -111,9 +111,8 @@ void Compositor::inpaint(const Inputs& inputs, Inpainter& inpainter, DiminishedF
     std::transform(origin, origin + part.width, missing_.row(y) + part.x,
                    [](std::uint8_t from) { return from == provenance::inpainted ? 255 : 0; });
   }
-  if (inpainter.inpaint({missing_, occlusion, result.surfaces}, inputs.options, result.picture)) {
-    return;
-  }
+  const Holes holes{missing_, occlusion, result.surfaces, result.reconstruction.depth_m};
+  if (inpainter.inpaint(holes, inputs.options, result.picture)) return;
   for (int y = part.y; y < part.bottom(); ++y) {
     std::uint8_t* const origin = result.provenance.row(y) + part.x;
     std::replace(origin, origin + part.width, provenance::inpainted, provenance::unknown);

@@ -1,6 +1,7 @@
 #include "diminish/inpainter.h"
 #include "inpaint/line_painting.h"
 #include "inpaint/rim_lines.h"
+#include "inpaint/surface_inpainting.h"
 
 namespace diminish {
 namespace {
@@ -25,7 +26,7 @@ class StructureInpainting : public Inpainter {
   }
 
  private:
-  std::unique_ptr<Inpainter> surfaces_ = Registry<Inpainter>::get("surfaces")();
+  std::unique_ptr<Inpainter> surfaces_ = make_surface_inpainting(FillFrom::far_side);
   RimLines lines_;
   Rect objects_;
   LinePainting painting_;

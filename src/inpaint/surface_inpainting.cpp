@@ -1,13 +1,16 @@
+#include "inpaint/surface_inpainting.h"
+
 #include <algorithm>
 #include <array>
 #include <vector>
 
 #include "core/channels.h"
+#include "core/conditions.h"
 #include "core/connected_regions.h"
 #include "core/rows.h"
 #include "core/runs.h"
 #include "core/tasks.h"
-#include "diminish/inpainter.h"
+#include "inpaint/far_side.h"
 #include "inpaint/plane_colors.h"
 #include "inpaint/surface_rules.h"
 #include "membrane/smooth_filling.h"
@@ -22,8 +25,11 @@ using Code = std::uint8_t;
 constexpr Code open = 0x80;
 constexpr Code label_bits = 0x7F;
 constexpr Code foreground = surface_label::foreground & label_bits;
-/// Beyond the picture: never filled, and nothing to fill from.
+/// Beyond the picture, or in front of what is to be filled: never filled, nothing to fill from.
 constexpr Code outside = open | label_bits;
+/// Known, but not drawn: the plane is a guess. Together with a plane's label.
+constexpr Code guessed = 0x40;
+static_assert(surface_rules::labels <= guessed);
 }  // namespace state
 
 /// The bytes [first, last) that are `value`.
@@ -41,9 +47,11 @@ int count_of(const std::uint8_t* bytes, int first, int last, std::uint8_t value)
 
 /// Fills each plane of the background from its own pixels alone, as smoothly as can be: what stands
 /// in front of a wall does not bleed onto it, and where table and wall meet there is an edge. What
-/// is left is filled from all pixels around.
+/// is left is filled from all pixels around, but for what stands in front of it (FarSide).
 class SurfaceInpainting : public Inpainter {
  public:
+  explicit SurfaceInpainting(FillFrom from) : from_(from) {}
+
   Declaration declaration() const override {
     return {.uses_surfaces = true, .rule = Declaration::Rule::by_surface};
   }
@@ -55,6 +63,7 @@ class SurfaceInpainting : public Inpainter {
            [&] {
              collect_states(holes);
              find_holes();
+             if (uses_depth(holes)) leave_out_front(holes);
            });
     // They do not depend on each other: what one fills no other takes for known.
     std::array<bool, label_count> filled{};
@@ -71,12 +80,17 @@ class SurfaceInpainting : public Inpainter {
   state::Code* state_row(int y) { return states_.row(y - window_.y) - window_.x; }
   const state::Code* state_row(int y) const { return states_.row(y - window_.y) - window_.x; }
 
+  bool uses_depth(const Holes& holes) const {
+    return from_ == FillFrom::far_side && !holes.depth_m.empty();
+  }
+
   void collect_states(const Holes& holes) {
     states_.resize(window_.width, window_.height);
     for (auto& runs : open_runs_) runs.clear();
     const Surfaces& surfaces = holes.surfaces;
     const Rect seen = intersect(window_, holes.missing.bounds());
     const Rect drawn = intersect(intersect(surfaces.region, surfaces.label.bounds()), seen);
+    const bool marks_guesses = uses_depth(holes);
     for (int y = window_.y; y < window_.bottom(); ++y) {
       state::Code* const states = state_row(y);
       std::fill(states + window_.x, states + window_.right(), state::outside);
@@ -90,6 +104,7 @@ class SurfaceInpainting : public Inpainter {
           const state::Code label = labels[x] & state::label_bits;
           states[x] |= states[x] == 0 || is_filled_alone ? label : surface_label::unknown;
         }
+        if (marks_guesses) mark_guesses(holes.depth_m.row(y), drawn, states);
       }
       for_each_run(missing, seen.x, seen.right(), Pixels::set, [&](int first, int last) {
         for (int end; first < last; first = end) {
@@ -98,6 +113,14 @@ class SurfaceInpainting : public Inpainter {
               {y - window_.y, first - window_.x, end - window_.x});
         }
       });
+    }
+  }
+
+  static void mark_guesses(const float* depth_m, const Rect& drawn, state::Code* states) {
+    for (int x = drawn.x; x < drawn.right(); ++x) {
+      const bool is_guess = all_of(states[x] >= surface_label::first_plane,
+                                   states[x] < surface_rules::labels, depth_m[x] == 0);
+      states[x] |= is_guess ? state::guessed : 0;
     }
   }
 
@@ -114,6 +137,9 @@ class SurfaceInpainting : public Inpainter {
       if (label != surface_label::unknown) count_rims(label);
       for (std::size_t i = 0; i < regions_.regions().size(); ++i) {
         const bool is_kept = label == surface_label::unknown || is_on_plane(rims_[i]);
+        if (label != surface_label::unknown && is_kept && trusts_guesses(rims_[i])) {
+          believe_guesses(regions_.regions()[i], label);
+        }
         Rect& box = boxes_[is_kept ? k : std::size_t{surface_label::unknown}];
         box = join(box, regions_.regions()[i].box);
       }
@@ -133,10 +159,13 @@ class SurfaceInpainting : public Inpainter {
 
   /// Pixels beside a hole.
   struct Rim {
-    int plane = 0, foreground = 0;
+    int plane = 0, guessed = 0, foreground = 0;
   };
+  /// Where little of a hole's rim was drawn, all of it that may lie on the plane lends its colour.
+  static bool trusts_guesses(const Rim& rim) { return rim.plane < rim.guessed; }
   static bool is_on_plane(const Rim& rim) {
-    return 100 * rim.plane >= surface_rules::plane_rim_percent * (rim.plane + rim.foreground);
+    const int plane = rim.plane + (trusts_guesses(rim) ? rim.guessed : 0);
+    return 100 * plane >= surface_rules::plane_rim_percent * (plane + rim.foreground);
   }
 
   void count_rims(Label label) {
@@ -146,16 +175,43 @@ class SurfaceInpainting : public Inpainter {
       const auto count = [&](int y, int first, int last) {
         const state::Code* const row = states_.row(y);
         rim.plane += count_of(row, first, last, label);
+        rim.guessed += count_of(row, first, last, label | state::guessed);
         rim.foreground += count_of(row, first, last, state::foreground);
       };
       // The window holds a pixel more on each side.
       const state::Code* const own = states_.row(run.y);
       for (const state::Code beside : {own[run.first - 1], own[run.last]}) {
         rim.plane += beside == label ? 1 : 0;
+        rim.guessed += beside == (label | state::guessed) ? 1 : 0;
         rim.foreground += beside == state::foreground ? 1 : 0;
       }
       count(run.y - 1, run.first, run.last);
       count(run.y + 1, run.first, run.last);
+    }
+  }
+
+  /// Takes the plane that was guessed of the pixels beside a hole for theirs.
+  void believe_guesses(const ConnectedRegions::Region& hole, Label label) {
+    const auto believe = [label](state::Code& code) {
+      if (code == (label | state::guessed)) code = label;
+    };
+    regions_.for_each_run(hole, [&](const ConnectedRegions::Run& run) {
+      state::Code* const own = states_.row(run.y);
+      believe(own[run.first - 1]);
+      believe(own[run.last]);
+      for (const int y : {run.y - 1, run.y + 1}) {
+        std::for_each(states_.row(y) + run.first, states_.row(y) + run.last, believe);
+      }
+    });
+  }
+
+  /// What stands in front of a hole that is filled from all around lends it no colour.
+  void leave_out_front(const Holes& holes) {
+    const Rect measured = intersect(holes.surfaces.region, holes.depth_m.bounds());
+    const state::Code hole = state::open | surface_label::unknown;
+    for (const FarSide::Place& place :
+         far_side_.find_front({states_, window_, hole, state::open, holes.depth_m, measured})) {
+      states_(place.x, place.y) = state::outside;
     }
   }
 
@@ -227,6 +283,7 @@ class SurfaceInpainting : public Inpainter {
     return true;
   }
 
+  FillFrom from_;
   PlaneColors plane_colors_;
   Rect window_;  ///< in the picture, which it may reach out of
   Image<state::Code> states_;
@@ -239,10 +296,16 @@ class SurfaceInpainting : public Inpainter {
   std::array<std::vector<OpenRun>, label_count> open_runs_;  ///< by label
   ConnectedRegions regions_;
   std::vector<Rim> rims_;
+  FarSide far_side_;
 };
 
-const bool registered =
-    Registry<Inpainter>::add("surfaces", [] { return std::make_unique<SurfaceInpainting>(); });
+const bool registered = Registry<Inpainter>::add(
+    "surfaces", [] { return make_surface_inpainting(FillFrom::all_sides); });
 
 }  // namespace
+
+std::unique_ptr<Inpainter> make_surface_inpainting(FillFrom from) {
+  return std::make_unique<SurfaceInpainting>(from);
+}
+
 }  // namespace diminish

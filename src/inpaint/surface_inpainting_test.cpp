@@ -1,7 +1,10 @@
+#include "inpaint/surface_inpainting.h"
+
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/channels.h"
-#include "diminish/inpainter.h"
 
 namespace diminish {
 namespace {
@@ -133,6 +136,142 @@ TEST(SurfaceInpainting, ResemblesHarmonicWithoutPlanes) {
   }
   // Its known colours are up to 120 levels apart.
   EXPECT_LT(std::sqrt(squares / count), 1.5);
+}
+
+// --- Holes beside what stands in front
+
+const Bgr cone_color{40, 180, 40};
+
+/// Something 2 m away, the colour of which depends on the place alone, and a thing 1 m away in
+/// front of it. What the thing hides from an RGB-D camera to its left is to be invented. There are
+/// no planes.
+struct Disocclusion {
+  static constexpr int width = 200, height = 120;
+  Image<Bgr> truth{width, height};
+  Image<float> depth_m{width, height, 2};
+  Mask missing{width, height, 0};
+  Mask occlusion{width, height, 255};
+  Surfaces surfaces;
+
+  /// behind(x, y): a colour. front(y): the thing's columns in a row. hidden: columns beside it.
+  Disocclusion(auto&& behind, auto&& front, int hidden) {
+    surfaces.region = truth.bounds();
+    surfaces.label.resize(width, height, surface_label::foreground);
+    for (int y = 0; y < height; ++y) {
+      const auto [first, last] = front(y);
+      for (int x = 0; x < width; ++x) {
+        const bool is_front = x >= first && x < last;
+        truth(x, y) = is_front ? cone_color : behind(x, y);
+        if (is_front) depth_m(x, y) = 1;
+        if (first == last || x < last || x >= last + hidden) continue;
+        missing(x, y) = 255;
+        surfaces.label(x, y) = surface_label::unknown;
+        depth_m(x, y) = 0;
+      }
+    }
+  }
+  /// The root mean square error of what is filled.
+  double error(FillFrom from) const {
+    Image<Bgr> filled = truth;
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x) {
+        if (missing(x, y) != 0) filled(x, y) = {};
+      }
+    }
+    EXPECT_TRUE(make_surface_inpainting(from)->inpaint({missing, occlusion, surfaces, depth_m}, {},
+                                                       filled));
+    double squares = 0;
+    int count = 0;
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x) {
+        if (missing(x, y) == 0) {
+          EXPECT_EQ(filled(x, y), truth(x, y));
+          continue;
+        }
+        squares += static_cast<double>(
+            (to_channels(filled(x, y)) - to_channels(truth(x, y))).square().mean());
+        ++count;
+      }
+    }
+    return std::sqrt(squares / count);
+  }
+};
+
+std::pair<int, int> cone(int y) {
+  if (y < 30 || y >= 100) return {0, 0};
+  return {80 - y / 3, 80 + y / 3};
+}
+
+// A green cone in front of a face: its colour does not run into the face.
+TEST(FarSide, AConeDoesNotSmearIntoTheTextureBehindIt) {
+  const Disocclusion scene(
+      [](int x, int y) {
+        const double wave = std::sin(0.15 * x) * std::cos(0.1 * y);
+        return Bgr{static_cast<std::uint8_t>(120 + 12 * wave),
+                   static_cast<std::uint8_t>(150 + 12 * wave),
+                   static_cast<std::uint8_t>(200 + 12 * wave)};
+      },
+      cone, 24);
+  EXPECT_LT(scene.error(FillFrom::far_side), 12);
+  EXPECT_GT(scene.error(FillFrom::all_sides), 25) << "the cone lends its colour";
+}
+
+// A bright table top in front of a dark floor.
+TEST(FarSide, ATableTopDoesNotFillTheDarkBelowIt) {
+  const Disocclusion scene(
+      [](int, int) {
+        return Bgr{20, 18, 16};
+      },
+      [](int y) { return y < 20 || y > 99 ? std::pair(0, 0) : std::pair(0, 90); }, 40);
+  EXPECT_LT(scene.error(FillFrom::far_side), 1);
+  EXPECT_GT(scene.error(FillFrom::all_sides), 25);
+}
+
+// A slanted surface has a near and a far end, but neither stands in front of the other.
+TEST(FarSide, BothEndsOfASlantedSurfaceLend) {
+  Disocclusion scene(
+      [](int x, int) {
+        return Bgr{60, 60, static_cast<std::uint8_t>(x)};
+      },
+      cone, 24);
+  for (int y = 0; y < scene.height; ++y) {
+    for (int x = 0; x < scene.width; ++x) {
+      scene.truth(x, y) = {60, 60, static_cast<std::uint8_t>(x)};
+      // Along a row, as far as at 45 degrees.
+      if (scene.missing(x, y) == 0)
+        scene.depth_m(x, y) = 200.F / (200.F - 0.5F * static_cast<float>(x));
+    }
+  }
+  EXPECT_LT(scene.error(FillFrom::far_side), 2);
+  EXPECT_EQ(scene.error(FillFrom::far_side), scene.error(FillFrom::all_sides));
+}
+
+// Camera pixels on which no depth was measured may show anything: a pipe before the wall.
+TEST(FarSide, WhatWasNotMeasuredIsNotTakenForThePlane) {
+  Room room;
+  Image<float> depth_m(200, 160, 2);
+  for (int y = 0; y < 160; ++y) {
+    for (int x = 0; x < 200; ++x) {
+      if (room.missing(x, y) != 0) depth_m(x, y) = 0;
+      // On the wall above the hole.
+      if (y < 20 && x > 80 && x < 100) {
+        room.picture(x, y) = box_color;
+        depth_m(x, y) = 0;
+      }
+    }
+  }
+  Image<Bgr> filled = room.picture;
+  EXPECT_TRUE(make_surface_inpainting(FillFrom::far_side)
+                  ->inpaint({room.missing, room.occlusion, room.surfaces, depth_m}, {}, filled));
+  EXPECT_EQ(filled(90, 22), wall_color);
+  EXPECT_NE(room.fill()(90, 22), wall_color);
+
+  // Where nothing at all was measured, all of it lends.
+  depth_m.fill(0);
+  filled = room.picture;
+  EXPECT_TRUE(make_surface_inpainting(FillFrom::far_side)
+                  ->inpaint({room.missing, room.occlusion, room.surfaces, depth_m}, {}, filled));
+  EXPECT_EQ(filled, room.fill());
 }
 
 TEST(SurfaceInpainting, SaysThatNothingIsKnown) {
