@@ -48,13 +48,29 @@ struct ViewerFigures {
   std::optional<Quality> invented;
 };
 
+/// Where the scored pixels come from: from an RGB-D camera now; from the colour camera earlier,
+/// with an RGB-D camera as a witness or without; from an RGB-D camera that measured no depth there;
+/// from nowhere.
+inline constexpr std::array<const char*, 5> score_origins{"seen", "witnessed", "remembered",
+                                                          "estimated", "invented"};
+/// The pixels of one origin.
+struct OriginScore {
+  double share = 0;  ///< of the scored pixels
+  Quality quality;
+};
+
 /// One frame compared with the truth. Figures that cannot be known (no such pixels, no truth) are
 /// absent.
 struct FrameScore {
+  using Origins = std::array<std::optional<OriginScore>, score_origins.size()>;
+
   std::string name;
   std::optional<Quality> inside;   ///< inside the true mask, grown by 3 pixels
-  std::optional<Quality> valid;    ///< of these, pixels that an RGB-D camera saw
+  std::optional<Quality> valid;    ///< of these, pixels that a camera saw, now or earlier
   std::optional<Quality> missing;  ///< of these, pixels that none saw
+  /// By origin; absent where there are no such pixels. What is left of the shares is the camera's
+  /// own picture, or the object still visible.
+  Origins origins;
   std::optional<ViewerFigures> viewer;
   std::optional<ErrorBudget> budget;
   std::optional<double> coverage;  ///< the share of the run's mask that an RGB-D camera saw

@@ -157,6 +157,18 @@ std::string provenance_bar(const nlohmann::json& summary) {
   return text + ".</p>\n";
 }
 
+std::string origins_table(const FrameScore::Origins& origins) {
+  std::string rows;
+  for (std::size_t i = 0; i < origins.size(); ++i) {
+    if (!origins[i]) continue;
+    rows +=
+        fmt::format("<tr><td>{}<td>{:.1f} %<td>{:.2f}<td>{:.3f}</tr>\n", score_origins[i],
+                    100 * origins[i]->share, origins[i]->quality.psnr_db, origins[i]->quality.ssim);
+  }
+  if (rows.empty()) return rows;
+  return "<table><tr><th>pixels<th>share<th>PSNR, dB<th>SSIM</tr>\n" + rows + "</table>\n";
+}
+
 std::string before_and_after(const RunFolder& folder, const FrameScore& frame) {
   const auto pictures = folder.object_pictures(frame.name);
   if (!pictures) return {};
@@ -194,6 +206,7 @@ void write_report(const std::filesystem::path& recording, const std::filesystem:
       page += fmt::format("; {} frames.</p>\n", score.frames.size());
     }
     page += provenance_bar(summary);
+    page += origins_table(score.mean.origins);
     page += "<h2>Before and after</h2>\n";
     const std::size_t step = (score.frames.size() + most_pictures - 1) / most_pictures;
     for (std::size_t i = 0; i < score.frames.size(); i += step) {

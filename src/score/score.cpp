@@ -9,6 +9,7 @@
 #include "diminish/diminished_frame.h"
 #include "diminish/error.h"
 #include "score/image_quality.h"
+#include "score/origins.h"
 #include "score/run_folder.h"
 #include "score/score_frames.h"
 #include "score/viewer_figures.h"
@@ -78,6 +79,7 @@ FrameScore mean_score(const std::vector<FrameScore>& frames) {
   mean.inside = mean_quality(frames, &FrameScore::inside);
   mean.valid = mean_quality(frames, &FrameScore::valid);
   mean.missing = mean_quality(frames, &FrameScore::missing);
+  mean.origins = mean_by_origin(frames);
   mean.coverage = mean_of(frames, [](const FrameScore& frame) { return frame.coverage; });
   mean.mask_iou = mean_of(frames, [](const FrameScore& frame) { return frame.mask_iou; });
   mean.mask_recall = mean_of(frames, [](const FrameScore& frame) { return frame.mask_recall; });
@@ -177,6 +179,7 @@ Score score_frames(const std::filesystem::path& recording, const std::filesystem
       frame.inside = quality(result, truth, ssim, region);
       frame.valid = quality(result, truth, ssim, region & seen);
       frame.missing = quality(result, truth, ssim, region & mask & ~seen);
+      frame.origins = score_by_origin(result, truth, ssim, provenance, region);
       frame.viewer =
           viewer_figures({result, truth, ssim, true_mask.empty() ? mask : true_mask, provenance});
       const ErrorCauses causes = find_error_causes({result, truth, region, mask, seen});

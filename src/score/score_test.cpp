@@ -1,5 +1,7 @@
 #include "diminish/score.h"
 
+#include <gmock/gmock.h>
+
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -108,6 +110,36 @@ TEST_F(ScoreTest, GivesTheFiguresThatAreKnown) {
   EXPECT_EQ(first.changed_outside, 0U);
   EXPECT_NEAR(*result.flicker, (200 * 10 + 200 * 20) / pixels, 1e-9);
   EXPECT_TRUE(result.not_written.empty());
+}
+
+// Five stripes of 4 pixels, each with an error of its own.
+TEST_F(ScoreTest, TellsOriginsApart) {
+  constexpr std::array<int, 5> codes{2, 200, 201, 202, 254};
+  Image<std::uint8_t> origins(width, height, 0);
+  cv::Mat result = truth.clone();
+  for (int i = 0; i < 5; ++i) {
+    const Rect stripe{square.x + 4 * i, square.y, 4, square.height};
+    origins.fill(stripe, static_cast<std::uint8_t>(codes[static_cast<std::size_t>(i)]));
+    result(cv::Rect(stripe.x, stripe.y, stripe.width, stripe.height)) +=
+        cv::Scalar::all(10 * (i + 1));
+  }
+  write_indexed_png(folder.path() / "run/provenance/000001.png", origins, provenance_palette());
+  save("run/result/000001.png", result);
+  const Score scored = score();
+  cv::Mat grown;
+  cv::distanceTransform(~painted_mask(square), grown, cv::DIST_L2, cv::DIST_MASK_PRECISE);
+  const double share = 4.0 * square.height / cv::countNonZero(grown <= 3.0001);
+  for (int i = 0; i < 5; ++i) {
+    const auto& origin = scored.frames[1].origins[static_cast<std::size_t>(i)];
+    ASSERT_TRUE(origin) << score_origins[static_cast<std::size_t>(i)];
+    EXPECT_NEAR(origin->share, share, 1e-9);
+    EXPECT_NEAR(origin->quality.psnr_db, 20 * std::log10(255 / (10.0 * (i + 1))), 1e-6);
+  }
+  // The other frame has seen and invented pixels only.
+  EXPECT_FALSE(scored.frames[0].origins[1]);
+  EXPECT_NEAR(scored.mean.origins[1]->share, share / 2, 1e-9);
+  EXPECT_THAT(score_table(scored), ::testing::HasSubstr("remembered"));
+  EXPECT_THAT(score_json(scored), ::testing::HasSubstr("\"witnessed\": {"));
 }
 
 TEST_F(ScoreTest, MeasuresPosesWhereBothAreKnown) {

@@ -21,6 +21,17 @@ std::string row(const FrameScore& frame) {
                      frame.changed_outside ? std::to_string(*frame.changed_outside) : "-");
 }
 
+std::string line(const FrameScore::Origins& origins) {
+  std::string text;
+  for (std::size_t i = 0; i < origins.size(); ++i) {
+    if (!origins[i]) continue;
+    text += fmt::format("{} {} {:.1f} % ({:.2f} dB / {:.3f})", text.empty() ? "By origin:" : ",",
+                        score_origins[i], 100 * origins[i]->share, origins[i]->quality.psnr_db,
+                        origins[i]->quality.ssim);
+  }
+  return text.empty() ? text : text + "\n";
+}
+
 std::string line(const ViewerFigures& viewer) {
   return fmt::format(
       "Edges: recall {:.3f}, precision {:.3f}, F1 {:.3f}; gradients alike {:.3f}; sharpness of "
@@ -54,6 +65,13 @@ nlohmann::ordered_json to_json(const FrameScore& frame) {
   add_quality("inside", frame.inside);
   add_quality("valid", frame.valid);
   add_quality("missing", frame.missing);
+  for (std::size_t i = 0; i < frame.origins.size(); ++i) {
+    const std::optional<OriginScore>& origin = frame.origins[i];
+    if (!origin) continue;
+    json["origins"][score_origins[i]] = {{"share", origin->share},
+                                         {"psnr_db", origin->quality.psnr_db},
+                                         {"ssim", origin->quality.ssim}};
+  }
   if (frame.viewer) json["viewer"] = to_json(*frame.viewer);
   if (frame.budget) {
     for (std::size_t i = 0; i < error_causes.size(); ++i) {
@@ -81,6 +99,7 @@ std::string score_table(const Score& score) {
   text += row(score.mean);
   text += fmt::format("PSNR of all frames' error {} dB, flicker {} levels\n",
                       cell(score.psnr_pooled_db, 2), cell(score.flicker, 2));
+  text += line(score.mean.origins);
   if (score.mean.viewer) text += line(*score.mean.viewer);
   if (score.mean.budget) {
     text += "Squared error by cause:";
