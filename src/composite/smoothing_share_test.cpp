@@ -4,7 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numbers>
 #include <random>
+#include <string>
+#include <utility>
 
 #include "analytic_scene.h"
 #include "composite/color_smoothing.h"
@@ -89,6 +93,81 @@ TEST(SmoothingShare, IsAllWhereTooLittleIsSeen) {
   const Wall wall(0);
   EXPECT_EQ(wall.share(Mask(wall.rig.color.width, wall.rig.color.height, 255)), whole);
 }
+
+// --- Textures without noise
+
+/// The brightness at a place on the wall, in metres.
+using Texture = std::function<double(double x, double y)>;
+
+/// Oblique squares of two pixels, faint as noise.
+double checks(double x, double y) {
+  const double u = 0.8 * x + 0.6 * y;
+  const double v = 0.8 * y - 0.6 * x;
+  const double wave = 2 * std::numbers::pi / 0.02;
+  return 120 + 8 * std::tanh(3 * std::sin(wave * u) * std::sin(wave * v));
+}
+
+/// Waves in all directions, from 20 cm to 1 cm, as strong as they are long: like nature.
+double one_over_f(double x, double y) {
+  double sum = 0;
+  double angle = 1;
+  for (double wave_m = 0.2; wave_m > 0.01; wave_m /= 1.1) {
+    angle += 2.4;  // the golden angle: no direction comes again
+    const double along = x * std::cos(angle) + y * std::sin(angle);
+    sum += wave_m / 0.2 * std::sin(2 * std::numbers::pi / wave_m * along + angle);
+  }
+  return 120 + 14 * sum;
+}
+
+/// Grain of wood: fine in one direction.
+double wood(double x, double y) {
+  return 110 + 30 * std::sin(2 * std::numbers::pi / 0.012 * (y + 0.01 * std::sin(9 * x)));
+}
+
+/// The wall with another texture.
+Wall with(const Texture& texture) {
+  Wall wall(0);
+  const testing::AnalyticScene scene{.has_box = false};
+  const auto paint = [&](const Intrinsics& camera, const RigidTransform& camera_from_world,
+                         Image<Bgr>& image) {
+    scene.render(Lens(camera), camera_from_world,
+                 [&](int x, int y, const testing::AnalyticScene::Hit& hit) {
+                   const auto level = static_cast<std::uint8_t>(
+                       std::lrint(std::clamp(texture(hit.point.x(), hit.point.y()), 0.0, 255.0)));
+                   image(x, y) = {level, level, level};
+                 });
+  };
+  const RgbdCamera& rgbd = wall.rig.rgbd[0];
+  paint(wall.rig.color, *wall.poses.color_from_world, wall.frame.color.own());
+  paint(rgbd.color, rgbd.color_from_depth * *wall.poses.depth_from_world[0],
+        wall.frame.rgbd[0].color.own());
+  wall.samples = {};
+  SceneSampler(wall.rig).sample(wall.frame, wall.poses, testing::empty_masks(wall.rig),
+                                wall.samples);
+  return wall;
+}
+
+class CleanTexture : public ::testing::TestWithParam<std::pair<const char*, Texture>> {};
+
+// No clean texture may lose more than .002 of its structure.
+TEST_P(CleanTexture, IsKept) {
+  Wall wall = with(GetParam().second);
+  const Image<Bgr>& truth = wall.frame.rgbd[0].color.own();
+  const Mask seen(truth.width(), truth.height(), provenance::first_rgbd);
+  const auto lost_by = [&](int share) {
+    Image<Bgr> smoothed = truth;
+    ColorSmoothing().smooth(seen, truth.bounds(), share, smoothed);
+    return 1 - cv::mean(ssim_map(as_mat(smoothed), as_mat(truth)))[0];
+  };
+  EXPECT_GT(lost_by(whole), 0.003) << "there is something to lose";
+  EXPECT_LT(lost_by(wall.share()), 0.002) << "share " << wall.share();
+}
+
+INSTANTIATE_TEST_SUITE_P(SmoothingShare, CleanTexture,
+                         ::testing::Values(std::pair("checks", Texture(checks)),
+                                           std::pair("one_over_f", Texture(one_over_f)),
+                                           std::pair("wood", Texture(wood))),
+                         [](const auto& tested) { return std::string(tested.param.first); });
 
 TEST(SmoothingShare, KeepsATextureWithoutNoise) {
   Wall wall(0);
