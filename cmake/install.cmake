@@ -20,4 +20,17 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/diminish.pc DESTINATION ${CMAKE_INSTAL
 if(DIMINISH_BUILD_TESTS)
   add_test(NAME library_as_installed COMMAND ${PROJECT_SOURCE_DIR}/scripts/check-library ${PROJECT_BINARY_DIR})
   set_tests_properties(library_as_installed PROPERTIES TIMEOUT 600)
+  # What is delivered: hardened, listed, signed.
+  if(DIMINISH_HARDENING AND NOT DIMINISH_SANITIZE AND NOT CMAKE_BUILD_TYPE STREQUAL "Debug")
+    add_test(NAME hardening COMMAND ${PROJECT_SOURCE_DIR}/scripts/check-hardening
+      $<TARGET_FILE:diminish> $<TARGET_FILE:diminish_program>)
+  endif()
+  find_program(DPKG_QUERY_PROGRAM dpkg-query)
+  find_program(GPG_PROGRAM gpg)
+  if(DPKG_QUERY_PROGRAM AND CMAKE_GENERATOR STREQUAL "Ninja")
+    add_test(NAME sbom COMMAND ${PROJECT_SOURCE_DIR}/scripts/sbom --check ${PROJECT_BINARY_DIR})
+    if(GPG_PROGRAM)
+      add_test(NAME release COMMAND ${PROJECT_SOURCE_DIR}/scripts/test-release ${PROJECT_BINARY_DIR})
+    endif()
+  endif()
 endif()

@@ -41,6 +41,14 @@ if(DIMINISH_SANITIZE)
   add_compile_options(-fsanitize=${DIMINISH_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${DIMINISH_SANITIZE})
 endif()
+if(DIMINISH_BUILD_FUZZERS)
+  if(NOT CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+    message(FATAL_ERROR "DIMINISH_BUILD_FUZZERS needs clang")
+  endif()
+  # libFuzzer sees which branches an input takes, in what reads input.
+  add_compile_options(-fsanitize=fuzzer-no-link
+    -fsanitize-coverage-allowlist=${PROJECT_SOURCE_DIR}/fuzz/coverage.txt)
+endif()
 
 # diminish_sources(FILE...): adds FILEs to the library. diminish_tests(FILE...): adds them to the tests.
 function(diminish_sources)
