@@ -29,9 +29,12 @@ if(NOT DIMINISH_SANITIZE)
 endif()
 if(DIMINISH_HARDENING AND NOT DIMINISH_SANITIZE)
   # What a camera, a file or a network sends must not become code. As Debian builds its packages.
+  include(CheckPIESupported)
+  check_pie_supported(LANGUAGES C CXX)
   set(CMAKE_POSITION_INDEPENDENT_CODE ON)
   target_compile_options(diminish_build_options INTERFACE
-    -fstack-protector-strong $<$<NOT:$<CONFIG:Debug>>:-D_FORTIFY_SOURCE=2>)
+    -fstack-protector-strong $<$<NOT:$<CONFIG:Debug>>:-U_FORTIFY_SOURCE>  # some compilers bring their own
+    $<$<NOT:$<CONFIG:Debug>>:-D_FORTIFY_SOURCE=2>)
   if(CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64")
     target_compile_options(diminish_build_options INTERFACE -fcf-protection)
   endif()
