@@ -16,6 +16,7 @@
 // recording was lost to anything but a fault above, a viewer was neither taken nor refused, or
 // memory, handles or threads stay behind.
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include <atomic>
 #include <chrono>
@@ -305,6 +306,12 @@ std::size_t camera_faults(const LiveStatus& status) {
   return count;
 }
 
+/// Without what the allocator keeps for later.
+ProcessState state_in_use() {
+  malloc_trim(0);
+  return ProcessState::now();
+}
+
 int besiege(const Recording& recording, const std::filesystem::path& folder, int minutes) {
   constexpr double minute_s = 60;
   const LosingDriver driver;
@@ -315,7 +322,7 @@ int besiege(const Recording& recording, const std::filesystem::path& folder, int
     first.end();
     first.check();
   }
-  const ProcessState before = ProcessState::now();
+  const ProcessState before = state_in_use();
   Siege siege(recording, folder);
   std::printf("%6s %8s %8s %7s %7s %9s %9s %8s %8s\n", "minute", "frames", "skipped", "failed",
               "faults", "longest s", "MB", "handles", "threads");
@@ -331,13 +338,12 @@ int besiege(const Recording& recording, const std::filesystem::path& folder, int
   siege.end();
   siege.check();
   siege.print();
-  const ProcessState after = ProcessState::now();
+  const ProcessState after = state_in_use();
   std::printf(
       "after a first session, and at the end: %.0f and %.0f MB, %ld and %ld handles, %ld and "
       "%ld threads\n",
       before.memory_mb, after.memory_mb, before.handles, after.handles, before.threads,
       after.threads);
-  // The allocator keeps what was freed in pieces.
   constexpr double steady_memory = 1.25;
   const bool held = siege.held() && after.memory_mb <= steady_memory * before.memory_mb &&
                     after.handles <= before.handles && after.threads <= before.threads;

@@ -118,15 +118,16 @@ class RecordingCamera : public CameraSource {
     const std::string name = uri.text_of("camera", request.name);
     if (name == "color") {
       color_.emplace(folder / "color.txt", rig.color, timeline, loop);
-      return;
+      return begin();
     }
     const RgbdCamera* camera = find_rgbd_camera(rig, name);
     if (!camera) uri.fail("the recording has no camera '" + name + "'");
     color_.emplace(folder / (name + "_color.txt"), camera->color, timeline, loop,
                    EmptyList::is_no_images);
-    if (!camera->measures_depth || is_ignored(request)) return;
+    if (!camera->measures_depth || is_ignored(request)) return begin();
     depth_.emplace(folder / (name + "_depth.txt"), camera->depth, timeline, loop,
                    EmptyList::is_no_images);
+    begin();
   }
 
   Status read(CameraImage& image, std::chrono::milliseconds timeout) override {
@@ -161,6 +162,13 @@ class RecordingCamera : public CameraSource {
     if (request.rig == nullptr) return false;
     const RgbdCamera* const wanted = find_rgbd_camera(*request.rig, request.name);
     return wanted != nullptr && !wanted->measures_depth;
+  }
+
+  /// What was due before it was opened, maybe again, is not dropped.
+  void begin() {
+    const double now_s = monotonic_now_s();
+    color_->skip_late(now_s);
+    if (depth_) depth_->skip_late(now_s);
   }
 
   std::optional<Replay<Bgr>> color_;

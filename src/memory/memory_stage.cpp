@@ -97,8 +97,18 @@ void MemoryStage::find_background_fit(const RecallInputs& inputs,
     if (!recollections_[i].keyframe().is_background) continue;
     if (most == recalled_ || pixels[i] > pixels[most]) most = i;
   }
+  // Around the objects, if there is texture; else in the whole picture.
+  around_.surfaces.clear();
+  for (const Recollection::Beside& beside : recollections_[most].beside()) {
+    SceneSample& sample = around_.surfaces.emplace_back();
+    sample.pixel = {static_cast<float>(beside.x), static_cast<float>(beside.y)};
+    sample.color = beside.color;
+    sample.source = 1;
+  }
   fits_.assign(1, std::nullopt);
-  fit_.find(inputs.frame.color, inputs.masks.color, recollections_[most].samples(), fits_);
+  for (const SceneSamples* samples : {&std::as_const(around_), &recollections_[most].samples()}) {
+    if (!fits_[0]) fit_.find(inputs.frame.color, inputs.masks.color, *samples, fits_);
+  }
   background_fit_ = fits_[0];
 }
 

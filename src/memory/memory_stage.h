@@ -35,8 +35,8 @@ class MemoryStage {
   /// Stage::merging. inputs: as in recall(). color_maps: of the RGB-D cameras.
   void merge(const RecallInputs& inputs, ColorMapsBySource color_maps,
              Reconstruction& reconstruction, MemoryReport& report);
-  /// How well the scan's keyframe of which the last `merge` shows most fits the picture: as
-  /// SceneFit. Nothing if it shows none.
+  /// How well the scan's keyframe of which the last `merge` shows most fits the picture
+  /// around the objects: as SceneFit. Nothing if it shows none, or there is too little texture.
   const std::optional<double>& background_fit() const { return background_fit_; }
   void forget();
 
@@ -67,6 +67,7 @@ class MemoryStage {
   std::size_t recalled_ = 0;  ///< that are used in this frame
   RecallMerge merge_;
   SceneFit fit_;
+  SceneSamples around_;  ///< what a keyframe shows beside the objects
   std::vector<std::optional<double>> fits_;
   std::optional<double> background_fit_;
 };

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -17,6 +18,10 @@ bool is_wrong(const MarkerScale& scale) {
   return scale.ratio > 1 + DepthScale::tolerance || scale.ratio < 1 / (1 + DepthScale::tolerance);
 }
 
+bool is_wrong(const MarkerShift& shift) {
+  return shift.shift > MarkerAgreement::tolerance;
+}
+
 void doubt(std::string message, FrameReport& report) {
   report.in_doubt = true;
   report.messages.push_back(std::move(message));
@@ -27,6 +32,14 @@ std::string wrong_scale(const RgbdCamera& camera, const MarkerScale& scale) {
       "{}: marker {} is {:.3g} times as far away by depth as by its size: correct size_m (measure "
       "the black square) or depth_unit_m; diminish check says which",
       camera.name, scale.marker, scale.ratio);
+}
+
+std::string wrong_place(const RgbdCamera& camera, const MarkerShift& shift) {
+  return fmt::format(
+      "color: marker {} is {:.1f} degrees beside where {} locates it: is the colour camera's "
+      "calibration its own (diminish calibrate intrinsics), size_m right, {} late? diminish check "
+      "says which",
+      shift.marker, shift.shift * 180 / std::numbers::pi, camera.name, camera.name);
 }
 
 std::string no_fit(const std::string& camera) {
@@ -48,9 +61,12 @@ void Doubt::judge(const Rig& rig, const Options& options, const Evidence& eviden
   if (options.least_fit <= -1) return;
   for (std::size_t k = 0; k < rig.rgbd.size(); ++k) {
     const auto& scale = evidence.scales[k];
+    const auto& shift = evidence.shifts[k];
     // What explains more comes first: a wrong scale spoils the fit, too.
     if (scale && is_wrong(*scale)) {
       doubt(wrong_scale(rig.rgbd[k], *scale), report);
+    } else if (shift && is_wrong(*shift)) {
+      doubt(wrong_place(rig.rgbd[k], *shift), report);
     } else if (k < report.fit.size() && report.fit[k] && *report.fit[k] < options.least_fit) {
       doubt(no_fit(rig.rgbd[k].name), report);
     }

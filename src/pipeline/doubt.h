@@ -10,6 +10,7 @@
 #include "diminish/options.h"
 #include "diminish/rig.h"
 #include "pose/depth_scale.h"
+#include "pose/marker_agreement.h"
 
 namespace diminish {
 
@@ -30,6 +31,7 @@ class Doubt {
   /// What a frame shows of its set-up, for each RGB-D camera.
   struct Evidence {
     const std::vector<std::optional<MarkerScale>>& scales;
+    const std::vector<std::optional<MarkerShift>>& shifts;
   };
   /// From `report.fit` and the evidence: sets `report.in_doubt`, and says in `report.messages` why,
   /// and what to do.

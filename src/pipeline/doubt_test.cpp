@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <numbers>
 
 #include "diminish/frame_source.h"
@@ -84,6 +85,80 @@ TEST_P(DoubtfulDepth, InAWrongUnit) {
   for (RgbdCamera& camera : recording.rig.rgbd) camera.depth_unit_m *= 1.25;
   process({});
   for (const DiminishedFrame& result : results) EXPECT_TRUE(result.report.in_doubt);
+}
+
+class DoubtfulMarkers : public Doubtful {};
+INSTANTIATE_TEST_SUITE_P(Recordings, DoubtfulMarkers,
+                         ::testing::Values("calendar", "ball", "workbench"),
+                         [](const auto& tested) { return std::string(tested.param); });
+
+// Nothing is in view then that could be compared with the picture.
+TEST_P(DoubtfulMarkers, TellADepthUnitOfAFifth) {
+  load(GetParam());
+  for (RgbdCamera& camera : recording.rig.rgbd) camera.depth_unit_m /= 5;
+  process({});
+  for (const DiminishedFrame& result : results) {
+    EXPECT_TRUE(result.report.in_doubt);
+    EXPECT_THAT(result.report.messages, Contains(HasSubstr("depth_unit_m")));
+  }
+}
+
+class DoubtfulLens : public Doubtful {};
+INSTANTIATE_TEST_SUITE_P(Recordings, DoubtfulLens, ::testing::Values("calendar", "workbench"),
+                         [](const auto& tested) { return std::string(tested.param); });
+
+// Poses that are found with it make it good for what is near the world marker, not for the object.
+TEST_P(DoubtfulLens, OfAnotherCamera) {
+  load(GetParam());
+  recording.rig.color.fx *= 0.88;
+  recording.rig.color.fy *= 0.88;
+  process({});
+  const auto doubts = std::count_if(results.begin(), results.end(),
+                                    [](const auto& result) { return result.report.in_doubt; });
+  EXPECT_GE(4 * doubts, 3 * static_cast<std::ptrdiff_t>(results.size()));
+  EXPECT_THAT(results.front().report.messages, Contains(HasSubstr("calibrate intrinsics")));
+}
+
+/// A scan as the only background.
+class DoubtfulScan : public ::testing::Test {
+ protected:
+  static std::vector<DiminishedFrame> show(const std::string& of, const std::string& in) {
+    Options options;
+    Recording recording = load_recording(recordings / in);
+    Recording scanned = load_recording(recordings / of);
+    scanned.scene.world_marker = recording.scene.world_marker;
+    scanned.rig.color = recording.rig.color;
+    const Scan scan = scan_recording(scanned, options, {});
+    const auto source = open_recording(recording, options);
+    recording.rig.rgbd.clear();
+    Pipeline pipeline(recording.rig, recording.scene, options);
+    pipeline.set_background(scan);
+    std::vector<DiminishedFrame> results;
+    for (FrameSet frame; source->next(frame);) {
+      frame.rgbd.clear();
+      pipeline.process(frame, results.emplace_back());
+    }
+    return results;
+  }
+};
+
+TEST_F(DoubtfulScan, OfThisRoomIsNot) {
+  for (const DiminishedFrame& result : show("calendar", "calendar")) {
+    EXPECT_GT(result.report.memory.background_pixels, 0U);
+    EXPECT_FALSE(result.report.in_doubt);
+  }
+}
+
+// The same desk, with other posters behind it
+TEST_F(DoubtfulScan, OfAnotherRoom) {
+  std::size_t shown = 0;
+  for (const DiminishedFrame& result : show("calendar", "ball")) {
+    if (result.report.memory.background_pixels == 0) continue;
+    ++shown;
+    EXPECT_TRUE(result.report.in_doubt) << result.name;
+    EXPECT_THAT(result.report.messages, Contains(HasSubstr("diminish scan")));
+  }
+  EXPECT_GT(shown, 0U);
 }
 
 class OnDoubt : public Doubtful {};

@@ -89,6 +89,7 @@ struct Pipeline::Implementation {
                    PoseRefinement::usual_coarser),
         fit(rig.color),
         scale(rig, scene),
+        agreement(rig, scene),
         background(rig.color),
         backend(rig),
         memory(rig) {}
@@ -176,6 +177,8 @@ struct Pipeline::Implementation {
   SceneFit fit;
   DepthScale scale;
   std::vector<std::optional<MarkerScale>> scales;
+  MarkerAgreement agreement;
+  std::vector<std::optional<MarkerShift>> shifts;
   Background background;
   ColorMaps color_maps;
   int smoothing = 0;   ///< its share
@@ -328,7 +331,8 @@ void Pipeline::Implementation::process(const FrameSet& given, DiminishedFrame& r
       report.fit.resize(rig.rgbd.size());
       fit.find(frame.color, masks.color, samples, report.fit);
       scale.find(frame, report.markers, scales);
-      Doubt::judge(rig, options, {scales}, report);
+      agreement.find(frame, report.markers, report.poses, shifts);
+      Doubt::judge(rig, options, {scales, shifts}, report);
     });
   };
   const auto recall = [&] {

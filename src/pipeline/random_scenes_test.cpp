@@ -5,6 +5,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <optional>
 #include <random>
 
 #include "diminish/occluder_settings.h"
@@ -220,6 +222,43 @@ void expect_untouched(const FrameSet& frame, const DiminishedFrame& result) {
   }
 }
 
+/// Where a triangle of an RGB-D camera's depth image may be seen: the boxes of all that are before
+/// the colour camera, whatever rules choose among them. Computed in double precision, from the
+/// lens's definition.
+Mask reach_of_triangles(const Rig& rig, const FrameSet& frame, const Poses& poses) {
+  constexpr int rounding_px = 1;
+  Mask reach(rig.color.width, rig.color.height, 0);
+  const Lens color(rig.color);
+  for (std::size_t k = 0; k < rig.rgbd.size(); ++k) {
+    if (!poses.color_from_depth[k] || !frame.rgbd[k].available()) continue;
+    const Lens sensor(rig.rgbd[k].depth);
+    const ImageView<std::uint16_t> depth = frame.rgbd[k].depth;
+    const auto place = [&](int x, int y) -> std::optional<Eigen::Vector2d> {
+      if (depth(x, y) == 0) return std::nullopt;
+      const Eigen::Vector2d ray = sensor.undistort(Eigen::Vector2d(x, y));
+      const double depth_m = depth(x, y) * rig.rgbd[k].depth_unit_m;
+      return color.project(*poses.color_from_depth[k] * (depth_m * ray.homogeneous()).eval());
+    };
+    const auto mark = [&](const auto& a, const auto& b, const auto& c) {
+      if (!a || !b || !c) return;
+      const Eigen::Vector2d low = a->cwiseMin(*b).cwiseMin(*c).cwiseMax(-1e6);
+      const Eigen::Vector2d high = a->cwiseMax(*b).cwiseMax(*c).cwiseMin(1e6);
+      const int left = static_cast<int>(std::floor(low.x())) - rounding_px;
+      const int top = static_cast<int>(std::floor(low.y())) - rounding_px;
+      const Rect box = {left, top, static_cast<int>(std::ceil(high.x())) + rounding_px + 1 - left,
+                        static_cast<int>(std::ceil(high.y())) + rounding_px + 1 - top};
+      reach.fill(intersect(box, reach.bounds()), 255);
+    };
+    for (int y = 0; y + 1 < depth.height(); ++y) {
+      for (int x = 0; x + 1 < depth.width(); ++x) {
+        mark(place(x, y), place(x + 1, y), place(x, y + 1));
+        mark(place(x + 1, y), place(x + 1, y + 1), place(x, y + 1));
+      }
+    }
+  }
+  return reach;
+}
+
 class RandomScenes : public ::testing::TestWithParam<unsigned> {};
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomScenes, ::testing::Range(0U, 10U));
 
@@ -253,6 +292,45 @@ TEST_P(RandomScenes, KeepWhatIsPromised) {
   // Else nothing was tried.
   EXPECT_GT(valid, 100U);
   EXPECT_GT(missing, 100U);
+}
+
+// Behind the camera, edge-on, or across the whole picture: nothing is drawn but triangles.
+TEST_P(RandomScenes, ShowNothingWhereNoTriangleIs) {
+  std::size_t drawn = 0;
+  std::size_t empty = 0;
+  for (unsigned i = 0; i < 40; ++i) {
+    SCOPED_TRACE(i);
+    RandomScene random(5000 + 100 * GetParam() + i);
+    Options options = random.options();
+    options.memory = "off";
+    options.whole_view = true;
+    options.refine_poses = false;
+    // Depths as they are
+    options.smooth_depth = options.snap_edges = false;
+    Pipeline pipeline(random.rig, random.scene, options);
+    const FrameSet frame = random.frame(0);
+    DiminishedFrame result;
+    pipeline.process(frame, result);
+    const Mask reach = reach_of_triangles(random.rig, frame, result.report.poses);
+    const Image<Bgra>& color = result.reconstruction.color;
+    ASSERT_EQ(color.width(), reach.width());
+    for (int y = 0; y < color.height(); ++y) {
+      for (int x = 0; x < color.width(); ++x) {
+        const Bgra& pixel = color(x, y);
+        if (pixel.a == 0) {
+          ++empty;
+          ASSERT_EQ(pixel.b + pixel.g + pixel.r, 0);
+          ASSERT_EQ(result.reconstruction.source(x, y), 0);
+          continue;
+        }
+        ++drawn;
+        ASSERT_NE(reach(x, y), 0) << x << " " << y;
+        ASSERT_GT(result.reconstruction.depth_m(x, y), 0);
+      }
+    }
+  }
+  EXPECT_GT(drawn, 10U);
+  EXPECT_GT(empty, 100U);
 }
 
 }  // namespace
