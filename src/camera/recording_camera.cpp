@@ -118,15 +118,17 @@ class RecordingCamera : public CameraSource {
     const std::string name = uri.text_of("camera", request.name);
     if (name == "color") {
       color_.emplace(folder / "color.txt", rig.color, timeline, loop);
-      return begin();
+      begin();
+      return;
     }
     const RgbdCamera* camera = find_rgbd_camera(rig, name);
     if (!camera) uri.fail("the recording has no camera '" + name + "'");
     color_.emplace(folder / (name + "_color.txt"), camera->color, timeline, loop,
                    EmptyList::is_no_images);
-    if (!camera->measures_depth || is_ignored(request)) return begin();
-    depth_.emplace(folder / (name + "_depth.txt"), camera->depth, timeline, loop,
-                   EmptyList::is_no_images);
+    if (camera->measures_depth && !is_ignored(request)) {
+      depth_.emplace(folder / (name + "_depth.txt"), camera->depth, timeline, loop,
+                     EmptyList::is_no_images);
+    }
     begin();
   }
 
