@@ -3,6 +3,7 @@
 
 #include "core/shrink.h"
 #include "core/tasks.h"
+#include "detect/difference/evidence_history.h"
 #include "detect/difference/free_space.h"
 #include "detect/difference/geodesic_fill.h"
 #include "detect/difference/object_evidence.h"
@@ -34,13 +35,18 @@ class DifferenceOccluder : public OccluderDetector {
         planes_(rig.color),
         drawer_(rig),
         free_space_(rig),
-        evidence_(rig.color, drawer_.shrinkage()) {
+        evidence_(rig.color, drawer_.shrinkage()),
+        history_(std::make_shared<EvidenceHistory>(rig.color, drawer_.shrinkage())) {
     no_masks_.color = Mask(rig.color.width, rig.color.height);
     for (const RgbdCamera& camera : rig.rgbd) {
       no_masks_.rgbd_color.emplace_back(camera.color.width, camera.color.height);
       no_masks_.rgbd_depth.emplace_back(camera.depth.width, camera.depth.height);
       rgbd_objects_.emplace_back();
     }
+  }
+
+  void share(OccluderDetector& other) override {
+    history_ = dynamic_cast<DifferenceOccluder&>(other).history_;
   }
 
   OccluderReport detect(const Observation& observation, OcclusionMasks& masks) override {
@@ -60,6 +66,10 @@ class DifferenceOccluder : public OccluderDetector {
     free_space_.begin(frame, poses_);
     const Rect part = evidence_.find({picture_, layers_, free_space_, planes_.planes(), clearance_},
                                      evidence_shown_);
+    if (options.memory != "off" && poses_.color_from_world) {
+      history_->steady({picture_, layers_, evidence_, *poses_.color_from_world, frame.stamp_s},
+                       part, evidence_shown_);
+    }
     find_regions(part);
     report.in_color = add_enlarged(regions_, drawer_.shrinkage(), masks.color);
     if (!report.in_color) return report;
@@ -116,6 +126,7 @@ class DifferenceOccluder : public OccluderDetector {
   SeenLayers layers_;
   FreeSpace free_space_;
   ObjectEvidence evidence_;
+  std::shared_ptr<EvidenceHistory> history_;  ///< with --memory on, where frames come in order
   GeodesicFill fill_;
   ObjectRegions find_;
   std::vector<RgbdObject> rgbd_objects_;

@@ -3,8 +3,10 @@
 #include <oneapi/tbb/task_arena.h>
 
 #include "analytic_scene.h"
+#include "detect/occlusion_masks.h"
 #include "detect/silhouette/disc_dilation.h"
 #include "detection.h"
+#include "diminish/objects_of_detector.h"
 #include "expect_error.h"
 #include "mask_overlap.h"
 #include "paths.h"
@@ -150,6 +152,99 @@ TEST(DifferenceOccluder, LeavesWhatIsBehindTheObject) {
     }
     EXPECT_LT(lost, count_nonzero(hidden, hidden.bounds()) / 20);
   }
+}
+
+/// Frames of a sequence, 50 ms apart.
+class Sequence {
+ public:
+  Sequence() : detection_(seen_in(free_box())) { detector_ = make_detector(thing, detection_.rig); }
+  /// Whether it is found in the next frame.
+  bool finds(const AnalyticScene& scene) {
+    const double stamp_s = detection_.frame.stamp_s + 0.05;
+    detection_.frame = AnalyticFrame(scene, eyes).frame;
+    detection_.frame.stamp_s = stamp_s;
+    return detection_.detect(*detector_).in_color;
+  }
+  double overlap(const AnalyticScene& scene) const {
+    return intersection_over_union(
+        detection_.masks.color,
+        box_mask(scene, detection_.rig.color, *detection_.poses.color_from_world));
+  }
+  void remember(bool wanted) { detection_.options.memory = wanted ? "on" : "off"; }
+
+ private:
+  Detection detection_;
+  std::unique_ptr<OccluderDetector> detector_;
+};
+
+TEST(DifferenceOccluder, WhatComesAndGoesIsSeenAtOnce) {
+  Sequence sequence;
+  AnalyticScene without = free_box();
+  without.has_box = false;
+  for (int i = 0; i < 10; ++i) EXPECT_FALSE(sequence.finds(without));
+  AnalyticScene moving = free_box();
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_TRUE(sequence.finds(moving));
+    EXPECT_GT(sequence.overlap(moving), 0.9) << i;
+    moving.box_min.x() += 0.05;
+    moving.box_max.x() += 0.05;
+  }
+  EXPECT_FALSE(sequence.finds(without));
+}
+
+/// A box that stands hardly less than free, and in one frame a little more.
+TEST(DifferenceOccluder, OneFrameDoesNotOutvoteThoseBefore) {
+  const auto box_at = [](double back_m) {
+    AnalyticScene scene = free_box();
+    scene.box_min.z() = back_m;
+    scene.box_max.z() = back_m + 0.1;
+    return scene;
+  };
+  Sequence alone;
+  alone.remember(false);
+  // The least distance from the wall at which it is found, to a millimetre
+  double back_m = 0.5;
+  double too_near_m = 0.1;
+  while (back_m - too_near_m > 0.001) {
+    const double middle_m = (back_m + too_near_m) / 2;
+    (alone.finds(box_at(middle_m)) ? back_m : too_near_m) = middle_m;
+  }
+  const AnalyticScene free = box_at(back_m);
+  const AnalyticScene near_wall = box_at(too_near_m);
+  ASSERT_TRUE(alone.finds(free));
+  ASSERT_FALSE(alone.finds(near_wall));
+  Sequence sequence;
+  for (int i = 0; i < 8; ++i) EXPECT_FALSE(sequence.finds(near_wall));
+  EXPECT_FALSE(sequence.finds(free));
+  EXPECT_FALSE(sequence.finds(near_wall));
+  // In the end what is seen counts.
+  int late = 0;
+  while (!sequence.finds(free) && late < 10) ++late;
+  EXPECT_GT(late, 0);
+  EXPECT_LT(late, 5);
+}
+
+/// An object whose marker nobody sees is removed by `difference` beside it.
+TEST(DifferenceOccluder, CompletesWhatAMarkerFinds) {
+  Recording recording =
+      load_recording(std::filesystem::path(testing::recordings_dir()) / "calendar");
+  Detection detection(recording.rig);
+  ASSERT_TRUE(open_recording(recording, {})->next(detection.frame));
+  const TruthPoses truth(recording.folder);
+  detection.poses = truth.poses(0, recording.rig);
+  detection.options.mask_margin_px = 0;
+  const Mask expected =
+      read_mask_image(recording.folder / "truth" / "mask" / (truth.frame(0) + ".png"));
+  const auto overlap = [&] {
+    OccluderStage stage(recording.rig, recording.scene);
+    std::vector<OccluderReport> reports;
+    stage.detect(detection.observation(), reports);
+    return intersection_over_union(stage.masks().color, expected);
+  };
+  ASSERT_EQ(recording.scene.occluders[0].detector, "marker");
+  EXPECT_EQ(overlap(), 0);
+  recording.scene.occluders.push_back(objects_of_detector("difference", "test").at(0));
+  EXPECT_GT(overlap(), 0.9);
 }
 
 TEST(DifferenceOccluder, WithoutCamerasItSaysSo) {

@@ -19,12 +19,17 @@ constexpr float shorter = 0.25F;
 /// Further away, a pixel stays as it is. In levels, or pixels.
 constexpr float longest_way = 30;
 
+/// The least that a step costs.
+float least_step(float length, bool is_unlike) {
+  return is_unlike ? shorter * length : length;
+}
+
 float step(const Bgr& a, const Bgr& b, float length, bool is_unlike) {
   const int blue = a.b - b.b;
   const int green = a.g - b.g;
   const int red = a.r - b.r;
   const float change = std::sqrt(static_cast<float>(blue * blue + green * green + red * red));
-  return is_unlike ? shorter * length + std::max(0.F, change - noise) : length + change;
+  return least_step(length, is_unlike) + (is_unlike ? std::max(0.F, change - noise) : change);
 }
 
 bool is_certain(Shown what) {
@@ -36,12 +41,14 @@ bool is_certain(Shown what) {
 void GeodesicFill::fill(const Image<Bgr>& picture, const Rect& part, Image<Shown>& shown) {
   part_ = part;
   pixels_.clear();
-  way_.resize(picture.width(), picture.height());
+  // Nothing is reached from beyond the part.
+  way_.resize(part.width + 2, part.height + 2, std::numeric_limits<float>::infinity());
   for (int y = part.y; y < part.bottom(); ++y) {
     for (int x = part.x; x < part.right(); ++x) {
-      way_(x, y) = 0;
-      if (is_certain(shown(x, y))) continue;
-      way_(x, y) = std::numeric_limits<float>::infinity();
+      if (is_certain(shown(x, y))) {
+        way_to(x, y) = 0;
+        continue;
+      }
       pixels_.push_back({x, y, shown(x, y) == Shown::unlike});
     }
   }
@@ -54,7 +61,7 @@ void GeodesicFill::fill(const Image<Bgr>& picture, const Rect& part, Image<Shown
     }
   }
   for (const Pixel& pixel : pixels_) {
-    if (way_(pixel.x, pixel.y) > longest_way) shown(pixel.x, pixel.y) = Shown::unknown;
+    if (way_to(pixel.x, pixel.y) > longest_way) shown(pixel.x, pixel.y) = Shown::unknown;
   }
 }
 
@@ -69,17 +76,19 @@ void GeodesicFill::improve(const Image<Bgr>& picture, const Pixel& pixel, int si
   constexpr std::array<Neighbour, 4> before = {
       {{-1, 0, 1}, {-1, -1, diagonal}, {0, -1, 1}, {1, -1, diagonal}}};
   const auto& [x, y, is_unlike] = pixel;
-  float& own = way_(x, y);
+  float* const place = &way_to(x, y);
+  float own = *place;
   for (const auto& [dx, dy, length] : before) {
+    const float there = place[sign * (dx + std::ptrdiff_t{dy} * way_.width())];
+    if (!(there + least_step(length, is_unlike) < own)) continue;
     const int from_x = x + sign * dx;
     const int from_y = y + sign * dy;
-    if (!part_.contains(from_x, from_y) || !(way_(from_x, from_y) < own)) continue;
-    const float way =
-        way_(from_x, from_y) + step(picture(x, y), picture(from_x, from_y), length, is_unlike);
+    const float way = there + step(picture(x, y), picture(from_x, from_y), length, is_unlike);
     if (!(way < own)) continue;
     own = way;
     shown(x, y) = shown(from_x, from_y);
   }
+  *place = own;
 }
 
 }  // namespace diminish

@@ -21,10 +21,11 @@ class GeodesicFill {
     bool is_unlike;
   };
   void improve(const Image<Bgr>& picture, const Pixel& pixel, int sign, Image<Shown>& shown);
+  float& way_to(int x, int y) { return way_(x - part_.x + 1, y - part_.y + 1); }
 
   Rect part_;
   std::vector<Pixel> pixels_;  ///< that are not certain, row by row
-  Image<float> way_;           ///< to each pixel, from what is certain
+  Image<float> way_;           ///< to each pixel, from what is certain; the part, a pixel larger
 };
 
 }  // namespace diminish

@@ -66,12 +66,17 @@ bool ObjectEvidence::is_on_plane(const std::vector<BackgroundPlane>& planes, int
   });
 }
 
+bool ObjectEvidence::looks_like(const Bgr& color, int x, int y) const {
+  return difference(color, least_(x, y), greatest_(x, y)) < 0.25F * threshold_;
+}
+
 Rect ObjectEvidence::find(const Inputs& inputs, Image<Shown>& shown) {
   const SeenLayers& layers = inputs.layers;
   const int width = inputs.picture.width();
   const int height = inputs.picture.height();
   compare(inputs);
   const float threshold = find_threshold(layers);
+  threshold_ = threshold;
   mark(inputs, threshold);
 
   object_.resize(width, height, 0);

@@ -46,6 +46,16 @@ class ObjectEvidence {
   /// ns a pixel.
   Rect find(const Inputs& inputs, Image<Shown>& shown);
 
+  /// How far beyond the evidence an object may go on, in pixels of the small picture.
+  static constexpr int guessed_px = 24;
+
+  /// Of the picture that `find` was given: whether it looks like the nearest surface rather than
+  /// like the farthest, and whether it shows a colour in a pixel's neighbourhood.
+  bool looks_like_nearest(int x, int y) const {
+    return difference_(x, y).nearest <= difference_(x, y).farthest;
+  }
+  bool looks_like(const Bgr& color, int x, int y) const;
+
   /// Whether a point of the colour camera's frame lies on one of the planes. x, y: pixel of the
   /// small picture.
   bool is_on_plane(const std::vector<BackgroundPlane>& planes, int x, int y, float depth_m) const;
@@ -60,9 +70,6 @@ class ObjectEvidence {
     int pixels = 0, free = 0;
     int like_nearest = 0, compared = 0;
   };
-  /// How far beyond the evidence an object may go on, in pixels of the small picture.
-  static constexpr int guessed_px = 24;
-
   void compare(const Inputs& inputs);
   float find_threshold(const SeenLayers& layers);
   void mark(const Inputs& inputs, float threshold);
@@ -72,6 +79,7 @@ class ObjectEvidence {
   void open(Mask& mask, int reach);
 
   std::shared_ptr<const RayTable> rays_;  ///< of the small picture
+  float threshold_ = 0;                   ///< between colours of the same surface, in levels
   Image<Bgr> least_, greatest_, least_around_, greatest_around_, scratch_;
   Image<Difference> difference_;
   std::vector<float> values_;

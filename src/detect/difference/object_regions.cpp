@@ -33,10 +33,20 @@ void ObjectRegions::find(const Image<Shown>& evidence, const Image<Shown>& shown
     const bool is_large =
         region.pixels >= smallest_share * pixels || seen >= smallest_seen * pixels;
     if (is_large && certain >= least_evidence * region.pixels) continue;
-    connected_.for_each_run(region, [&](const ConnectedRegions::Run& run) {
-      std::fill(regions.row(run.y) + run.first, regions.row(run.y) + run.last, std::uint8_t{0});
-    });
+    fill(region, 0, regions);
   }
+  // What is too small to be an object is no hole in one, either.
+  connected_.find(regions, Pixels::clear, Connectivity::eight);
+  for (const ConnectedRegions::Region& region : connected_.regions()) {
+    if (region.pixels < smallest_seen * pixels) fill(region, 255, regions);
+  }
+}
+
+void ObjectRegions::fill(const ConnectedRegions::Region& region, std::uint8_t value,
+                         Mask& regions) const {
+  connected_.for_each_run(region, [&](const ConnectedRegions::Run& run) {
+    std::fill(regions.row(run.y) + run.first, regions.row(run.y) + run.last, value);
+  });
 }
 
 bool add_enlarged(const Mask& small, int shrinkage, Mask& mask) {

@@ -9,11 +9,13 @@ namespace diminish {
 /// From the pixels' evidence to regions.
 class ObjectRegions {
  public:
-  /// Leaves out regions that are small, or mostly guessed. evidence: before what is unknown was
-  /// filled in; shown: after.
+  /// Leaves out regions that are small, or mostly guessed, and closes small holes. evidence: before
+  /// what is unknown was filled in; shown: after.
   void find(const Image<Shown>& evidence, const Image<Shown>& shown, Mask& regions);
 
  private:
+  void fill(const ConnectedRegions::Region& region, std::uint8_t value, Mask& regions) const;
+
   ConnectedRegions connected_;
 };
 

@@ -60,10 +60,13 @@ TEST(ObjectRegions, LeavesOutWhatIsSmallOrGuessed) {
   Image<Shown> shown = evidence;
   shown.fill({200, 100, 60, 40}, Shown::unseen_object);
   Mask regions;
+  shown.fill({20, 20, 10, 10}, Shown::scene);  // a hole that is too small, and one that is not
+  shown.fill({122, 12, 16, 16}, Shown::scene);
   ObjectRegions().find(evidence, shown, regions);
   Mask expected(320, 240);
   expected.fill({10, 10, 30, 30}, 255);
   expected.fill({120, 10, 20, 20}, 255);
+  expected.fill({122, 12, 16, 16}, 0);
   EXPECT_EQ(regions, expected);
 }
 

@@ -31,6 +31,7 @@ bool RgbdObject::add(const Inputs& inputs, const Image<LayerVertex>& vertices, i
                      Mask& depth_mask, Mask& color_mask) {
   const Mask& regions = inputs.regions;
   const Rect picture = regions.bounds();
+  const Rect near = intersect(grow(bounding_box(regions), outline_error), picture);
   const auto pixel = [](const LayerVertex& vertex) {
     return Eigen::Vector2i(static_cast<int>(std::lrint(vertex.x)),
                            static_cast<int>(std::lrint(vertex.y)));
@@ -38,7 +39,7 @@ bool RgbdObject::add(const Inputs& inputs, const Image<LayerVertex>& vertices, i
   const auto may_be_object = [&](const LayerVertex& vertex, int error) {
     if (!(vertex.depth_m > 0)) return false;
     const Eigen::Vector2i at = pixel(vertex);
-    if (!picture.contains(at.x(), at.y())) return false;
+    if (!near.contains(at.x(), at.y())) return false;
     return any_set(regions, intersect(square_around(at.x(), at.y(), error), picture)) &&
            !inputs.evidence.is_on_plane(inputs.planes, at.x(), at.y(), vertex.depth_m);
   };
@@ -47,11 +48,12 @@ bool RgbdObject::add(const Inputs& inputs, const Image<LayerVertex>& vertices, i
   for (int y = 0; y < vertices.height(); ++y) {
     for (int x = 0; x < vertices.width(); ++x) {
       const LayerVertex& vertex = vertices(x, y);
-      if (!may_be_object(vertex, 0)) continue;
+      if (!(vertex.depth_m > 0)) continue;
       const Eigen::Vector2i at = pixel(vertex);
+      if (!near.contains(at.x(), at.y())) continue;
       if (inputs.shown(at.x(), at.y()) != Shown::object) continue;
       const float nearest_m = inputs.layers.nearest(at.x(), at.y()).depth_m;
-      if (vertex.depth_m > (1 + same_surface) * nearest_m) continue;
+      if (vertex.depth_m > (1 + same_surface) * nearest_m || !may_be_object(vertex, 0)) continue;
       visited_(x, y) = 255;
       open_ends_.emplace_back(x, y);
     }
