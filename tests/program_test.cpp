@@ -368,9 +368,12 @@ TEST_F(ProgramTest, BenchWritesATrace) {
     EXPECT_GE(duration_us, 0);
     by_thread[event.at("tid").get<int>()].push_back({begin_us, begin_us + duration_us});
     const bool is_part = event.contains("args");
-    if (is_part) EXPECT_GE(event.at("args").at("part"), 0);
-    parts += is_part ? 1 : 0;
-    if (!is_part) ++count[event.at("name").get<std::string>()];
+    if (is_part) {
+      EXPECT_GE(event.at("args").at("part"), 0);
+      ++parts;
+    } else {
+      ++count[event.at("name").get<std::string>()];
+    }
   }
   EXPECT_EQ(count["frame"], 3);
   for (const std::string stage : stage_names) EXPECT_GE(count[stage], 3) << stage;
@@ -380,7 +383,8 @@ TEST_F(ProgramTest, BenchWritesATrace) {
     std::vector<double> ends_us;  // of those that the event lies in
     for (const Event& event : events) {
       while (!ends_us.empty() && ends_us.back() <= event.begin_us + rounding_us) ends_us.pop_back();
-      if (!ends_us.empty()) EXPECT_LE(event.end_us, ends_us.back() + rounding_us);
+      const double around_us = ends_us.empty() ? event.end_us : ends_us.back();
+      EXPECT_LE(event.end_us, around_us + rounding_us);
       ends_us.push_back(event.end_us);
     }
   }

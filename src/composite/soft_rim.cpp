@@ -58,48 +58,51 @@ void for_each_between(const std::uint8_t* distances, int width, std::uint8_t who
 }  // namespace
 
 /// Beyond the image's border the mask continues, so nothing there is outside.
-void SoftRim::find_distances(const Mask& mask, const Rect& box, int width_px) {
-  const Rect around = grow(box, 1);
-  inside_.resize(around.width, around.height);
-  for_rows(around.height, [&](Rows rows) {
-    for (int y = rows.first; y < rows.last; ++y) {
-      const std::uint8_t* from = mask.row(std::clamp(around.y + y, 0, mask.height() - 1)) + box.x;
-      std::uint8_t* to = inside_.row(y) + 1;
-      // A local copy: a stored byte could alias a reference.
-      const int width = box.width;
-      for (int x = 0; x < width; ++x) to[x] = from[x] != 0 ? 1 : 0;
-      to[-1] = box.x > 0 ? 0 : to[0];
-      to[box.width] = box.right() < mask.width() ? 0 : to[box.width - 1];
-    }
-  });
-  distance_ = inside_;
-  eroded_.resize(around.width, around.height);
+/// around: some rows of the box and one pixel more on each side.
+void SoftRim::find_distances(const Mask& mask, const Rect& around, const Rect& box, int width_px,
+                             Scratch& scratch) {
+  auto& [distances, inside, eroded] = scratch;
+  inside.resize(around.width, around.height);
+  distances.resize(around.width, around.height);
+  eroded.resize(around.width, around.height);
+  for (int y = 0; y < around.height; ++y) {
+    const std::uint8_t* from = mask.row(std::clamp(around.y + y, 0, mask.height() - 1)) + box.x;
+    std::uint8_t* to = inside.row(y) + 1;
+    // A local copy: a stored byte could alias a reference.
+    const int width = box.width;
+    for (int x = 0; x < width; ++x) to[x] = from[x] != 0 ? 1 : 0;
+    to[-1] = box.x > 0 ? 0 : to[0];
+    to[box.width] = box.right() < mask.width() ? 0 : to[box.width - 1];
+    std::copy_n(inside.row(y), around.width, distances.row(y));
+  }
   for (int step = 0; step < width_px; ++step) {
-    for_rows(around.height, [&](Rows rows) {
-      for (int y = rows.first; y < rows.last; ++y) {
-        erode_row(inside_, y, step % 2 != 0, eroded_.row(y));
-        std::uint8_t* distance = distance_.row(y);
-        const std::uint8_t* further = eroded_.row(y);
-        const int width = around.width;
-        for (int x = 0; x < width; ++x) {
-          distance[x] = static_cast<std::uint8_t>(distance[x] + further[x]);
-        }
+    for (int y = 0; y < around.height; ++y) {
+      erode_row(inside, y, step % 2 != 0, eroded.row(y));
+      std::uint8_t* distance = distances.row(y);
+      const std::uint8_t* further = eroded.row(y);
+      const int width = around.width;
+      for (int x = 0; x < width; ++x) {
+        distance[x] = static_cast<std::uint8_t>(distance[x] + further[x]);
       }
-    });
-    std::swap(inside_, eroded_);
+    }
+    std::swap(inside, eroded);
   }
 }
 
 void SoftRim::blend(ImageView<Bgr> camera, const Mask& mask, const Rect& box, int width_px,
                     Image<Bgr>& picture) {
   if (width_px <= 0 || box.empty()) return;
-  find_distances(mask, box, width_px);
   const auto whole = static_cast<std::uint8_t>(width_px + 1);
+  const Rect all = grow(box, 1);
   for_rows(box.height, [&](Rows rows) {
-    for (int y = rows.first; y < rows.last; ++y) {
-      const std::uint8_t* distance = distance_.row(y + 1) + 1;
-      const Bgr* from = camera.row(box.y + y) + box.x;
-      Bgr* to = picture.row(box.y + y) + box.x;
+    Scratch& scratch = scratch_[rows.band];
+    const Rect band{all.x, box.y + rows.first, all.width, rows.last - rows.first};
+    const Rect around = intersect(grow(band, width_px), all);
+    find_distances(mask, around, box, width_px, scratch);
+    for (int y = band.y; y < band.bottom(); ++y) {
+      const std::uint8_t* distance = scratch.distance.row(y - around.y) + 1;
+      const Bgr* from = camera.row(y) + box.x;
+      Bgr* to = picture.row(y) + box.x;
       for_each_between(distance, box.width, whole, [&](int x) {
         const int d = distance[x];
         to[x] = {mix(from[x].b, to[x].b, d, whole), mix(from[x].g, to[x].g, d, whole),

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/rows.h"
 #include "diminish/image.h"
 #include "diminish/options.h"
 
@@ -25,10 +26,16 @@ class SoftRim {
              Image<Bgr>& picture);
 
  private:
-  void find_distances(const Mask& mask, const Rect& box, int width_px);
+  /// Of a band of rows, and of as many more on each side as its distances depend on.
+  struct Scratch {
+    Mask distance;  ///< up to width_px + 1
+    Mask inside, eroded;
+  };
 
-  Mask distance_;         ///< in the mask's box: up to width_px + 1
-  Mask inside_, eroded_;  ///< of the box and one pixel more on each side
+  static void find_distances(const Mask& mask, const Rect& around, const Rect& box, int width_px,
+                             Scratch& scratch);
+
+  Scratch scratch_[most_bands];
 };
 
 }  // namespace diminish

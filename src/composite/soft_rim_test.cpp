@@ -30,6 +30,33 @@ Mask random_blobs() {
   return mask;
 }
 
+// Rows are shared in bands of the box, which begin elsewhere in a larger one.
+TEST(SoftRim, BandsLeaveNoTrace) {
+  constexpr int width = 120;
+  constexpr int height = 400;
+  std::mt19937 random(3);
+  Mask mask(width, height, 0);
+  for (int i = 0; i < 60; ++i) {
+    const cv::Point center(static_cast<int>(random() % width),
+                           60 + static_cast<int>(random() % 280));
+    cv::circle(as_mat(mask), center, static_cast<int>(4 + random() % 12), 255, cv::FILLED);
+  }
+  const Image<Bgr> from(width, height, Bgr{200, 0, 40});
+  const Image<Bgr> to(width, height, Bgr{80, 240, 40});
+  for (const int width_px : {1, 2, 5}) {
+    Image<Bgr> picture = to;
+    SoftRim().blend(from, mask, bounding_box(mask), width_px, picture);
+    for (const int more : {7, 33}) {
+      Image<Bgr> other = to;
+      SoftRim().blend(from, mask, intersect(grow(bounding_box(mask), more), mask.bounds()),
+                      width_px, other);
+      for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) ASSERT_EQ(picture(x, y), other(x, y)) << x << ", " << y;
+      }
+    }
+  }
+}
+
 // The share of the background grows with the distance that OpenCV measures.
 TEST(SoftRim, PassesFromCameraToBackground) {
   const Mask mask = random_blobs();
