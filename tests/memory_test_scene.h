@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "analytic_scene.h"
+#include "core/channels.h"
 #include "memory/memory_stage.h"
 #include "scene/scene_sampler.h"
 
@@ -25,6 +26,10 @@ class MemoryTest : public ::testing::Test {
     Rect object = {};           ///< to remove, in the picture
     Rect hole = {};             ///< in the object
     bool is_witnessed = true;   ///< the RGB-D camera delivers
+    double user_m = 0;          ///< how far the user has moved sidewards
+    double rgbd_m = 0;          ///< and the RGB-D camera
+    double light = 1;           ///< everywhere: the share that is left
+    double wave_m = 0;          ///< of the wall's pattern; 0: the usual
     double turn = 0;            ///< an error of the user's camera's pose, about its axis; radians
     bool is_lost = false;       ///< the object is not found
     bool is_in_doubt = false;   ///< the RGB-D camera does not fit the picture
@@ -40,10 +45,17 @@ class MemoryTest : public ::testing::Test {
     scene.has_box = moment.has_box;
     scene.box_min.x() += moment.box_m;
     scene.box_max.x() += moment.box_m;
+    if (moment.wave_m > 0) scene.wave_m = moment.wave_m;
     if (moment.is_elsewhere) scene.wave_m = 0.1;
     const Eigen::Vector3d moved{moment.moved_m, 0, 0};
-    AnalyticFrame now(scene, {Eigen::Vector3d(-0.25, 0.05, 1.1) + moved}, LensModel::plumb_bob,
-                      Eigen::Vector3d(0.05, 0.02, 1.2) + moved);
+    const Eigen::Vector3d user{moment.user_m, 0, 0};
+    const Eigen::Vector3d rgbd{moment.rgbd_m, 0, 0};
+    AnalyticFrame now(scene, {Eigen::Vector3d(-0.25, 0.05, 1.1) + moved + rgbd},
+                      LensModel::plumb_bob, Eigen::Vector3d(0.05, 0.02, 1.2) + moved + user);
+    for (Image<Bgr>* image : {&now.frame.color.own(), &now.frame.rgbd[0].color.own()}) {
+      for (Bgr& color : *image)
+        color = to_color(static_cast<float>(moment.light) * to_channels(color));
+    }
     truth = now.frame.color.own();
     now.frame.stamp_s = moment.stamp_s;
     if (!moment.is_witnessed) {

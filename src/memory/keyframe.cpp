@@ -13,8 +13,8 @@ constexpr int wanted_width = 320;
 }  // namespace
 
 std::size_t Keyframe::bytes() const {
-  std::size_t bytes =
-      picture.size() * sizeof(Bgr) + depth.size() * sizeof(std::uint16_t) + doubt.size();
+  std::size_t bytes = picture.size() * sizeof(Bgr) + depth.size() * sizeof(std::uint16_t) +
+                      doubt.size() + confirmed_s.size() * sizeof(float);
   for (const Testimony& testimony : testimonies) {
     bytes += testimony.depth_m.size() * (sizeof(float) + sizeof(Bgr));
   }

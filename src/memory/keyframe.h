@@ -56,6 +56,8 @@ struct Keyframe {
   // What follows from that, for as long as it is kept: by KeyframePreparation.
   std::vector<Image<Sight>> sights;  ///< of each RGB-D camera, by place; empty without a testimony
   Image<float> overview_m;           ///< on KeyframeGrid's overview; 0: nothing may be shown
+  /// By place: when an RGB-D camera last saw the surface unchanged; seconds after `stamp_s`.
+  Image<float> confirmed_s;
   std::vector<SceneSample> samples;  ///< in the keyframe's frame
 
   std::size_t bytes() const;

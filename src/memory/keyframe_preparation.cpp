@@ -26,6 +26,7 @@ void KeyframePreparation::prepare(Keyframe& keyframe) {
       keyframe.overview_m(x, y) = KeyframeGrid::depth_m(keyframe.depth(x * step, y * step));
     }
   }
+  keyframe.confirmed_s.resize(keyframe.depth.width(), keyframe.depth.height(), 0);
   keyframe.sights.resize(testimony_grids_.size());
   for_tasks(testimony_grids_.size() + 1, [&](std::size_t i) {
     i == testimony_grids_.size() ? find_samples(keyframe) : find_sights(keyframe, i);

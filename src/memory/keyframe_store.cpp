@@ -15,6 +15,28 @@ namespace {
 int cell_px(const KeyframeGrid& grid) {
   return KeyframeGrid::overview_step * grid.step();
 }
+/// Forgets the other places. Returns whether any is left.
+bool keep_confirmed_since(double stamp_s, Keyframe& keyframe) {
+  constexpr int step = KeyframeGrid::overview_step;
+  const auto least_s = static_cast<float>(stamp_s - keyframe.stamp_s);
+  bool any = false;
+  for (int y = 0; y < keyframe.depth.height(); ++y) {
+    std::uint16_t* const depth = keyframe.depth.row(y);
+    const float* const confirmed_s = keyframe.confirmed_s.row(y);
+    std::uint16_t in_row = 0;
+    for (int x = 0; x < keyframe.depth.width(); ++x) {
+      depth[x] = confirmed_s[x] >= least_s ? depth[x] : std::uint16_t{0};
+      in_row = static_cast<std::uint16_t>(in_row | depth[x]);
+    }
+    any = any || in_row != 0;
+    if (y % step != 0) continue;
+    float* const overview_m = keyframe.overview_m.row(y / step);
+    for (int x = 0; x < keyframe.overview_m.width(); ++x) {
+      if (depth[x * step] == 0) overview_m[x] = 0;
+    }
+  }
+  return any;
+}
 /// How many there are in a region.
 Rect cells_of(const Rect& region, int cell) {
   return {0, 0, (region.width - 1) / cell + 1, (region.height - 1) / cell + 1};
@@ -96,14 +118,30 @@ std::size_t KeyframeStore::bytes() const {
       [](std::size_t sum, const auto& keyframe) { return sum + keyframe->bytes(); });
 }
 
-void KeyframeStore::drop_older_than(double stamp_s) {
-  const auto is_old = [&](const auto& keyframe) {
-    return !keyframe->is_background && keyframe->stamp_s < stamp_s;
-  };
-  for (const auto& keyframe : keyframes_) {
-    if (is_old(keyframe)) let_go(keyframe);
+void KeyframeStore::forget_before(double stamp_s) {
+  std::erase_if(keyframes_, [&](const auto& keyframe) {
+    if (keyframe->is_background || keyframe->stamp_s >= stamp_s) return false;
+    const bool is_empty = !keep_confirmed_since(stamp_s, *keyframe);
+    if (is_empty) let_go(keyframe);
+    return is_empty;
+  });
+}
+
+void KeyframeStore::refresh(const Keyframe& keyframe, const Mask& confirmed, const Rect& part,
+                            double stamp_s) {
+  const auto kept = std::find_if(keyframes_.begin(), keyframes_.end(), [&](const auto& candidate) {
+    return candidate.get() == &keyframe;
+  });
+  if (kept == keyframes_.end()) return;
+  const auto since_s = static_cast<float>(stamp_s - keyframe.stamp_s);
+  for (int y = part.y; y < part.bottom(); ++y) {
+    const std::uint8_t* const is_confirmed = confirmed.row(y) + part.x;
+    float* const confirmed_s = (*kept)->confirmed_s.row(y) + part.x;
+    for (int x = 0; x < part.width; ++x) {
+      const float before_s = confirmed_s[x];
+      confirmed_s[x] = is_confirmed[x] != 0 ? since_s : before_s;
+    }
   }
-  std::erase_if(keyframes_, is_old);
 }
 
 void KeyframeStore::find_shown(const Keyframe& keyframe, const RigidTransform& color_from_keyframe,

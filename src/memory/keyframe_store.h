@@ -29,8 +29,11 @@ class KeyframeStore {
   std::shared_ptr<Keyframe> take();
   /// If there are too many, the one goes that shows least of what the others do not.
   void add(std::shared_ptr<Keyframe> keyframe);
-  /// The background stays.
-  void drop_older_than(double stamp_s);
+  /// Forgets places that neither the user nor an RGB-D camera has seen since, and keyframes of
+  /// which none is left. The background stays.
+  void forget_before(double stamp_s);
+  /// An RGB-D camera saw some of a keyframe's places unchanged. confirmed: by place.
+  void refresh(const Keyframe& keyframe, const Mask& confirmed, const Rect& part, double stamp_s);
   void clear();
 
   /// A keyframe, and the part of the picture in which it shows what the objects hide.

@@ -108,6 +108,44 @@ TEST_F(Memory, ForgetsWithAge) {
   EXPECT_EQ(count(result, provenance::remembered), 0U);
 }
 
+// Parked in front of something for longer than anything is remembered.
+TEST_F(Memory, ForgetsNothingThatIsStillWitnessed) {
+  options.memory_max_age_s = 5;
+  show({.stamp_s = 0});
+  std::size_t first = 0;
+  for (int second = 1; second <= 12; ++second) {
+    show({.stamp_s = 1. * second, .object = hidden});
+    if (second == 1) first = count(result, provenance::witnessed);
+  }
+  EXPECT_GT(first, pixels * 7 / 10);
+  EXPECT_GT(count(result, provenance::witnessed), first * 95 / 100);
+  EXPECT_LT(error(result, provenance::witnessed), 3);
+  EXPECT_LT(count(result, provenance::remembered), pixels / 50) << "nobody saw it for 12 s";
+  show({.stamp_s = 16, .object = hidden, .is_witnessed = false});
+  EXPECT_GT(count(result, provenance::remembered), pixels / 2) << "witnessed 4 s ago";
+  show({.stamp_s = 18, .object = hidden, .is_witnessed = false});
+  EXPECT_EQ(count(result, provenance::remembered), 0U);
+}
+
+// A lamp is dimmed, then turned up: all that is remembered is shown in the light of now.
+TEST_F(Memory, FollowsTheLight) {
+  constexpr double even_m = 0.5;  // colours that change little from pixel to pixel
+  show({.stamp_s = 0, .wave_m = even_m});
+  double stamp_s = 0;
+  for (const double light : {1., 0.7, 0.5, 0.9}) {
+    SCOPED_TRACE(light);
+    Moment moment{.stamp_s = stamp_s += 0.3, .object = hidden, .light = light, .wave_m = even_m};
+    show(moment);
+    EXPECT_GT(count(result, provenance::witnessed), pixels / 2);
+    EXPECT_LT(error(result, provenance::witnessed), 4);
+    moment.stamp_s = stamp_s += 0.3;
+    moment.is_witnessed = false;
+    show(moment);
+    EXPECT_GT(count(result, provenance::remembered), pixels * 9 / 10);
+    EXPECT_LT(error(result, provenance::remembered), 6);
+  }
+}
+
 TEST_F(Memory, SaysHowOldWhatIsRememberedIs) {
   show({.stamp_s = 1});
   EXPECT_EQ(memory_report.keyframes, 1U);

@@ -28,7 +28,7 @@ void SceneMemory::forget() {
 
 void SceneMemory::begin_anew() {
   pending_.steps = 0;
-  store_.drop_older_than(std::numeric_limits<double>::infinity());
+  store_.forget_before(std::numeric_limits<double>::infinity());
   depth_.forget();
   novelty_.forget();
   last_keyframe_from_world_.reset();
@@ -89,7 +89,7 @@ std::size_t SceneMemory::recall(const RecallInputs& inputs, bool is_anchored,
   do {
     take_step();
   } while (pending_.steps > 0 && now_s >= pending_.keyframe->stamp_s + moment_s);
-  store_.drop_older_than(now_s - inputs.options.memory_max_age_s);
+  store_.forget_before(now_s - inputs.options.memory_max_age_s);
   if (is_anchored && keyframes() > 0 && has_lost_its_world(inputs)) begin_anew();
   if (store_.empty() || inputs.region.empty()) return 0;
   const std::size_t count =
@@ -108,6 +108,8 @@ std::size_t SceneMemory::recall(const RecallInputs& inputs, bool is_anchored,
   });
   for (std::size_t i = 0; i < count; ++i) {
     store_.remove(recollections[i].gone(), chosen_[i].keyframe->color_from_world);
+    const Witness& witness = recollections[i].witness();
+    store_.refresh(*chosen_[i].keyframe, witness.confirmed(), witness.part(), now_s);
   }
   return count;
 }
@@ -179,12 +181,17 @@ void SceneMemory::learn(const RecallInputs& inputs, const SceneSamples& samples,
   const FrameSet& frame = inputs.frame;
   const bool lost = has_just_lost(objects, frame.stamp_s);
   if (lost || has_jumped_ || !is_worth_a_keyframe(inputs)) return;
-  look(inputs);
-  const bool sees = std::any_of(testimonies_.begin(), testimonies_.end(),
-                                [](const Testimony& testimony) { return testimony.is_given; });
+  bool sees = false;
+  for (std::size_t k = 0; k < frame.rgbd.size(); ++k) {
+    sees = sees || (frame.rgbd[k].available() && inputs.poses.depth_from_world[k]);
+  }
   if (!sees) return;
-  if (sample) sample();
+  if (sample) {
+    sample();
+    has_looked_ = false;  // at depth that is estimated only now
+  }
   if (inputs.is_in_doubt) return;
+  look(inputs);
   last_keyframe_s_ = frame.stamp_s;
   last_keyframe_from_world_ = inputs.poses.color_from_world;
   last_objects_ = inputs.objects;

@@ -100,6 +100,7 @@ void Witness::judge(const Inputs& inputs, Image<std::uint16_t>& depth,
   doubted_m_ = color_.fx * static_cast<float>(inputs.color_from_keyframe.translation.norm()) *
                doubt_unit / most_px;
   depth = keyframe.depth;
+  confirmed_.resize(depth.width(), depth.height());
   gone.clear();
   for (auto& band : gone_in_band_) band.clear();
   for_rows(part_.height, [&](Rows rows) {
@@ -111,8 +112,10 @@ void Witness::judge(const Inputs& inputs, Image<std::uint16_t>& depth,
 }
 
 void Witness::judge_row(const Inputs& inputs, int y, Image<std::uint16_t>& depth,
-                        std::vector<Eigen::Vector3f>& gone) const {
+                        std::vector<Eigen::Vector3f>& gone) {
   const Keyframe& keyframe = inputs.keyframe;
+  std::uint8_t* const confirmed = confirmed_.row(y) + part_.x;
+  std::fill_n(confirmed, part_.width, std::uint8_t{0});
   std::uint16_t* const kept = depth.row(y) + part_.x;
   const std::uint8_t* const doubt = keyframe.doubt.row(y) + part_.x;
   for (int x = 0; x < part_.width; ++x) {
@@ -139,7 +142,10 @@ void Witness::judge_row(const Inputs& inputs, int y, Image<std::uint16_t>& depth
           kept[x] = 0;
           continue;
         }
-        if (sight.kind() == Sight::same) continue;
+        if (sight.kind() == Sight::same) {
+          confirmed[x] |= verdict == Verdict::same ? 1 : 0;
+          continue;
+        }
       }
       looked_m[x] = KeyframeGrid::depth_m(kept[x]);
       any = true;
@@ -153,6 +159,9 @@ void Witness::judge_row(const Inputs& inputs, int y, Image<std::uint16_t>& depth
       const float seen_m = inputs.now[k].depth_m.data()[places[x]];
       if (seen_m > looked_m[x] + 2 * between_cameras.at(looked_m[x])) kept[x] = 0;
     }
+  }
+  for (int x = 0; x < part_.width; ++x) {
+    if (kept[x] == 0) confirmed[x] = 0;
   }
 }
 

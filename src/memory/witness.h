@@ -28,6 +28,8 @@ class Witness {
 
   /// Of the keyframe's grid: what the last `judge` judged.
   const Rect& part() const { return part_; }
+  /// By place of that part: not 0 where an RGB-D camera sees now what it saw then.
+  const Mask& confirmed() const { return confirmed_; }
 
   /// Whether what RGB-D camera `k` sees at a place of its testimony was there when the keyframe of
   /// the last `judge` was taken.
@@ -53,12 +55,13 @@ class Witness {
   /// What lies in the region: of the keyframe's grid, and of each camera's testimonies.
   void find_parts(const Inputs& inputs);
   void judge_row(const Inputs& inputs, int y, Image<std::uint16_t>& depth,
-                 std::vector<Eigen::Vector3f>& gone) const;
+                 std::vector<Eigen::Vector3f>& gone);
 
   KeyframeGrid grid_;
   Projection color_;
   Rect picture_;
   Rect part_;            ///< of the grid
+  Mask confirmed_;       ///< of it, too
   float doubted_m_ = 0;  ///< nearer than that, times its doubt, a place is not shown
   std::vector<Camera> cameras_;
   std::vector<Eigen::Vector3f> gone_in_band_[most_bands];

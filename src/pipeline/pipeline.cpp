@@ -335,11 +335,16 @@ void Pipeline::Implementation::process(const FrameSet& given, DiminishedFrame& r
       Doubt::judge(rig, options, {scales, shifts}, report);
     });
   };
+  const auto estimate = [&](const Rect& part) {
+    stage(Stage::estimation,
+          [&] { estimation.estimate(report.markers, measured_poses, masks, part, options); });
+  };
   const auto recall = [&] {
     stage(Stage::memory, [&] {
       if (!methods.remembers) return;
-      // Where nothing is drawn, samples are taken only for a keyframe.
+      // Where nothing is drawn, depth is estimated and samples are taken only for a keyframe.
       const std::function<void()> sample_now = [&] {
+        estimate(rig.color.bounds());
         sample();
         judge();
       };
@@ -353,10 +358,7 @@ void Pipeline::Implementation::process(const FrameSet& given, DiminishedFrame& r
     });
   };
   // What is learnt of the scene may be needed only after the drawing: then both are done together.
-  if (looks) {
-    stage(Stage::estimation,
-          [&] { estimation.estimate(report.markers, measured_poses, masks, drawn(), options); });
-  }
+  if (looks) estimate(drawn());
   const bool learns_while_drawing = looks && backend.only_draws() && !options.remove_shadows;
   if (looks) {
     do_all(

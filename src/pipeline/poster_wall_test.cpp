@@ -107,5 +107,30 @@ TEST_F(PosterWall, IsShownAsWellByItsPlaneAsByItsDepth) {
   EXPECT_LT(quality(without_depth(scene_frame.rig)), by_plane - 6);
 }
 
+// What the user saw before the object came, though no camera measures depth.
+TEST_F(PosterWall, IsRememberedWhereOnlyItsPlaneIsKnown) {
+  scene.planes = {GivenPlane{}};
+  Options options;
+  options.memory = "on";
+  Pipeline pipeline(without_depth(scene_frame.rig), scene, options);
+  FrameSet& frame = scene_frame.frame;
+  DiminishedFrame result;
+  const Image<Bgr> with_object = frame.color.own();
+  const Mask object = frame.masks[0].color;
+  frame.color.own() = truth;
+  frame.masks[0].color.fill(0);
+  pipeline.process(frame, result);
+  EXPECT_EQ(result.report.memory.keyframes, 1U);
+  frame.color.own() = with_object;
+  frame.masks[0].color = object;
+  frame.rgbd[0].missing = "rgbd0: lost";
+  // A keyframe is ready after two frames.
+  for (int i = 0; i < 3; ++i) pipeline.process(frame, result);
+  EXPECT_GT(result.report.remembered_pixels, std::size_t{patch.width} * patch.height * 9 / 10);
+  Mask inside(truth.width(), truth.height(), 0);
+  inside.fill(patch, 255);
+  EXPECT_GT(testing::psnr_db(result.picture, truth, inside), 35);
+}
+
 }  // namespace
 }  // namespace diminish
