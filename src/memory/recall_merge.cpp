@@ -164,8 +164,9 @@ void RecallMerge::find_verdicts(const Run& run, const RecallInputs& inputs,
 }
 
 bool RecallMerge::merge_run(const Run& run, const RecallInputs& inputs,
-                            std::span<const Recollection> recollections, bool witnessed_only,
-                            Scratch& scratch, Reconstruction& reconstruction) const {
+                            std::span<const Recollection> recollections,
+                            ColorMapsBySource color_maps, bool witnessed_only, Scratch& scratch,
+                            Reconstruction& reconstruction) const {
   find_verdicts(run, inputs, recollections, reconstruction, scratch);
   const int y = run.y;
   const std::uint8_t* const layer = layer_.row(y - part_.y) - part_.x;
@@ -189,6 +190,11 @@ bool RecallMerge::merge_run(const Run& run, const RecallInputs& inputs,
     }
     if (witnessed_only && !is_witnessed) continue;
     const Bgr color = mean_color(recollections, x, y);
+    if (is_witnessed && x % LightRatio::step == 0 && y % LightRatio::step == 0) {
+      scratch.pairs.push_back({x, y,
+                               mapped(color_maps[source[x]], reconstruction.color(x, y), x, y),
+                               to_channels(color)});
+    }
     reconstruction.color(x, y) = {color.b, color.g, color.r, 255};
     reconstruction.depth_m(x, y) = z_m;
     source[x] = is_witnessed ? provenance::witnessed : provenance::remembered;
@@ -282,11 +288,12 @@ void RecallMerge::merge(const RecallInputs& inputs, std::span<const Recollection
   for_rows(part_.height, [&](Rows rows) {
     for (int y = rows.first; y < rows.last; ++y) layer_row(recollections, part_.y + y);
   });
+  for (Scratch& scratch : scratch_) scratch.pairs.clear();
   const int remembering_rows = sum_over_rows(part_.height, [&](Rows rows) {
     int count = 0;
     for (int y = part_.y + rows.first; y < part_.y + rows.last; ++y) {
       part_.for_each_run(y, [&](int first, int last) {
-        count += merge_run({first, last, y}, inputs, recollections, witnessed_only,
+        count += merge_run({first, last, y}, inputs, recollections, color_maps, witnessed_only,
                            scratch_[rows.band], reconstruction)
                      ? 1
                      : 0;
@@ -294,6 +301,10 @@ void RecallMerge::merge(const RecallInputs& inputs, std::span<const Recollection
     }
     return count;
   });
+  light_.begin(part_);
+  for (const Scratch& scratch : scratch_) light_.add(scratch.pairs);
+  light_.solve();
+  light_.apply(inputs.masks.color, reconstruction);
   if (remembering_rows > 0) drop_specks(inputs, reconstruction);
 }
 

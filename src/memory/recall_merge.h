@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "diminish/diminished_frame.h"
+#include "memory/light_ratio.h"
 #include "memory/recollection.h"
 
 namespace diminish {
@@ -20,7 +21,8 @@ namespace diminish {
 /// 3. Elsewhere the keyframe is shown: as witnessed where a camera sees the same surface now, else
 ///    as remembered. If several show the same surface, the mean of them: each has noise, and
 ///    objects' shadows, of its own.
-/// 4. What is remembered in specks amid what is unknown is left out: it says nothing, and what is
+/// 4. What only the RGB-D cameras show, beside what is witnessed, is brought to the same light.
+/// 5. What is remembered in specks amid what is unknown is left out: it says nothing, and what is
 ///    invented around it would go by it.
 class RecallMerge {
  public:
@@ -47,6 +49,8 @@ class RecallMerge {
     std::vector<float> looked_m;
     std::vector<std::int32_t> places;
     std::vector<Verdict> verdicts;  ///< on what is seen now
+    /// Of the band's rows: what both an RGB-D camera and a recollection show.
+    std::vector<LightRatio::Pair> pairs;
   };
   void layer_row(std::span<const Recollection> recollections, int y);
   void find_verdicts(const Run& run, const RecallInputs& inputs,
@@ -54,8 +58,8 @@ class RecallMerge {
                      Scratch& scratch) const;
   /// Returns whether anything in it is remembered.
   bool merge_run(const Run& run, const RecallInputs& inputs,
-                 std::span<const Recollection> recollections, bool witnessed_only, Scratch& scratch,
-                 Reconstruction& reconstruction) const;
+                 std::span<const Recollection> recollections, ColorMapsBySource color_maps,
+                 bool witnessed_only, Scratch& scratch, Reconstruction& reconstruction) const;
   /// Of all that show the same surface. x, y: in the picture.
   Bgr mean_color(std::span<const Recollection> recollections, int x, int y) const;
   void drop_specks(const RecallInputs& inputs, Reconstruction& reconstruction);
@@ -74,6 +78,7 @@ class RecallMerge {
   Mask known_;            ///< and around it; 1: seen or remembered, or no object
   std::vector<std::uint8_t> column_sums_[most_bands];
   TiledRegion specks_part_;
+  LightRatio light_;
   Scratch scratch_[most_bands];
 };
 
