@@ -25,6 +25,12 @@ std::optional<double> psnr_of(const Score& score) {
   const std::optional<Quality>& quality = score.mean.*part;
   return quality ? std::optional(quality->psnr_db) : std::nullopt;
 }
+/// origin: index in score_origins.
+template <std::size_t origin>
+std::optional<double> psnr_of_origin(const Score& score) {
+  const auto& found = score.mean.origins[origin];
+  return found ? std::optional(found->quality.psnr_db) : std::nullopt;
+}
 template <auto figure>
 std::optional<double> viewer_figure(const Score& score) {
   return score.mean.viewer ? std::optional<double>((*score.mean.viewer).*figure) : std::nullopt;
@@ -36,8 +42,11 @@ constexpr Figure figures[] = {
      [](const Score& score) {
        return score.mean.inside ? std::optional(score.mean.inside->ssim) : std::nullopt;
      }},
-    {"PSNR of seen pixels, dB", psnr_of<&FrameScore::valid>},
-    {"PSNR of invented pixels, dB", psnr_of<&FrameScore::missing>},
+    {"PSNR of seen pixels, dB", psnr_of_origin<0>},
+    {"PSNR of witnessed pixels, dB", psnr_of_origin<1>},
+    {"PSNR of remembered pixels, dB", psnr_of_origin<2>},
+    {"PSNR of estimated pixels, dB", psnr_of_origin<3>},
+    {"PSNR of invented pixels, dB", psnr_of_origin<4>},
     {"invented, share", viewer_figure<&ViewerFigures::invented_share>},
     {"edges, recall", viewer_figure<&ViewerFigures::edge_recall>},
     {"edges, precision", viewer_figure<&ViewerFigures::edge_precision>},
