@@ -99,7 +99,7 @@ TEST(SmoothingShare, IsAllWhereTooLittleIsSeen) {
 /// The brightness at a place on the wall, in metres.
 using Texture = std::function<double(double x, double y)>;
 
-/// Oblique squares of two pixels, faint as noise.
+/// Oblique squares of a centimetre (two pixels), faint as noise.
 double checks(double x, double y) {
   const double u = 0.8 * x + 0.6 * y;
   const double v = 0.8 * y - 0.6 * x;
