@@ -5,11 +5,12 @@
 #include <atomic>
 #include <chrono>
 #include <functional>
+#include <memory>
 #include <thread>
 
 #include "core/tasks.h"
 #include "diminish/pipeline.h"
-#include "diminish/view_mode.h"
+#include "diminish/pose_source.h"
 #include "first_frame.h"
 
 namespace diminish {
@@ -20,12 +21,23 @@ using namespace std::chrono_literals;
 std::function<void()> in_the_frame = [] {};
 
 /// A method that shares tasks, as the stages do.
-class TestedMode : public ViewMode {
+class TestedPoses : public PoseSource {
  public:
-  void show(ImageView<Bgr>, const Options&, DiminishedFrame&) const override { in_the_frame(); }
+  TestedPoses(const Rig& rig, const Scene& scene)
+      : source_(Registry<PoseSource>::get("marker")(rig, scene)) {}
+  bool needs_markers() const override { return source_->needs_markers(); }
+  void estimate(const FrameSet& frame, const Markers& markers, Poses& poses) override {
+    in_the_frame();
+    source_->estimate(frame, markers, poses);
+  }
+
+ private:
+  std::unique_ptr<PoseSource> source_;
 };
 const bool registered =
-    Registry<ViewMode>::add("isolation_test", [] { return std::make_unique<TestedMode>(); });
+    Registry<PoseSource>::add("isolation_test", [](const Rig& rig, const Scene& scene) {
+      return std::make_unique<TestedPoses>(rig, scene);
+    });
 
 /// Waits for something that others do; false if they do not.
 template <class Is>
@@ -42,7 +54,6 @@ bool wait_until(const Is& is) {
 // the frame's lie in the same arena, to be taken.
 TEST(Isolation, AThreadThatWaitsInAFrameBeginsNothingElse) {
   testing::FirstFrame first("calendar");
-  first.options.mode = "isolation_test";
   first.options.memory = "off";
   oneapi::tbb::task_arena arena(3, 2);
   static thread_local bool is_in_frame = false;
@@ -76,7 +87,9 @@ TEST(Isolation, AThreadThatWaitsInAFrameBeginsNothingElse) {
     is_offered = true;
   });
   arena.execute([&] {
-    Pipeline pipeline(first.rig(), first.recording.scene, first.options);
+    Rig rig = first.rig();
+    rig.pose_source = "isolation_test";
+    Pipeline pipeline(rig, first.recording.scene, first.options);
     is_in_frame = true;
     pipeline.process(first.frame, first.result);
     is_in_frame = false;
