@@ -34,10 +34,9 @@ class TestedPoses : public PoseSource {
  private:
   std::unique_ptr<PoseSource> source_;
 };
-const bool registered =
-    Registry<PoseSource>::add("isolation_test", [](const Rig& rig, const Scene& scene) {
-      return std::make_unique<TestedPoses>(rig, scene);
-    });
+const bool registered = Registry<PoseSource>::add(
+    "isolation_test",
+    [](const Rig& rig, const Scene& scene) { return std::make_unique<TestedPoses>(rig, scene); });
 
 /// Waits for something that others do; false if they do not.
 template <class Is>

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <optional>
-#include <vector>
 
+#include "core/robust.h"
 #include "diminish/image.h"
 #include "diminish/intrinsics.h"
 #include "diminish/rigid_transform.h"
@@ -14,10 +17,29 @@ struct MarkerDepth {
   double measured_m, computed_m;
 };
 
-/// Depths over a grid of places on the marker. Empty if fewer than half of them were measured.
-std::vector<MarkerDepth> marker_depths(const RigidTransform& depth_from_marker, double size_m,
-                                       const Lens& depth_lens, ImageView<std::uint16_t> depth,
-                                       double depth_unit_m);
+/// Depths over a grid of places on a marker.
+struct MarkerDepths {
+  static constexpr int places = 9;  ///< along a side
+
+  std::array<MarkerDepth, places * places> values;
+  std::size_t count = 0;
+
+  auto begin() const { return values.begin(); }
+  auto end() const { return values.begin() + static_cast<std::ptrdiff_t>(count); }
+};
+
+/// None if fewer than half of them were measured.
+MarkerDepths marker_depths(const RigidTransform& depth_from_marker, double size_m,
+                           const Lens& depth_lens, ImageView<std::uint16_t> depth,
+                           double depth_unit_m);
+/// The median over a marker of a function of its depths; nothing if there are none.
+template <class Function>
+std::optional<double> median_over_marker(const MarkerDepths& depths, const Function& function) {
+  if (depths.count == 0) return std::nullopt;
+  std::array<double, MarkerDepths::places * MarkerDepths::places> values{};
+  const auto end = std::transform(depths.begin(), depths.end(), values.begin(), function);
+  return median(values.begin(), end);
+}
 
 /// The distance of the measured depth from a marker's plane: the median over `marker_depths`,
 /// metres. Nothing if there are none.

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "core/robust.h"
 #include "pose/depth_check.h"
 #include "pose/marker_pose.h"
 
@@ -12,17 +11,14 @@ namespace {
 std::optional<DepthRatio> of_pose(const RigidTransform& depth_from_marker, double size_m,
                                   const Lens& depth_lens, double depth_unit_m,
                                   ImageView<std::uint16_t> depth) {
-  std::vector<double> ratios;
-  for (const MarkerDepth& at :
-       marker_depths(depth_from_marker, size_m, depth_lens, depth, depth_unit_m)) {
-    ratios.push_back(at.measured_m / at.computed_m);
-  }
-  if (ratios.empty()) return std::nullopt;
-  DepthRatio result;
-  result.ratio = median(ratios);
-  for (double& ratio : ratios) ratio = std::abs(ratio - result.ratio);
-  result.spread = median(ratios) / result.ratio;
-  return result;
+  const MarkerDepths depths =
+      marker_depths(depth_from_marker, size_m, depth_lens, depth, depth_unit_m);
+  const auto ratio_at = [](const MarkerDepth& at) { return at.measured_m / at.computed_m; };
+  const auto ratio = median_over_marker(depths, ratio_at);
+  if (!ratio) return std::nullopt;
+  const auto spread = median_over_marker(
+      depths, [&](const MarkerDepth& at) { return std::abs(ratio_at(at) - *ratio); });
+  return DepthRatio{*ratio, *spread / *ratio};
 }
 
 }  // namespace
