@@ -111,7 +111,8 @@ double checks(double x, double y) {
 double one_over_f(double x, double y) {
   double sum = 0;
   double angle = 1;
-  for (double wave_m = 0.2; wave_m > 0.01; wave_m /= 1.1) {
+  double wave_m = 0.2;
+  for (int wave = 0; wave < 32; ++wave, wave_m /= 1.1) {
     angle += 2.4;  // the golden angle: no direction comes again
     const double along = x * std::cos(angle) + y * std::sin(angle);
     sum += wave_m / 0.2 * std::sin(2 * std::numbers::pi / wave_m * along + angle);

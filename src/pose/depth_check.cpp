@@ -7,7 +7,8 @@ namespace diminish {
 MarkerDepths marker_depths(const RigidTransform& depth_from_marker, double size_m,
                            const Lens& depth_lens, ImageView<std::uint16_t> depth,
                            double depth_unit_m) {
-  constexpr int places = MarkerDepths::places;
+  constexpr int places = 9;  // per side
+  static_assert(places * places == MarkerDepths::most);
   MarkerDepths depths;
   for (int row = 0; row < places; ++row) {
     for (int column = 0; column < places; ++column) {
@@ -22,7 +23,7 @@ MarkerDepths marker_depths(const RigidTransform& depth_from_marker, double size_
       depths.values[depths.count++] = {depth(x, y) * depth_unit_m, x_in_depth.z()};
     }
   }
-  if (depths.count * 2 < depths.values.size()) depths.count = 0;
+  if (depths.count * 2 < MarkerDepths::most) depths.count = 0;
   return depths;
 }
 

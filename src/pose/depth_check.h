@@ -19,9 +19,9 @@ struct MarkerDepth {
 
 /// Depths over a grid of places on a marker.
 struct MarkerDepths {
-  static constexpr int places = 9;  ///< along a side
+  static constexpr std::size_t most = 81;  ///< 9 places along each side
 
-  std::array<MarkerDepth, places * places> values;
+  std::array<MarkerDepth, most> values;
   std::size_t count = 0;
 
   auto begin() const { return values.begin(); }
@@ -36,7 +36,7 @@ MarkerDepths marker_depths(const RigidTransform& depth_from_marker, double size_
 template <class Function>
 std::optional<double> median_over_marker(const MarkerDepths& depths, const Function& function) {
   if (depths.count == 0) return std::nullopt;
-  std::array<double, MarkerDepths::places * MarkerDepths::places> values{};
+  std::array<double, MarkerDepths::most> values{};
   const auto end = std::transform(depths.begin(), depths.end(), values.begin(), function);
   return median(values.begin(), end);
 }

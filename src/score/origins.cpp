@@ -13,13 +13,10 @@ namespace {
 struct Origin {
   std::uint8_t first, last;
 };
-/// Seen, but its depth was not measured.
-constexpr std::uint8_t estimated = 202;
 constexpr std::array<Origin, score_origins.size()> origins{
     {{provenance::first_rgbd, provenance::witnessed - 1},
      {provenance::witnessed, provenance::witnessed},
      {provenance::remembered, provenance::remembered},
-     {estimated, estimated},
      {provenance::inpainted, provenance::inpainted}}};
 
 }  // namespace
