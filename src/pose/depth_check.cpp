@@ -8,7 +8,7 @@ MarkerDepths marker_depths(const RigidTransform& depth_from_marker, double size_
                            const Lens& depth_lens, ImageView<std::uint16_t> depth,
                            double depth_unit_m) {
   constexpr int places = 9;  // per side
-  static_assert(places * places == MarkerDepths::most);
+  static_assert(std::size_t{places} * places == MarkerDepths::most);
   MarkerDepths depths;
   for (int row = 0; row < places; ++row) {
     for (int column = 0; column < places; ++column) {
