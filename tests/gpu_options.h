@@ -9,6 +9,7 @@ inline Options gpu_options() {
   Options options;
   options.memory = "off";
   options.inpaint = "surfaces";
+  options.complete_sides = false;
   return options;
 }
 

@@ -23,6 +23,7 @@ struct Options {
   bool smooth_depth = true;
   bool snap_edges = true;
   bool smooth_colors = true;
+  bool complete_sides = true;
   bool lift_shadows = true;
   bool remove_shadows = false;
   double discontinuity_threshold_m = 0.05;
@@ -109,6 +110,10 @@ void for_each_option(AnyOptions& options, Visit&& visit) {
           "Average neighbouring pixels of similar colour as far as that brings what is drawn "
           "closer to the colour camera's picture"},
       options.smooth_colors);
+  visit(
+      OptionInfo{"complete_sides", "",
+                 "Complete the sides, seen by no RGB-D camera, of what stands on a table or floor"},
+      options.complete_sides);
   visit(
       OptionInfo{"lift_shadows", "", "Remove the shadows that the objects cast on what they hide"},
       options.lift_shadows);

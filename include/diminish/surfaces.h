@@ -10,7 +10,9 @@ namespace diminish {
 namespace surface_label {
 inline constexpr std::uint8_t unknown =
     0;  ///< nothing was measured there, and no plane is behind it
-inline constexpr std::uint8_t first_plane = 1;   ///< and above: on a plane of the background
+inline constexpr std::uint8_t first_plane = 1;  ///< and above: on a plane of the background
+/// Not measured, but most likely the far side of something measured that stands on a plane.
+inline constexpr std::uint8_t standing = 254;
 inline constexpr std::uint8_t foreground = 255;  ///< measured, in front of the planes
 }  // namespace surface_label
 
@@ -22,6 +24,9 @@ struct Surfaces {
   Image<std::uint8_t> label;
   /// The share of the light on the planes that the objects to remove leave; 255: all of it.
   Image<Bgr> light;
+  /// z in the colour camera's frame where the label is `standing`; elsewhere anything. Empty: no
+  /// label is.
+  Image<float> standing_depth_m;
 };
 
 }  // namespace diminish

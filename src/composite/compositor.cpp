@@ -5,6 +5,7 @@
 #include "composite/object_pixels.h"
 #include "core/conditions.h"
 #include "core/rows.h"
+#include "core/runs.h"
 
 namespace diminish {
 namespace {
@@ -68,6 +69,24 @@ void Compositor::sort(const Inputs& inputs, DiminishedFrame& result) {
   report.witnessed_pixels = counts.witnessed;
   report.remembered_pixels = counts.remembered;
   report.valid_pixels = report.mask_pixels - report.missing_pixels;
+}
+
+void Compositor::hide_behind_sides(const Inputs& inputs, DiminishedFrame& result) {
+  if (result.surfaces.standing_depth_m.empty()) return;
+  const Rect part = intersect(inputs.objects, result.surfaces.region);
+  std::size_t hidden = 0;
+  for (int y = part.y; y < part.bottom(); ++y) {
+    const std::uint8_t* const label = result.surfaces.label.row(y);
+    std::uint8_t* const origin = result.provenance.row(y);
+    for (int x = part.x;; ++x) {
+      x = find_equal(label, x, part.right(), surface_label::standing);
+      if (x >= part.right()) break;
+      hidden += origin[x] != provenance::inpainted ? 1 : 0;
+      origin[x] = provenance::inpainted;
+    }
+  }
+  result.report.missing_pixels += hidden;
+  result.report.valid_pixels -= hidden;
 }
 
 void Compositor::correct_colors(const Inputs& inputs, ColorMapsBySource maps,

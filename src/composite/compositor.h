@@ -32,6 +32,9 @@ class Compositor {
   void correct_colors(const Inputs& inputs, ColorMapsBySource maps, ColorCorrector& corrector,
                       DiminishedFrame& result) const;
 
+  /// Sorts what is behind a thing's side (surface_label::standing) into the pixels to inpaint.
+  static void hide_behind_sides(const Inputs& inputs, DiminishedFrame& result);
+
   /// Stage::inpainting. Fills the other pixels of the mask and marks those that cannot be filled as
   /// unknown. Fills them from unsmoothed pixels, which is 0.1 dB better than from smoothed ones.
   void inpaint(const Inputs& inputs, Inpainter& inpainter, DiminishedFrame& result);

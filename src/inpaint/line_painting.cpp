@@ -240,10 +240,12 @@ bool LinePainting::are_company(const Stroke& a, const Stroke& b) {
 }
 
 /// Gives each pixel of a part that is beside a stroke to the nearest one.
-void LinePainting::claim(const Mask& missing, const Rect& part) {
+void LinePainting::claim(const Mask& missing, const Surfaces& surfaces, const Rect& part) {
   for (std::size_t i = 0; i < strokes_.size(); ++i) {
     const float handicap = strokes_[i].end != nullptr ? 0.F : 1.F;
     for_each_beside(strokes_[i], half_width, part, missing, [&](int x, int y, float across) {
+      // A line runs on behind a thing, not over its side.
+      if (label_at(surfaces, x, y) == surface_label::standing) return;
       std::uint8_t& nearest = nearest_(x - objects_.x, y - objects_.y);
       Claim& claim = claims_(x - objects_.x, y - objects_.y);
       const float distance = std::abs(across) + handicap;
@@ -300,7 +302,7 @@ void LinePainting::paint(const std::vector<RimLine>& lines, const Holes& holes, 
   nearest_.resize(objects.width, objects.height, 0);
   claims_.resize(objects.width, objects.height);
   for_rows(objects.height, [&](Rows rows) {
-    claim(holes.missing,
+    claim(holes.missing, holes.surfaces,
           {objects.x, objects.y + rows.first, objects.width, rows.last - rows.first});
     for (int row = rows.first; row < rows.last; ++row) {
       Bgr* const pixels = picture.row(objects.y + row) + objects.x;

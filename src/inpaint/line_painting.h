@@ -47,7 +47,7 @@ class LinePainting {
   template <class Visit>
   static void for_each_beside(const Stroke& stroke, float width, const Rect& part,
                               const Mask& missing, const Visit& visit);
-  void claim(const Mask& missing, const Rect& part);
+  void claim(const Mask& missing, const Surfaces& surfaces, const Rect& part);
   void color(int column, int row, Bgr& pixel) const;
 
   struct Pair {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <utility>
 #include <vector>
 
 #include "core/channels.h"
@@ -29,7 +31,15 @@ constexpr Code foreground = surface_label::foreground & label_bits;
 constexpr Code outside = open | label_bits;
 /// Known, but not drawn: the plane is a guess. Together with a plane's label.
 constexpr Code guessed = 0x40;
-static_assert(surface_rules::labels <= guessed);
+/// Not drawn, but the side of a thing (surface_label::standing).
+constexpr Code standing = surface_rules::labels;
+static_assert(standing < guessed);
+
+/// The label of an open pixel.
+Code open_label(std::uint8_t label) {
+  if (label < surface_rules::labels) return label;
+  return label == surface_label::standing ? standing : surface_label::unknown;
+}
 }  // namespace state
 
 /// The bytes [first, last) that are `value`.
@@ -74,7 +84,7 @@ class SurfaceInpainting : public Inpainter {
 
  private:
   using Label = std::uint8_t;
-  static constexpr std::size_t label_count = surface_rules::labels;
+  static constexpr std::size_t label_count = state::standing + 1;
 
   /// Row y of the picture, to be indexed by the picture's x.
   state::Code* state_row(int y) { return states_.row(y - window_.y) - window_.x; }
@@ -100,9 +110,8 @@ class SurfaceInpainting : public Inpainter {
       if (y >= drawn.y && y < drawn.bottom()) {
         const std::uint8_t* const labels = surfaces.label.row(y);
         for (int x = drawn.x; x < drawn.right(); ++x) {
-          const bool is_filled_alone = labels[x] < label_count;
-          const state::Code label = labels[x] & state::label_bits;
-          states[x] |= states[x] == 0 || is_filled_alone ? label : surface_label::unknown;
+          const state::Code known = labels[x] & state::label_bits;
+          states[x] |= states[x] == 0 ? known : state::open_label(labels[x]);
         }
         if (marks_guesses) mark_guesses(holes.depth_m.row(y), drawn, states);
       }
@@ -134,16 +143,17 @@ class SurfaceInpainting : public Inpainter {
       regions_.begin();
       for (const OpenRun& run : open_runs_[k]) regions_.add(run.y, run.first, run.last);
       regions_.connect(Connectivity::four);
-      if (label != surface_label::unknown) count_rims(label);
+      const bool is_plane = label != surface_label::unknown && label != state::standing;
+      if (is_plane) count_rims(label);
       for (std::size_t i = 0; i < regions_.regions().size(); ++i) {
-        const bool is_kept = label == surface_label::unknown || is_on_plane(rims_[i]);
-        if (label != surface_label::unknown && is_kept && trusts_guesses(rims_[i])) {
+        const bool is_kept = !is_plane || is_on_plane(rims_[i]);
+        if (is_plane && is_kept && trusts_guesses(rims_[i])) {
           believe_guesses(regions_.regions()[i], label);
         }
         Rect& box = boxes_[is_kept ? k : std::size_t{surface_label::unknown}];
         box = join(box, regions_.regions()[i].box);
       }
-      if (label == surface_label::unknown) continue;
+      if (!is_plane) continue;
       for (const ConnectedRegions::Run& run : regions_.runs()) {
         if (is_on_plane(rims_[static_cast<std::size_t>(run.region)])) continue;
         state::Code* const row = states_.row(run.y);
@@ -258,6 +268,29 @@ class SurfaceInpainting : public Inpainter {
     }
   }
 
+  /// A thing's side takes its colours from the thing alone.
+  void find_sides(const Rect& box, const Holes& holes, Image<SmoothFilling::Kind>& kinds) const {
+    kinds.fill(SmoothFilling::absent);
+    const Image<float>& side_m = holes.surfaces.standing_depth_m;
+    const Rect measured = intersect(holes.surfaces.region, holes.depth_m.bounds());
+    for (int y = box.y; y < box.bottom(); ++y) {
+      for (int x = box.x;; ++x) {
+        x = find_equal(state_row(y), x, box.right(), state::open | state::standing);
+        if (x >= box.right()) break;
+        kinds(x - box.x + 1, y - box.y + 1) = SmoothFilling::open;
+        for (const auto& [column, row] :
+             {std::pair{x - 1, y}, {x + 1, y}, {x, y - 1}, {x, y + 1}}) {
+          if (state_row(row)[column] != state::foreground || !measured.contains(column, row)) {
+            continue;
+          }
+          if (std::abs(holes.depth_m(column, row) - side_m(x, y)) < surface_rules::thing_step_m) {
+            kinds(column - box.x + 1, row - box.y + 1) = SmoothFilling::known;
+          }
+        }
+      }
+    }
+  }
+
   /// Fills the open pixels with this label. Returns false if nothing is known beside them.
   bool fill(Label label, const Holes& holes, Image<Bgr>& picture) {
     const Rect& box = boxes_[label];
@@ -267,12 +300,16 @@ class SurfaceInpainting : public Inpainter {
     const state::Code open = state::open | label;
     const state::Code known_bits =
         label == surface_label::unknown ? state::open : static_cast<state::Code>(0xFF);
-    for_rows(kinds.height(), [&](Rows rows) {
-      for (int y = rows.first; y < rows.last; ++y) {
-        find_kinds(state_row(box.y - 1 + y) + box.x - 1, kinds.width(), label, open, known_bits,
-                   kinds.row(y));
-      }
-    });
+    if (label == state::standing) {
+      find_sides(box, holes, kinds);
+    } else {
+      for_rows(kinds.height(), [&](Rows rows) {
+        for (int y = rows.first; y < rows.last; ++y) {
+          find_kinds(state_row(box.y - 1 + y) + box.x - 1, kinds.width(), label, open, known_bits,
+                     kinds.row(y));
+        }
+      });
+    }
     if (!filling.connect([&](int x, int y) { return color_of(x, y, holes, picture); })) {
       return false;
     }

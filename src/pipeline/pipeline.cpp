@@ -29,6 +29,7 @@
 #include "scene/color_maps.h"
 #include "scene/scene_fit.h"
 #include "scene/scene_sampler.h"
+#include "scene/standing_things.h"
 
 namespace diminish {
 namespace {
@@ -91,6 +92,7 @@ struct Pipeline::Implementation {
         scale(rig, scene),
         agreement(rig, scene),
         background(rig.color),
+        standing_things(rig),
         backend(rig),
         memory(rig) {}
 
@@ -120,6 +122,9 @@ struct Pipeline::Implementation {
   Background::Wanted wanted_background() const {
     const bool shadows = options.lift_shadows || options.remove_shadows;
     return {shadows || methods.inpainting.uses_surfaces, shadows};
+  }
+  bool completes_sides() const {
+    return options.complete_sides && methods.inpainting.uses_surfaces && background.planes();
   }
   void choose_region() {
     region.set(surroundings());
@@ -180,6 +185,7 @@ struct Pipeline::Implementation {
   MarkerAgreement agreement;
   std::vector<std::optional<MarkerShift>> shifts;
   Background background;
+  StandingThings standing_things;
   ColorMaps color_maps;
   int smoothing = 0;   ///< its share
   TiledRegion region;  ///< to be drawn
@@ -399,7 +405,16 @@ void Pipeline::Implementation::process(const FrameSet& given, DiminishedFrame& r
   });
   stage(Stage::colors,
         [&] { compositor.correct_colors(inputs, color_maps.by_source(), *corrector, result); });
-  stage(Stage::inpainting, [&] { compositor.inpaint(inputs, *inpainter, result); });
+  stage(Stage::inpainting, [&] {
+    result.surfaces.standing_depth_m.resize(0, 0);
+    if (completes_sides()) {
+      standing_things.find(
+          {frame, report.poses, masks, objects, result.reconstruction, *background.planes()},
+          result.surfaces);
+      Compositor::hide_behind_sides(inputs, result);
+    }
+    compositor.inpaint(inputs, *inpainter, result);
+  });
   stage(Stage::finish, [&] { compositor.finish(inputs, *mode, result); });
 
   for (const std::string* message : {&occluders.message(), &backend.message()}) {

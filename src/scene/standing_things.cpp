@@ -1,0 +1,297 @@
+#include "scene/standing_things.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "core/conditions.h"
+#include "core/runs.h"
+#include "depth/depth_noise.h"
+#include "diminish/diminished_frame.h"
+
+namespace diminish {
+namespace {
+
+/// A plane on which things stand faces at least this far up in the picture (cosine).
+constexpr float least_up = 0.35F;
+constexpr float lowest_top_m = 0.02F;
+/// Depths of one thing, from pixel to pixel, differ by less.
+constexpr float step_m = 0.05F;
+/// A top rises less steeply than this.
+constexpr float top_slope = 0.3F;
+/// Pixels to each side at which a top's slope is measured: far enough for the noise in depth.
+constexpr int slope_px[] = {-8, -6, -5, -4, 4, 5, 6, 8};
+/// Places below a top's edge that are looked at.
+constexpr int places = 9;
+constexpr int most_empty = 1;
+constexpr int fewest_hidden = 5;
+/// What hides a place below a top is the same thing if it is no further away than this.
+constexpr float deepest_m = 0.5F;
+/// A camera looks through a place if it measures something this far behind it.
+constexpr DepthNoise behind{0.03F, 0.01F};
+constexpr int widest_slit_px = 24;
+constexpr float nearest_m = 0.1F;
+
+const BackgroundPlane* find_support(const std::vector<BackgroundPlane>& planes) {
+  const BackgroundPlane* best = nullptr;
+  for (const BackgroundPlane& plane : planes) {
+    const float up = -plane.normal.y();
+    if (up >= least_up && (best == nullptr || up > -best->normal.y())) best = &plane;
+  }
+  return best;
+}
+
+}  // namespace
+
+/// What a frame looks like.
+struct StandingThings::View {
+  const Input& input;
+  const BackgroundPlane& plane;
+  const Image<std::uint8_t>& label;
+  Rect part;  ///< of the mask's box, what was drawn
+
+  float depth_m(int x, int y) const { return input.reconstruction.depth_m(x, y); }
+  /// Whether something at this depth hides what was drawn at a pixel.
+  bool hides(int x, int y, float z_m) const {
+    if (input.masks.color(x, y) == 0) return false;
+    const float drawn = depth_m(x, y);
+    if (drawn == 0) return true;
+    const std::uint8_t source = input.reconstruction.source(x, y);
+    return drawn > z_m + step_m && source != provenance::witnessed &&
+           source != provenance::remembered;
+  }
+};
+
+StandingThings::StandingThings(const Rig& rig) : color_(Lens(rig.color)), rays_(rig.color) {
+  for (const RgbdCamera& camera : rig.rgbd) {
+    cameras_.push_back({Projection(Lens(camera.depth)),
+                        static_cast<float>(camera.depth_unit_m),
+                        {},
+                        Eigen::Vector3f::Zero()});
+  }
+}
+
+void StandingThings::place_cameras(const Input& input) {
+  for (std::size_t k = 0; k < cameras_.size(); ++k) {
+    Camera& camera = cameras_[k];
+    camera.depth_from_color.reset();
+    if (!input.poses.color_from_depth[k] || !input.frame.rgbd[k].available()) continue;
+    camera.depth_from_color.emplace(input.poses.color_from_depth[k]->inverse());
+    camera.centre = input.poses.color_from_depth[k]->translation.cast<float>();
+  }
+}
+
+/// What an RGB-D camera says of a place below a top of this height.
+StandingThings::Place StandingThings::look_at(const View& view, const Camera& camera,
+                                              std::size_t index, const Eigen::Vector3f& point_m,
+                                              float top_height_m) const {
+  const auto coordinate = [&](int axis) {
+    return camera.depth_from_color->apply(axis, point_m.x(), point_m.y(), point_m.z());
+  };
+  const float z = coordinate(2);
+  float u = 0;
+  float v = 0;
+  if (!(z > nearest_m) || !camera.depth.distort(coordinate(0) / z, coordinate(1) / z, u, v)) {
+    return Place::unknown;
+  }
+  const ImageView<std::uint16_t> depth = view.input.frame.rgbd[index].depth;
+  const int x = static_cast<int>(std::lrint(u));
+  const int y = static_cast<int>(std::lrint(v));
+  if (!depth.bounds().contains(x, y)) return Place::unknown;
+  const Mask& objects = view.input.masks.rgbd_depth[index];
+  if (objects.bounds().contains(x, y) && objects(x, y) != 0) return Place::unknown;
+  const float measured = camera.unit_m * static_cast<float>(depth(x, y));
+  if (measured == 0) return Place::unknown;
+  if (measured > z + behind.at(z)) return Place::empty;
+  const Eigen::Vector3f hider = camera.centre + measured / z * (point_m - camera.centre);
+  const bool is_side = view.plane.height_m(hider) < top_height_m - lowest_top_m &&
+                       (point_m - hider).norm() < deepest_m;
+  return is_side ? Place::hidden_by_side : Place::unknown;
+}
+
+/// Whether what is below a top's edge belongs to the same thing.
+bool StandingThings::is_solid(const View& view, const Eigen::Vector3f& top_m,
+                              float height_m) const {
+  int empty = 0;
+  int hidden = 0;
+  for (int i = 1; i <= places; ++i) {
+    const float below_m = static_cast<float>(i) / (places + 1) * height_m;
+    const Eigen::Vector3f point = top_m - below_m * view.plane.normal;
+    bool is_hidden = false;
+    for (std::size_t k = 0; k < cameras_.size(); ++k) {
+      if (!cameras_[k].depth_from_color) continue;
+      const Place place = look_at(view, cameras_[k], k, point, height_m);
+      is_hidden |= place == Place::hidden_by_side;
+      if (place == Place::empty && ++empty > most_empty) return false;
+    }
+    hidden += is_hidden ? 1 : 0;
+  }
+  return hidden >= fewest_hidden;
+}
+
+/// Whether the thing is level around a pixel of its edge: a box or a cup is, a ball is not.
+bool StandingThings::is_top(const View& view, int x, int y) const {
+  const auto point = [&](int column, int row) -> Eigen::Vector3f {
+    const Eigen::Vector2f ray = rays_.segment(column, row, column + 1).first;
+    return view.depth_m(column, row) * Eigen::Vector3f(ray.x(), ray.y(), 1);
+  };
+  const Eigen::Vector3f here = point(x, y);
+  const auto is_level = [&](int column, int row) {
+    if (!view.part.contains(column, row)) return false;
+    if (view.label(column, row) != surface_label::foreground) return false;
+    const Eigen::Vector3f between = point(column, row) - here;
+    return std::abs(between.z()) < step_m &&
+           std::abs(view.plane.normal.dot(between)) < top_slope * between.norm();
+  };
+  const auto any = [&](const auto& is_level_at) {
+    return std::any_of(std::begin(slope_px), std::end(slope_px), is_level_at);
+  };
+  return any([&](int rows) { return is_level(x, y + rows); }) &&
+         any([&](int columns) { return is_level(x + columns, y); });
+}
+
+/// Labels what is below a pixel of a top's edge.
+void StandingThings::lower(const View& view, int x, int y, Surfaces& surfaces) const {
+  const Eigen::Vector2f ray = rays_.segment(x, y, x + 1).first;
+  const Eigen::Vector3f top = view.depth_m(x, y) * Eigen::Vector3f(ray.x(), ray.y(), 1);
+  const float height_m = view.plane.height_m(top);
+  if (height_m < lowest_top_m) return;
+  const Eigen::Vector3f foot = top - height_m * view.plane.normal;
+  float u = 0;
+  float v = 0;
+  if (!(foot.z() > nearest_m) || !color_.distort(foot.x() / foot.z(), foot.y() / foot.z(), u, v)) {
+    return;
+  }
+  const Eigen::Vector2f start(static_cast<float>(x), static_cast<float>(y));
+  const Eigen::Vector2f way = Eigen::Vector2f(u, v) - start;
+  const auto steps = static_cast<int>(std::ceil(way.lpNorm<Eigen::Infinity>()));
+  bool is_checked = false;
+  for (int i = 1; i <= steps; ++i) {
+    const float share = static_cast<float>(i) / static_cast<float>(steps);
+    const Eigen::Vector2f at = start + share * way;
+    const int column = static_cast<int>(std::lrint(at.x()));
+    const int row = static_cast<int>(std::lrint(at.y()));
+    if (!view.part.contains(column, row)) return;
+    // 1 / z is linear along a line in the picture.
+    const float z = 1 / (1 / top.z() + share * (1 / foot.z() - 1 / top.z()));
+    if (!view.hides(column, row, z)) continue;
+    if (!is_checked && !is_solid(view, top, height_m)) return;
+    is_checked = true;
+    float& standing = surfaces.standing_depth_m(column, row);
+    if (standing == 0 || z < standing) standing = z;
+    surfaces.label(column, row) = surface_label::standing;
+  }
+}
+
+/// Marks the pixels of things beside or above which is something further away. Not those at the
+/// back: what is below them is hidden by what is below the front.
+void StandingThings::find_edges(const View& view, int y, int begin, int end, std::uint8_t* edges) {
+  const std::uint8_t* const label = view.label.row(y);
+  const float* const own = view.input.reconstruction.depth_m.row(y);
+  const float* const below = view.input.reconstruction.depth_m.row(y + 1);
+  for (int x = begin; x < end; ++x) {
+    const float furthest = own[x] + step_m;
+    const bool is_beside = any_of(own[x - 1] == 0, own[x - 1] > furthest, own[x + 1] == 0,
+                                  own[x + 1] > furthest, below[x] == 0, below[x] > furthest);
+    edges[x] = all_of(label[x] == surface_label::foreground, is_beside) ? 1 : 0;
+  }
+}
+
+/// What lies in a row between two such pixels, or between one and the thing itself, is part of the
+/// thing, too: things have no slits.
+void StandingThings::close_slits(const View& view, Surfaces& surfaces) {
+  for (int y = view.part.y; y < view.part.bottom(); ++y) {
+    std::uint8_t* const label = surfaces.label.row(y);
+    int begin = find_equal(label, view.part.x, view.part.right(), surface_label::standing);
+    if (begin == view.part.right()) continue;
+    begin = std::max(view.part.x, begin - widest_slit_px);
+    int last = view.part.right();  ///< the last pixel of a thing; none yet
+    float last_z = 0;
+    for (int x = begin; x < view.part.right(); ++x) {
+      const bool stands = label[x] == surface_label::standing;
+      if (!stands && label[x] != surface_label::foreground) continue;
+      const float z = stands ? surfaces.standing_depth_m(x, y) : view.depth_m(x, y);
+      const bool is_slit = x - last > 1 && x - last <= widest_slit_px &&
+                           (stands || label[last] == surface_label::standing) &&
+                           std::abs(z - last_z) < step_m;
+      bool is_free = is_slit;
+      for (int k = last + 1; is_free && k < x; ++k) {
+        is_free = view.hides(k, y, std::max(z, last_z));
+      }
+      for (int k = last + 1; is_free && k < x; ++k) {
+        label[k] = surface_label::standing;
+        surfaces.standing_depth_m(k, y) = std::max(z, last_z);
+      }
+      last = x;
+      last_z = z;
+    }
+  }
+}
+
+/// What touches nothing of its thing would have no colour: the old labels come back.
+void StandingThings::drop_loose(const View& view, Surfaces& surfaces) {
+  regions_.begin();
+  const int end = view.part.right();
+  for (int y = view.part.y; y < view.part.bottom(); ++y) {
+    const std::uint8_t* const label = surfaces.label.row(y);
+    for (int last = view.part.x; last < end;) {
+      const int first = find_equal(label, last, end, surface_label::standing);
+      if (first == end) break;
+      last = find_other(label, first, end, surface_label::standing);
+      regions_.add(y, first, last);
+    }
+  }
+  regions_.connect(Connectivity::four);
+  const auto touches = [&](int x, int y, float z_m) {
+    return view.part.contains(x, y) && surfaces.label(x, y) == surface_label::foreground &&
+           std::abs(view.depth_m(x, y) - z_m) < step_m;
+  };
+  is_held_.assign(regions_.regions().size(), 0);
+  for (const ConnectedRegions::Run& run : regions_.runs()) {
+    bool is_held = false;
+    for (int x = run.first; x < run.last && !is_held; ++x) {
+      const float z = surfaces.standing_depth_m(x, run.y);
+      is_held = touches(x - 1, run.y, z) || touches(x + 1, run.y, z) || touches(x, run.y - 1, z) ||
+                touches(x, run.y + 1, z);
+    }
+    is_held_[static_cast<std::size_t>(run.region)] |= is_held ? 1 : 0;
+  }
+  for (const ConnectedRegions::Run& run : regions_.runs()) {
+    if (is_held_[static_cast<std::size_t>(run.region)] != 0) continue;
+    std::copy(before_.row(run.y) + run.first, before_.row(run.y) + run.last,
+              surfaces.label.row(run.y) + run.first);
+  }
+}
+
+void StandingThings::find(const Input& input, Surfaces& surfaces) {
+  surfaces.standing_depth_m.resize(0, 0);
+  const BackgroundPlane* const plane = find_support(input.planes);
+  const Rect drawn = intersect(input.reconstruction.region, surfaces.label.bounds());
+  const Rect part = intersect(drawn, input.objects);
+  if (plane == nullptr || part.empty()) return;
+  const View view{input, *plane, surfaces.label, part};
+  place_cameras(input);
+  surfaces.standing_depth_m.resize(surfaces.label.width(), surfaces.label.height());
+  surfaces.standing_depth_m.fill(view.part, 0);
+  before_.resize(surfaces.label.width(), surfaces.label.height());
+  for (int row = part.y; row < part.bottom(); ++row) {
+    std::copy_n(surfaces.label.row(row) + part.x, part.width, before_.row(row) + part.x);
+  }
+  const Rect inner = intersect(view.part, grow(drawn, -1));
+  edges_.resize(static_cast<std::size_t>(surfaces.label.width()));
+  for (int y = inner.y; y < inner.bottom(); ++y) {
+    find_edges(view, y, inner.x, inner.right(), edges_.data());
+    for (int x = inner.x;; ++x) {
+      x = find_equal(edges_.data(), x, inner.right(), 1);
+      if (x >= inner.right()) break;
+      const float z = view.depth_m(x, y);
+      const bool hides =
+          view.hides(x - 1, y, z) || view.hides(x + 1, y, z) || view.hides(x, y + 1, z);
+      if (hides && is_top(view, x, y)) lower(view, x, y, surfaces);
+    }
+  }
+  close_slits(view, surfaces);
+  drop_loose(view, surfaces);
+}
+
+}  // namespace diminish
