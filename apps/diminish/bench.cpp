@@ -456,10 +456,11 @@ void add_bench(CLI::App& program, int& exit_code) {
   CLI::App* sub = program.add_subcommand(
       "bench", "Measures the pipeline's speed on a recording, with all frames decoded first");
   sub->add_option("recording", command->recording, "The recording's folder (rig.yaml, scene.yaml)")
+      ->type_name("FOLDER")
       ->required();
   sub->add_option("--threads", command->threads,
                   "Frames to process at a time when measuring throughput")
-      ->capture_default_str()
+      ->default_str("the CPU's")
       ->check(CLI::Range(1, 1024))
       ->type_name("N");
   sub->add_option("--busy", command->busy, "Threads that keep a core busy each beside it")

@@ -52,6 +52,7 @@ void add_calibrate_factory(CLI::App& calibrate, int& exit_code) {
       ->capture_default_str();
   sub->add_option("--out", command->out,
                   "The rig.yaml to write this camera's blocks into; the rest stays as it is")
+      ->type_name("FILE")
       ->required();
   sub->callback([command, &exit_code] { exit_code = command->execute(); });
 }

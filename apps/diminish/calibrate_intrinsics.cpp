@@ -148,13 +148,15 @@ void add_calibrate_intrinsics(CLI::App& calibrate, int& exit_code) {
   CLI::App* sub = calibrate.add_subcommand(
       "intrinsics",
       "Calibrates a camera's focal lengths, principal point and lens from images of a board");
-  sub->add_option("images", command->images, "Images of the board, or folders of them");
+  sub->add_option("images", command->images, "Images of the board, or folders of them")
+      ->type_name("FILE");
   sub->add_option("--board", command->board,
                   "The printed board: charuco:COLUMNSxROWS:SQUARE_MM:MARKER_MM[:DICTIONARY] or "
                   "checkerboard:COLUMNSxROWS:SQUARE_MM")
       ->required();
   sub->add_option("--recording", command->recording,
-                  "Instead of images: a recording of the board, calibrated or not");
+                  "Instead of images: a recording of the board, calibrated or not")
+      ->type_name("FOLDER");
   sub->add_option(
          "--live", command->live,
          "Instead of images: a live camera (docs/live.md); ends when there are enough views")
@@ -177,6 +179,7 @@ void add_calibrate_intrinsics(CLI::App& calibrate, int& exit_code) {
       ->type_name("N");
   sub->add_option("--out", command->out,
                   "The rig.yaml to write this camera's block into; the rest stays as it is")
+      ->type_name("FILE")
       ->required();
   sub->add_option("--plot", command->plot,
                   "Write a picture of the corners, their errors and the coverage")

@@ -171,9 +171,11 @@ void add_calibrate_rig(CLI::App& calibrate, int& exit_code) {
          "recording", command->setup.folder,
          "A recording of the scene's markers, or of a board, in many places; with --repair "
          "of the scene as it is, or a folder with rig.yaml and scene.yaml")
+      ->type_name("FOLDER")
       ->required();
   sub->add_option("--out", command->out,
                   "The rig.yaml to write; if missing, it starts as a copy of the recording's")
+      ->type_name("FILE")
       ->required();
   sub->add_option("--board", command->board,
                   "Look for this board instead of the markers: charuco:... or checkerboard:...");

@@ -48,6 +48,7 @@ void add_check(CLI::App& program, int& exit_code) {
       program.add_subcommand("check", "Checks a set-up and says in plain words what is wrong");
   sub->add_option("recording", command->setup.folder,
                   "A recording; or, with live cameras, a folder with rig.yaml and scene.yaml")
+      ->type_name("FOLDER")
       ->required();
   command->setup.add_camera_flags(*sub);
   sub->add_option("--seconds", command->seconds, "How long to watch live cameras")

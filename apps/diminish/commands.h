@@ -12,6 +12,7 @@ void add_calibrate(CLI::App& program, int& exit_code);
 void add_check(CLI::App& program, int& exit_code);
 void add_compare(CLI::App& program, int& exit_code);
 void add_devices(CLI::App& program, int& exit_code);
+void add_help(CLI::App& program, int& exit_code);
 void add_init(CLI::App& program, int& exit_code);
 void add_latency_test(CLI::App& program, int& exit_code);
 void add_live(CLI::App& program, int& exit_code);

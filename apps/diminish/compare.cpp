@@ -16,11 +16,15 @@ void add_compare(CLI::App& program, int& exit_code) {
   auto command = std::make_shared<Command>();
   CLI::App* sub = program.add_subcommand(
       "compare", "Makes one HTML page that shows two runs side by side, against the truth");
-  sub->add_option("first", command->first, "A folder that `diminish run --out` wrote")->required();
-  sub->add_option("second", command->second, "Another, of the same recording")->required();
+  sub->add_option("first", command->first, "A folder that `diminish run --out` wrote")
+      ->type_name("FOLDER")
+      ->required();
+  sub->add_option("second", command->second, "Another, of the same recording")
+      ->type_name("FOLDER")
+      ->required();
   sub->add_option("--against", command->recording, "The recording's folder (with truth/)")
       ->required()
-      ->type_name("RECORDING");
+      ->type_name("FOLDER");
   sub->add_option("--out", command->file, "Where to write the page; default: SECOND/compare.html")
       ->type_name("FILE");
   sub->add_option("--frames", command->frames, "How many of the frames that differ most are shown")

@@ -153,7 +153,9 @@ void add_init(CLI::App& program, int& exit_code) {
   auto command = std::make_shared<InitCommand>();
   CLI::App* sub = program.add_subcommand(
       "init", "Begins a set-up: looks at the cameras and writes rig.yaml and scene.yaml");
-  sub->add_option("folder", command->folder, "The set-up's folder; created if missing")->required();
+  sub->add_option("folder", command->folder, "The set-up's folder; created if missing")
+      ->type_name("FOLDER")
+      ->required();
   sub->add_option("--color", command->color,
                   "The camera of the user's view; without it the connected devices are searched")
       ->type_name("CAMERA");

@@ -29,6 +29,7 @@ void LiveSetup::add_flags(CLI::App& command) {
       .add_option("setup", folder,
                   "Folder with rig.yaml and scene.yaml; a recording is replayed in a loop if no "
                   "cameras are given")
+      ->type_name("FOLDER")
       ->required();
   add_camera_flags(command);
   command

@@ -59,7 +59,9 @@ void add_markers(CLI::App& program, int& exit_code) {
   auto command = std::make_shared<MarkersCommand>();
   CLI::App* sub =
       program.add_subcommand("markers", "Writes a sheet of markers, or a board, to print");
-  sub->add_option("--out", command->out, "The file: .pdf, .svg or .png")->required();
+  sub->add_option("--out", command->out, "The file: .pdf, .svg or .png")
+      ->type_name("FILE")
+      ->required();
   auto* ids = sub->add_option("--ids", command->ids, "The markers' ids, such as 0,3 or 0-5")
                   ->delimiter(',')
                   ->capture_default_str();
@@ -73,7 +75,9 @@ void add_markers(CLI::App& program, int& exit_code) {
                                 "White border around a marker, in marker cells")
                     ->capture_default_str()
                     ->check(CLI::Range(0.5, 10.0));
-  sub->add_option("--page", command->page, "Paper: A4, A3 or letter")->capture_default_str();
+  sub->add_option("--page", command->page, "Paper")
+      ->capture_default_str()
+      ->type_name("{A4,A3,letter}");
   sub->add_option("--board", command->board,
                   "A calibration board instead of markers: "
                   "charuco:COLUMNSxROWS:SQUARE_MM:MARKER_MM[:DICTIONARY] (squares) or "

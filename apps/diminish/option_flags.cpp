@@ -1,10 +1,10 @@
 #include "option_flags.h"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <string>
 #include <type_traits>
-
-#include "core/text.h"
 
 namespace diminish {
 namespace {
@@ -29,7 +29,8 @@ void add_option_flags(CLI::App& command, Options& options) {
                        ->group("Options of the pipeline");
       if constexpr (std::is_same_v<Value, std::string>) {
         const std::vector<std::string> methods = method_names(info);
-        flag->type_name(methods.empty() ? info.unit : join(methods));
+        flag->type_name(methods.empty() ? info.unit
+                                        : fmt::format("{{{}}}", fmt::join(methods, ",")));
       } else {
         flag->type_name(info.unit);
       }

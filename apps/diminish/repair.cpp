@@ -29,7 +29,7 @@ void add_repair(CLI::App& program, int& exit_code) {
   auto folder = std::make_shared<std::filesystem::path>();
   CLI::App* sub = program.add_subcommand(
       "repair", "Makes a recording whole that was being written when the machine stopped");
-  sub->add_option("recording", *folder, "The recording's folder")->required();
+  sub->add_option("recording", *folder, "The recording's folder")->type_name("FOLDER")->required();
   sub->callback([folder, &exit_code] { exit_code = repair(*folder); });
 }
 

@@ -17,8 +17,11 @@ void add_report(CLI::App& program, int& exit_code) {
   CLI::App* sub = program.add_subcommand(
       "report", "Makes one HTML page about a run: pictures, plots, times, figures");
   sub->add_option("recording", command->recording, "The recording's folder (with truth/)")
+      ->type_name("FOLDER")
       ->required();
-  sub->add_option("run", command->run, "The folder that `diminish run --out` wrote")->required();
+  sub->add_option("run", command->run, "The folder that `diminish run --out` wrote")
+      ->type_name("FOLDER")
+      ->required();
   sub->add_option("--out", command->file, "Where to write the page; default: RUN/report.html")
       ->type_name("FILE");
   sub->callback([command, &exit_code] {

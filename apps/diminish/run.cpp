@@ -74,14 +74,17 @@ void add_run(CLI::App& program, int& exit_code) {
   CLI::App* sub = program.add_subcommand(
       "run", "Removes the objects of a recording and writes what the colour camera would see");
   sub->add_option("recording", command->recording, "The recording's folder (rig.yaml, scene.yaml)")
+      ->type_name("FOLDER")
       ->required();
-  sub->add_option("--out", command->out, "Folder for the results; created if missing")->required();
+  sub->add_option("--out", command->out, "Folder for the results; created if missing")
+      ->type_name("FOLDER")
+      ->required();
   sub->add_flag("--force", command->force, "Replace existing results in --out");
   sub->add_flag("--preview", command->preview,
                 "Write only pictures that show input and result side by side");
   sub->add_option("--threads", command->threads,
                   "Frames to process at a time; does not change the results")
-      ->capture_default_str()
+      ->default_str("the CPU's")
       ->check(CLI::Range(1, 1024))
       ->type_name("N");
   add_option_flags(*sub, command->options);

@@ -101,8 +101,10 @@ void add_scan(CLI::App& program, int& exit_code) {
   sub->add_option("recording", command->setup.folder,
                   "The recording's folder, or with live cameras one with rig.yaml and scene.yaml; "
                   "objects to remove may be in view")
+      ->type_name("FOLDER")
       ->required();
   sub->add_option("--out", command->out, "Folder for the scan: itself a short recording")
+      ->type_name("FOLDER")
       ->required();
   command->setup.add_camera_flags(*sub);
   sub->add_option("--seconds", command->seconds,

@@ -32,8 +32,11 @@ void add_score(CLI::App& program, int& exit_code) {
   CLI::App* sub =
       program.add_subcommand("score", "Compares a run's results with the recording's truth");
   sub->add_option("recording", command->recording, "The recording's folder (with truth/)")
+      ->type_name("FOLDER")
       ->required();
-  sub->add_option("run", command->run, "The folder that `diminish run --out` wrote")->required();
+  sub->add_option("run", command->run, "The folder that `diminish run --out` wrote")
+      ->type_name("FOLDER")
+      ->required();
   sub->add_option("--json", command->json, "Where to write the figures; default: RUN/score.json")
       ->type_name("FILE");
   sub->add_flag("--pictures", command->pictures,

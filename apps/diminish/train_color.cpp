@@ -52,7 +52,9 @@ void add_train_color(CLI::App& program, int& exit_code) {
   CLI::App* command = program.add_subcommand(
       "train-color", "Learns the colours of a recording's color_blob objects from training images");
   auto folder = std::make_shared<std::string>();
-  command->add_option("recording", *folder, "The recording's folder")->required();
+  command->add_option("recording", *folder, "The recording's folder")
+      ->type_name("FOLDER")
+      ->required();
   command->callback([folder, &exit_code] {
     train_all(*folder);
     exit_code = 0;
