@@ -1,6 +1,6 @@
 # The two commands to know: `make demo` and `make test`. Everything they need, they install.
 
-.PHONY: help demo test test-page build deps python bench lint format sanitize tsan fuzz soak sbom reproducible clean bench-gl
+.PHONY: help demo test test-page build deps python wheel bench lint format sanitize tsan fuzz soak sbom reproducible clean bench-gl
 
 help:
 	@echo "make demo      remove the objects of the bundled recordings, print the figures"
@@ -8,6 +8,7 @@ help:
 	@echo "make test-page test the web page in a browser"
 	@echo "make build     build the program: build/release/diminish"
 	@echo "make python    build the Python module: build/release/python"
+	@echo "make wheel     pack it for pip: dist/diminish-....whl"
 	@echo "make bench     measure each stage beside its peer"
 	@echo "make bench-gl  measure what runs on the GPU"
 	@echo "make lint      clang-format and clang-tidy"
@@ -37,6 +38,9 @@ test-page: build
 
 python: deps
 	scripts/build "" diminish_python
+
+wheel: python
+	/usr/bin/python3 python/build_backend.py build/release dist
 
 bench: deps
 	scripts/bench

@@ -12,6 +12,8 @@ Mask = NDArray[np.uint8]
 """height x width"""
 Depth = NDArray[np.uint16]
 """height x width, in the rig's unit; 0: no measurement"""
+Transform = NDArray[np.float64]
+"""3 x 4 or 4 x 4, metres; a_from_b takes coordinates in frame b to frame a"""
 
 __version__: str
 _Method = TypeVar("_Method", bound=Callable[..., Any])
@@ -26,6 +28,7 @@ class Options:
 
 def detector(name: str) -> Callable[[_Method], _Method]: ...
 def inpainter(name: str) -> Callable[[_Method], _Method]: ...
+def pose_source(name: str) -> Callable[[_Method], _Method]: ...
 def methods(option: str) -> list[str]: ...
 
 class Frame:
@@ -38,6 +41,7 @@ class Frame:
     input: Picture
     rgbd: list[tuple[Picture, Depth] | None]
     report: dict[str, Any]
+    def _repr_png_(self) -> bytes: ...
 
 class Frames(Iterator[Frame]):
     def __next__(self) -> Frame: ...
@@ -49,6 +53,7 @@ class Pipeline:
         folder: str | PathLike[str],
         options: Options | None = None,
         detector: str = "",
+        pose_source: str = "",
         **single_options: Any,
     ) -> None: ...
     def __iter__(self) -> Frames: ...
@@ -69,6 +74,7 @@ class Live(Iterator[Frame]):
         options: Options | None = None,
         detector: str = "",
         budget_ms: float = 0.0,
+        pose_source: str = "",
         **single_options: Any,
     ) -> None: ...
     def __next__(self) -> Frame: ...

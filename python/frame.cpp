@@ -42,10 +42,15 @@ py::bytes as_png(const Frame& frame) {
 
 }  // namespace
 
-Recording load_setup(const std::filesystem::path& folder, const std::string& detector) {
+Recording load_setup(const std::filesystem::path& folder, const std::string& detector,
+                     const std::string& pose_source) {
   Recording setup = load_recording(folder);
   if (!detector.empty()) {
     setup.scene.occluders = objects_of_detector(detector, "detector");
+  }
+  if (!pose_source.empty()) {
+    setup.rig.pose_source = pose_source;
+    setup.rig.pose = {};
   }
   return setup;
 }

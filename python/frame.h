@@ -21,8 +21,9 @@ using SharedFrame = std::shared_ptr<Frame>;
 void add_frame(py::module_& module);
 
 /// A folder with rig.yaml and scene.yaml. detector: replaces the scene's objects by what it finds;
-/// empty: does not. Throws Error.
-Recording load_setup(const std::filesystem::path& folder, const std::string& detector);
+/// pose_source: replaces the rig's; empty: does not. Throws Error.
+Recording load_setup(const std::filesystem::path& folder, const std::string& detector,
+                     const std::string& pose_source);
 
 /// `options`, or the defaults for None, with some of them set.
 Options chosen_options(const py::object& options, const py::kwargs& values);

@@ -27,8 +27,9 @@ struct EndWithoutPython {
 class Live {
  public:
   Live(const std::filesystem::path& folder, const std::map<std::string, std::string>& cameras,
-       const Options& options, const std::string& detector, double budget_ms) {
-    const Recording setup = load_setup(folder, detector);
+       const Options& options, const std::string& detector, const std::string& pose_source,
+       double budget_ms) {
+    const Recording setup = load_setup(folder, detector, pose_source);
     LiveOptions live_options;
     live_options.budget_ms = budget_ms;
     const std::vector<LiveCamera> all = cameras_of(setup, cameras);
@@ -124,12 +125,14 @@ void add_live(py::module_& module) {
       "of Pipeline.")
       .def(py::init([](const std::filesystem::path& folder,
                        const std::map<std::string, std::string>& cameras, const py::object& options,
-                       const std::string& detector, double budget_ms, const py::kwargs& values) {
+                       const std::string& detector, double budget_ms,
+                       const std::string& pose_source, const py::kwargs& values) {
              return std::make_unique<Live>(folder, cameras, chosen_options(options, values),
-                                           detector, budget_ms);
+                                           detector, pose_source, budget_ms);
            }),
            py::arg("folder"), py::arg("cameras") = std::map<std::string, std::string>{},
-           py::arg("options") = py::none(), py::arg("detector") = "", py::arg("budget_ms") = 0.0)
+           py::arg("options") = py::none(), py::arg("detector") = "", py::arg("budget_ms") = 0.0,
+           py::arg("pose_source") = "")
       .def("__iter__", [](py::object self) { return self; })
       .def("__next__", &Live::next)
       .def_property_readonly("status", &Live::status, "Rates, latency, cameras, what is wrong")

@@ -1,13 +1,17 @@
 #include <pybind11/stl.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "bindings.h"
 #include "diminish/inpainter.h"
 #include "diminish/occluder_detector.h"
+#include "diminish/pose_source.h"
 
 namespace diminish::python {
 namespace {
@@ -37,6 +41,19 @@ py::array copy_of(const ImageView<Pixel>& image) {
   const auto owner = std::make_shared<Image<Pixel>>();
   copy(image, *owner);
   return view_of(ImageView<Pixel>(*owner), owner).attr("copy")().template cast<py::array>();
+}
+
+/// (color, depth) of each RGB-D camera, None where there are no images.
+py::list copies_of(const std::vector<RgbdFrame>& cameras) {
+  py::list list;
+  for (const RgbdFrame& images : cameras) {
+    if (images.available()) {
+      list.append(py::make_tuple(copy_of(images.color.view()), copy_of(images.depth.view())));
+    } else {
+      list.append(py::none());
+    }
+  }
+  return list;
 }
 
 bool add_mask(const py::object& given, const std::string& name, Mask& mask) {
@@ -69,15 +86,8 @@ class PythonDetector : public OccluderDetector {
     OccluderReport report;
     report.name = name_;
     report.in_rgbd.assign(observation.frame.rgbd.size(), false);
-    py::list rgbd;
-    for (const RgbdFrame& images : observation.frame.rgbd) {
-      if (images.available()) {
-        rgbd.append(py::make_tuple(copy_of(images.color.view()), copy_of(images.depth.view())));
-      } else {
-        rgbd.append(py::none());
-      }
-    }
-    const py::object found = (*callable_)(copy_of(observation.frame.color.view()), rgbd);
+    const py::object found =
+        (*callable_)(copy_of(observation.frame.color.view()), copies_of(observation.frame.rgbd));
     py::object in_color = found;
     if (py::isinstance<py::tuple>(found)) {
       const auto both = found.cast<std::pair<py::object, py::list>>();
@@ -120,6 +130,70 @@ class PythonInpainter : public Inpainter {
   Callable callable_;
 };
 
+using Matrix = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+/// name: of what was given, for messages.
+RigidTransform as_rigid_transform(const Matrix& array, const std::string& name) {
+  if (array.ndim() != 2 || array.shape(0) < 3 || array.shape(0) > 4 || array.shape(1) != 4) {
+    throw py::value_error(name + ": expected a matrix of 3 x 4 or 4 x 4");
+  }
+  using RowMajor = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
+  const Eigen::Map<const RowMajor> matrix(array.data());
+  const Eigen::Matrix3d rotation = matrix.leftCols<3>();
+  constexpr double single_precision = 1e-4;
+  bool is_rigid = matrix.allFinite() && rotation.determinant() > 0 &&
+                  (rotation * rotation.transpose()).isIdentity(single_precision);
+  if (array.shape(0) == 4) {
+    const Eigen::Map<const Eigen::RowVector4d> last(array.data() + 12);
+    is_rigid = is_rigid && last == Eigen::RowVector4d(0, 0, 0, 1);
+  }
+  if (!is_rigid) {
+    throw py::value_error(name +
+                          ": expected a rotation and a translation; in a fourth row 0 0 0 1");
+  }
+  return {Eigen::Quaterniond(rotation).normalized().toRotationMatrix(), matrix.col(3)};
+}
+
+class PythonPoseSource : public PoseSource {
+ public:
+  PythonPoseSource(const Rig& rig, Callable callable) : callable_(std::move(callable)) {
+    for (const RgbdCamera& camera : rig.rgbd) names_.push_back(camera.name);
+  }
+
+  bool needs_markers() const override { return false; }
+
+  void estimate(const FrameSet& frame, const Markers&, Poses& poses) override {
+    const py::gil_scoped_acquire acquire;
+    const py::object found =
+        (*callable_)(copy_of(frame.color.view()), copies_of(frame.rgbd), frame.stamp_s);
+    if (found.is_none()) {
+      poses.messages.emplace_back("the pose source found no poses");
+      return;
+    }
+    for (const auto& [key, value] : found.cast<py::dict>()) {
+      const auto name = key.cast<std::string>();
+      pose_of(name, poses) = as_rigid_transform(value.cast<Matrix>(), name);
+    }
+  }
+
+ private:
+  /// The place for the pose of this name.
+  std::optional<RigidTransform>& pose_of(const std::string& name, Poses& poses) const {
+    if (name == "color_from_world") return poses.color_from_world;
+    for (std::size_t k = 0; k < names_.size(); ++k) {
+      if (name == names_[k] + "_depth_from_world") return poses.depth_from_world[k];
+      if (name == "color_from_" + names_[k] + "_depth") return poses.color_from_depth[k];
+    }
+    throw py::value_error(
+        "pose source: expected color_from_world, NAME_depth_from_world or "
+        "color_from_NAME_depth, NAME being one of the rig's cameras; got '" +
+        name + "'");
+  }
+
+  std::vector<std::string> names_;
+  Callable callable_;
+};
+
 void expect_free(bool was_free, const std::string& kind, const std::string& name) {
   if (!was_free) throw py::value_error(kind + " '" + name + "': the name is taken");
 }
@@ -148,6 +222,18 @@ py::object add_inpainter(const std::string& name, const py::object& callable) {
   return callable;
 }
 
+py::object add_pose_source(const std::string& name, const py::object& callable) {
+  const py::handle kept = keep(callable);
+  expect_free(Registry<PoseSource>::add(name,
+                                        [kept](const Rig& rig, const Scene&) {
+                                          if (rig.pose.exists()) rig.pose.expect_keys({"source"});
+                                          return std::make_unique<PythonPoseSource>(rig,
+                                                                                    made_of(kept));
+                                        }),
+              "pose source", name);
+  return callable;
+}
+
 }  // namespace
 
 void add_methods(py::module_& module) {
@@ -173,6 +259,20 @@ void add_methods(py::module_& module) {
       py::arg("name"),
       "A decorator: adds an inpainting method, for the option inpaint=NAME.\n\n"
       "It is called with the picture and the mask of the pixels to fill, and returns the picture.");
+  module.def(
+      "pose_source",
+      [](const std::string& name) {
+        return py::cpp_function(
+            [name](const py::object& callable) { return add_pose_source(name, callable); });
+      },
+      py::arg("name"),
+      "A decorator: adds a pose source, for `pose: {source: NAME}` in rig.yaml or "
+      "Pipeline(pose_source=NAME).\n\n"
+      "It is called with what a detector gets and the time in seconds, and returns a dict of 3 x 4 "
+      "or 4 x 4 matrices\n"
+      "in metres, whose names say the frames: color_from_world, rgbd0_depth_from_world, or "
+      "color_from_rgbd0_depth.\n"
+      "What it leaves out is unknown; so is everything for None.");
 }
 
 }  // namespace diminish::python

@@ -30,8 +30,8 @@ SharedFrame share(const std::shared_ptr<OwnFrame>& frame) {
 class PythonPipeline {
  public:
   PythonPipeline(const std::filesystem::path& folder, const Options& options,
-                 const std::string& detector)
-      : recording_(load_setup(folder, detector)), options_(options) {
+                 const std::string& detector, const std::string& pose_source)
+      : recording_(load_setup(folder, detector, pose_source)), options_(options) {
     pipeline_ = std::make_unique<Pipeline>(recording_.rig, recording_.scene, options_);
     pipeline_->want_reconstruction(false);
   }
@@ -109,7 +109,7 @@ struct Frames {
 }  // namespace
 
 void add_pipeline(py::module_& module) {
-  py::class_<Frames>(module, "Frames")
+  py::class_<Frames>(module, "Frames", "The frames of a recording, one after the other")
       .def("__iter__", [](py::object self) { return self; })
       .def("__next__", &Frames::next);
   py::class_<PythonPipeline, std::shared_ptr<PythonPipeline>>(
@@ -119,14 +119,16 @@ void add_pipeline(py::module_& module) {
       "    for frame in diminish.Pipeline('recording', memory='off'):\n"
       "        cv2.imshow('diminished', frame.picture)\n\n"
       "detector: removes what it finds, such as 'difference', instead of the objects in "
-      "scene.yaml. "
+      "scene.yaml. pose_source: finds the cameras' poses instead of rig.yaml's. "
       "Further arguments: Options, or single options.")
       .def(py::init([](const std::filesystem::path& folder, const py::object& options,
-                       const std::string& detector, const py::kwargs& values) {
+                       const std::string& detector, const std::string& pose_source,
+                       const py::kwargs& values) {
              return std::make_shared<PythonPipeline>(folder, chosen_options(options, values),
-                                                     detector);
+                                                     detector, pose_source);
            }),
-           py::arg("folder"), py::arg("options") = py::none(), py::arg("detector") = "")
+           py::arg("folder"), py::arg("options") = py::none(), py::arg("detector") = "",
+           py::arg("pose_source") = "")
       .def("__iter__",
            [](const std::shared_ptr<PythonPipeline>& self) {
              return Frames{self, self->open()};

@@ -1,6 +1,10 @@
 """Tests of the Python module: python3 test_diminish.py, with PYTHONPATH and DIMINISH_RECORDINGS set."""
 
+import ast
+import json
 import os
+import shutil
+import tempfile
 import threading
 import unittest
 
@@ -9,6 +13,30 @@ import numpy as np
 
 RECORDINGS = os.environ["DIMINISH_RECORDINGS"]
 CALENDAR = os.path.join(RECORDINGS, "calendar")
+
+
+def rigid(matrix):
+    """Of 3 x 4, with its rotation made one: the file has seven digits."""
+    u, _, vt = np.linalg.svd(matrix[:, :3])
+    return np.hstack([u @ vt, matrix[:, 3:]])
+
+
+def trajectory_line(stamp, camera_from_world):
+    """"timestamp tx ty tz qx qy qz qw" of the camera in the world, as the TUM benchmark writes it."""
+    rotation = camera_from_world[:, :3].T
+    translation = -rotation @ camera_from_world[:, 3]
+    # The quaternion is an eigenvector (Bar-Itzhack 2000).
+    r = rotation
+    k = np.array(
+        [
+            [r[0, 0] - r[1, 1] - r[2, 2], 0, 0, 0],
+            [r[1, 0] + r[0, 1], r[1, 1] - r[0, 0] - r[2, 2], 0, 0],
+            [r[2, 0] + r[0, 2], r[2, 1] + r[1, 2], r[2, 2] - r[0, 0] - r[1, 1], 0],
+            [r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1], np.trace(r)],
+        ]
+    )
+    quaternion = np.linalg.eigh(k)[1][:, -1]
+    return " ".join(repr(float(x)) for x in (stamp, *translation, *quaternion)) + "\n"
 
 
 class PipelineTest(unittest.TestCase):
@@ -163,6 +191,61 @@ class OwnMethodsTest(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "test_grey.*taken"):
             diminish.inpainter("test_grey")(grey)
 
+    def test_a_pose_source_is_as_good_as_the_program_s_own(self):
+        names = ("color_from_world", "rgbd0_depth_from_world")
+        with open(os.path.join(CALENDAR, "truth", "poses.json")) as file:
+            truth = [{name: rigid(np.array(frame[name])) for name in names} for frame in json.load(file)]
+        stamps = []
+
+        @diminish.pose_source("test_truth")
+        def from_truth(color, rgbd, stamp_s):
+            stamps.append(stamp_s)
+            self.assertEqual((color.shape, rgbd[0][1].dtype), ((1024, 1280, 3), np.uint16))
+            return truth[len(stamps) - 1]
+
+        frames = list(diminish.Pipeline(CALENDAR, pose_source="test_truth", memory="off"))
+        self.assertEqual(stamps, [frame.stamp_s for frame in frames])
+        with tempfile.TemporaryDirectory() as top:
+            # The same poses as lists, which the program reads.
+            copy = shutil.copytree(CALENDAR, os.path.join(top, "calendar"))
+            for name, camera in zip(names, ("color", "rgbd0")):
+                with open(os.path.join(copy, camera + "_poses.txt"), "w") as file:
+                    for stamp, frame in zip(stamps, truth):
+                        file.write(trajectory_line(stamp, frame[name]))
+            with open(os.path.join(copy, "rig.yaml"), "a") as file:
+                file.write("pose: {source: file, files: {color: color_poses.txt, rgbd0: rgbd0_poses.txt}}\n")
+            expected = list(diminish.Pipeline(copy, memory="off"))
+            # rig.yaml's own source makes way, with its settings.
+            stamps.clear()
+            again = next(iter(diminish.Pipeline(copy, pose_source="test_truth", memory="off")))
+        for ours, theirs in zip([*frames, again], [*expected, expected[0]]):
+            difference = np.abs(ours.picture.astype(int) - theirs.picture)
+            self.assertGreater(theirs.report["seen_pixels"], 10000)
+            self.assertLess(np.count_nonzero(difference), 100)  # by rounding
+            self.assertLess(np.count_nonzero(ours.mask != theirs.mask), 10)
+
+    def test_a_pose_source_s_mistakes_are_named(self):
+        given = {}
+
+        @diminish.pose_source("test_wrong")
+        def wrong(color, rgbd, stamp_s):
+            return given or None
+
+        def first():
+            return next(iter(diminish.Pipeline(CALENDAR, pose_source="test_wrong", memory="off")))
+
+        self.assertIn("no poses", " ".join(first().report["messages"]))
+        given["rgbd9_depth_from_world"] = np.eye(4)
+        with self.assertRaisesRegex(ValueError, "NAME_depth_from_world.*got 'rgbd9_depth_from_world'"):
+            first()
+        del given["rgbd9_depth_from_world"]
+        for matrix, text in ((np.eye(3), "expected a matrix of 3 x 4"), (2 * np.eye(4), "expected a rotation")):
+            given["color_from_world"] = matrix
+            with self.assertRaisesRegex(ValueError, "color_from_world: " + text):
+                first()
+        with self.assertRaisesRegex(diminish.Error, "nowhere"):
+            diminish.Pipeline(CALENDAR, pose_source="nowhere")
+
     def test_their_errors_are_the_callers(self):
         @diminish.detector("test_broken")
         def broken(color, rgbd):
@@ -220,6 +303,40 @@ class PicturesTest(unittest.TestCase):
             diminish.seamless_clone(self.plane, self.plane, self.hole, (5, 5))
         with self.assertRaisesRegex(ValueError, "flags"):
             diminish.seamless_clone(self.plane, self.plane, self.hole, (75, 55), 2)
+
+
+class StubsTest(unittest.TestCase):
+    """diminish.pyi has what the module has."""
+
+    def test_every_name_and_argument(self):
+        folder = os.path.dirname(diminish.__file__)
+        stubs = [os.path.join(folder, name) for name in ("diminish.pyi", "diminish-stubs/__init__.pyi")]
+        with open(next(file for file in stubs if os.path.exists(file))) as file:
+            tree = ast.parse(file.read())
+        self.compare(diminish, tree.body, ignored={"Picture", "Mask", "Depth", "Transform", "_Method"})
+
+    def compare(self, actual, body, ignored=frozenset()):
+        stubbed = {}
+        for node in body:
+            if isinstance(node, (ast.ClassDef, ast.FunctionDef)):
+                stubbed[node.name] = node
+            elif isinstance(node, ast.AnnAssign):
+                stubbed[node.target.id] = node
+            elif isinstance(node, ast.Assign):
+                stubbed[node.targets[0].id] = node
+        public = {name for name in vars(actual) if not name.startswith("_")}
+        if actual is diminish.Options:
+            public = set()  # by __getattr__
+        self.assertEqual(public, {name for name in stubbed if not name.startswith("_")} - ignored)
+        for name, node in stubbed.items():
+            if isinstance(node, ast.ClassDef):
+                self.compare(getattr(actual, name), node.body)
+            if isinstance(node, ast.FunctionDef) and name != "__getattr__":
+                arguments = [argument.arg for argument in node.args.args if argument.arg != "self"]
+                signature = getattr(actual, name).__doc__.splitlines()[0]
+                for argument in arguments:
+                    self.assertRegex(signature, rf"[(, ]{argument}:|\*\*", name)
+        self.assertTrue(actual.__doc__)
 
 
 if __name__ == "__main__":
