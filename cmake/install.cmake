@@ -35,6 +35,10 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/diminish.pc DESTINATION ${CMAKE_INSTAL
 if(DIMINISH_BUILD_TESTS)
   add_test(NAME library_as_installed COMMAND ${PROJECT_SOURCE_DIR}/scripts/check-library ${PROJECT_BINARY_DIR})
   set_tests_properties(library_as_installed PROPERTIES TIMEOUT 600)
+  find_program(ABIDW_PROGRAM abidw)
+  if(ABIDW_PROGRAM AND CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64")
+    add_test(NAME abi COMMAND ${PROJECT_SOURCE_DIR}/scripts/check-abi $<TARGET_FILE:diminish>)
+  endif()
   # What is delivered: hardened, listed, signed.
   if(DIMINISH_HARDENING AND NOT DIMINISH_SANITIZE AND NOT CMAKE_BUILD_TYPE STREQUAL "Debug")
     add_test(NAME hardening COMMAND ${PROJECT_SOURCE_DIR}/scripts/check-hardening

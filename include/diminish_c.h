@@ -72,6 +72,11 @@ DIMINISH_C_API const char* diminish_last_error(void);
 /* Makes the pipeline of a folder with rig.yaml and scene.yaml. */
 DIMINISH_C_API diminish_status diminish_open(const char* folder, diminish_pipeline** pipeline);
 
+/* How many RGB-D cameras the rig has, those without depth among them, and their names, in its
+ * order; null beyond the last. The name stays until the pipeline is closed. */
+DIMINISH_C_API size_t diminish_rgbd_count(const diminish_pipeline* pipeline);
+DIMINISH_C_API const char* diminish_rgbd_name(const diminish_pipeline* pipeline, size_t index);
+
 /* Removes what this detector finds, such as "difference", instead of the objects in scene.yaml.
  * Forgets what was seen before. */
 DIMINISH_C_API diminish_status diminish_set_detector(diminish_pipeline* pipeline,

@@ -162,6 +162,15 @@ diminish_status diminish_open(const char* folder, diminish_pipeline** pipeline) 
   });
 }
 
+size_t diminish_rgbd_count(const diminish_pipeline* pipeline) {
+  return pipeline == nullptr ? 0 : pipeline->setup.rig.rgbd.size();
+}
+
+const char* diminish_rgbd_name(const diminish_pipeline* pipeline, size_t index) {
+  if (index >= diminish_rgbd_count(pipeline)) return nullptr;
+  return pipeline->setup.rig.rgbd[index].name.c_str();
+}
+
 diminish_status diminish_set_detector(diminish_pipeline* pipeline, const char* detector) {
   return guarded([&] {
     expect(pipeline != nullptr, "pipeline");

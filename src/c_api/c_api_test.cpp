@@ -41,6 +41,15 @@ diminish_image image_of(const ImageView<Pixel>& view) {
   return {view.data(), view.width(), view.height(), view.stride()};
 }
 
+TEST(CApi, NamesTheCameras) {
+  const Owned pipeline = opened();
+  const Recording recording = load_recording(calendar);
+  ASSERT_EQ(diminish_rgbd_count(pipeline.get()), recording.rig.rgbd.size());
+  EXPECT_EQ(diminish_rgbd_name(pipeline.get(), 0), recording.rig.rgbd[0].name);
+  EXPECT_EQ(diminish_rgbd_name(pipeline.get(), recording.rig.rgbd.size()), nullptr);
+  EXPECT_EQ(diminish_rgbd_count(nullptr), 0);
+}
+
 /// The library in C++ is the reference.
 TEST(CApi, GivesThePipelinesBytes) {
   const Recording recording = load_recording(calendar);
