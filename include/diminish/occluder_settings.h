@@ -68,9 +68,13 @@ class DIMINISH_EXPORT BoxSettings : public OccluderSettings {
 class DIMINISH_EXPORT OnnxSettings : public OccluderSettings {
  public:
   enum class Layout { nchw, nhwc };  ///< of input and output
+  /// What runs the network: OpenCV's DNN module, ONNX Runtime (its library is loaded if it is
+  /// installed), or the first of the two that can.
+  enum class Runtime { automatic, opencv, onnxruntime };
 
   std::filesystem::path model;  ///< an ONNX file
-  int width = 0, height = 0;    ///< of the input, pixels
+  Runtime runtime = Runtime::automatic;
+  int width = 0, height = 0;  ///< of the input, pixels
   double scale = 1 / 255.;
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();  ///< levels of red, green, blue
   bool is_bgr = false;                             ///< the input's channels; else RGB

@@ -89,8 +89,8 @@ class OnnxOccluder : public OccluderDetector {
 };
 
 std::shared_ptr<const OccluderSettings> read_settings(const Config& place) {
-  place.expect_keys({"name", "detector", "model", "size", "scale", "mean", "channels", "layout",
-                     "classes", "threshold", "every", "steady"});
+  place.expect_keys({"name", "detector", "model", "runtime", "size", "scale", "mean", "channels",
+                     "layout", "classes", "threshold", "every", "steady"});
   auto settings = std::make_shared<OnnxSettings>();
   settings->model = place.at("model").path();
   const std::vector<double> size = place.at("size").numbers(2);
@@ -101,6 +101,13 @@ std::shared_ptr<const OccluderSettings> read_settings(const Config& place) {
     const Config value = place.find(key);
     if (value.exists()) read(value);
   };
+  if_there("runtime", [&](const Config& value) {
+    using Runtime = OnnxSettings::Runtime;
+    const std::string chosen = value.choice({"auto", "opencv", "onnxruntime"});
+    settings->runtime = chosen == "opencv"        ? Runtime::opencv
+                        : chosen == "onnxruntime" ? Runtime::onnxruntime
+                                                  : Runtime::automatic;
+  });
   if_there("scale", [&](const Config& value) { settings->scale = value.number(); });
   if_there("mean", [&](const Config& value) { settings->mean = value.vector3(); });
   if_there("channels", [&](const Config& value) {

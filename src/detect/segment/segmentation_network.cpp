@@ -4,61 +4,65 @@
 
 #include <algorithm>
 #include <limits>
-#include <opencv2/core/utils/logger.hpp>
+#include <opencv2/dnn.hpp>
 
 #include "core/mat.h"
 #include "diminish/error.h"
 
 namespace diminish {
-namespace {
-
-/// OpenCV would print what it throws.
-class Quiet {
- public:
-  Quiet() : before_(cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT)) {}
-  ~Quiet() { cv::utils::logging::setLogLevel(before_); }
-  Quiet(const Quiet&) = delete;
-  Quiet& operator=(const Quiet&) = delete;
-
- private:
-  cv::utils::logging::LogLevel before_;
-};
-
-std::string first_line(const cv::Exception& error) {
-  return error.err.substr(0, error.err.find('\n'));
-}
-
-}  // namespace
 
 SegmentationNetwork::SegmentationNetwork(const OnnxSettings& settings, const Config& place)
     : settings_(settings) {
-  const Quiet quiet;
-  try {
-    net_ = cv::dnn::readNetFromONNX(settings.model.string());
-  } catch (const cv::Exception& error) {
-    place.find("model").fail("cannot be read: " + settings.model.string() + ": " +
-                             first_line(error) +
-                             "; expected an ONNX file that OpenCV's DNN module supports");
+  using Runtime = OnnxSettings::Runtime;
+  const auto fail = [&](const std::string& why) {
+    place.find("model").fail(settings.model.string() + ": " + why);
+  };
+  if (settings.runtime == Runtime::onnxruntime && !has_onnx_runtime()) {
+    place.find("runtime").fail(
+        "onnxruntime: libonnxruntime.so was not found; install ONNX Runtime where the linker looks "
+        "(LD_LIBRARY_PATH), or take opencv");
   }
-  net_.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
-  cv::Mat output;
-  try {
-    output = forward(cv::Mat(settings.height, settings.width, CV_8UC3, cv::Scalar()));
-  } catch (const cv::Exception& error) {
-    place.find("model").fail(fmt::format("{}: does not take a picture of {}x{} pixels: {}",
-                                         settings.model.string(), settings.width, settings.height,
-                                         first_line(error)));
+  std::string wrong;
+  if (settings.runtime != Runtime::onnxruntime) {
+    wrong = start(opencv_runtime);
+    if (!wrong.empty()) wrong = "OpenCV's DNN module " + wrong;
   }
-  const std::string wrong = shape_error(output);
-  if (!wrong.empty()) place.find("model").fail(settings.model.string() + ": " + wrong);
+  const bool is_next = settings.runtime == Runtime::automatic && !wrong.empty();
+  if (is_next && !has_onnx_runtime())
+    wrong += "; ONNX Runtime, which is tried next, is not installed";
+  if (settings.runtime == Runtime::onnxruntime || (is_next && has_onnx_runtime())) {
+    const std::string also_wrong = start(onnx_runtime);
+    if (!also_wrong.empty()) {
+      fail(wrong + (wrong.empty() ? "" : "; ") + "ONNX Runtime " + also_wrong);
+    }
+    wrong.clear();
+  }
+  if (!wrong.empty()) fail(wrong);
+  wrong = shape_error(tried_);
+  if (!wrong.empty()) fail(wrong);
+}
+
+std::string SegmentationNetwork::start(MakeRuntime& make) {
+  try {
+    runtime_ = make(settings_.model);
+  } catch (const Error& error) {
+    return fmt::format("cannot read it: {}; expected an ONNX file", error.what());
+  }
+  try {
+    tried_ = forward(cv::Mat(settings_.height, settings_.width, CV_8UC3, cv::Scalar()));
+  } catch (const Error& error) {
+    return fmt::format("does not take a picture of {}x{} pixels: {}", settings_.width,
+                       settings_.height, error.what());
+  }
+  return {};
 }
 
 void SegmentationNetwork::find_margin(ImageView<Bgr> picture, cv::Mat& margin) {
   cv::Mat output;
   try {
     output = forward(as_mat(picture));
-  } catch (const cv::Exception& error) {
-    throw Error(settings_.model.string() + ": " + first_line(error));
+  } catch (const Error& error) {
+    throw Error(settings_.model.string() + ": " + error.what());
   }
   const Shape shape = shape_of(output);
   const auto* const values = output.ptr<float>();
@@ -96,8 +100,7 @@ cv::Mat SegmentationNetwork::forward(const cv::Mat& picture) {
     cv::transposeND(input_, {0, 2, 3, 1}, channels_last);
     input_ = channels_last;
   }
-  net_.setInput(input_);
-  return net_.forward();
+  return runtime_->run(input_);
 }
 
 SegmentationNetwork::Shape SegmentationNetwork::shape_of(const cv::Mat& output) const {

@@ -1,7 +1,10 @@
 #pragma once
 
-#include <opencv2/dnn.hpp>
+#include <memory>
+#include <opencv2/core.hpp>
+#include <string>
 
+#include "detect/segment/network_runtime.h"
 #include "diminish/config.h"
 #include "diminish/image.h"
 #include "diminish/occluder_settings.h"
@@ -24,14 +27,18 @@ class SegmentationNetwork {
     int channels = 0, height = 0, width = 0;
   };
 
+  using MakeRuntime = std::unique_ptr<NetworkRuntime>(const std::filesystem::path& model);
+
+  /// Loads and tries the network. Returns what is wrong; nothing if it runs.
+  std::string start(MakeRuntime& make);
   cv::Mat forward(const cv::Mat& picture);
   /// All 0 if it is no picture.
   Shape shape_of(const cv::Mat& output) const;
   std::string shape_error(const cv::Mat& output) const;
 
   OnnxSettings settings_;
-  cv::dnn::Net net_;
-  cv::Mat input_;
+  std::unique_ptr<NetworkRuntime> runtime_;
+  cv::Mat input_, tried_;
 };
 
 }  // namespace diminish
