@@ -23,9 +23,12 @@ std::string words_of(const std::string& message) {
 
 void RunStatistics::add(const FrameReport& report) {
   if (!report.faults.empty() || report.skipped) ++faulty_;
+  const std::size_t number = frames_ + skipped_ + 1;
   for (const std::string& text : report.messages) {
     Message& message = messages_[words_of(text)];
+    if (message.last == number) continue;
     if (message.frames++ == 0) message.first = text;
+    message.last = number;
   }
   if (report.skipped) {
     ++skipped_;

@@ -62,6 +62,7 @@ class RunStatistics {
   struct Message {
     std::string first;
     std::size_t frames = 0;
+    std::size_t last = 0;  ///< frame, from 1 on: one may say it of several things
   };
   std::map<std::string, Message> messages_;  ///< by their words
 };

@@ -44,11 +44,13 @@ TEST(RunStatistics, AddsUpFramesAndLeavesSkippedOnesOutOfTheTimes) {
   EXPECT_THAT(table, HasSubstr("1 frames skipped"));
 }
 
+// Also where a frame says it of several things.
 TEST(RunStatistics, CountsMessagesThatDifferInNumbersTogether) {
   RunStatistics statistics;
   for (int i = 0; i < 1000; ++i) {
     FrameReport report;
     report.messages = {"rgbd0: no depth image within 0.02 s of " + std::to_string(1000 + i),
+                       "rgbd0: no depth image within 0.02 s of " + std::to_string(5000 + i),
                        "ball: not found"};
     statistics.add(report);
   }
