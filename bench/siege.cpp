@@ -148,9 +148,11 @@ void shorten_memory(LiveSession& session, const Flag& ends, Counts& counts) {
   }
 }
 
-/// Whether all that was recorded can be read.
-bool is_whole(const std::filesystem::path& folder, std::size_t frames) {
-  const RecordingRepair repair = repair_recording(folder);
+/// Whether all that was recorded can be read. may_be_torn: the folder was lost, perhaps in the
+/// middle of a file, which then has no name yet.
+bool is_whole(const std::filesystem::path& folder, std::size_t frames, bool may_be_torn) {
+  RecordingRepair repair = repair_recording(folder);
+  if (may_be_torn) repair.deleted.clear();
   if (repair.was_needed()) return false;
   const auto source = open_recording(load_recording(folder), {});
   std::size_t read = 0;
@@ -182,7 +184,7 @@ void record(LiveSession& session, const Recording& recording, const std::filesys
     writer.finish();
     const RecordingStatus status = writer.status();
     if (kind < 2 && !status.problem.empty()) std::printf("recording: %s\n", status.problem.c_str());
-    if (status.frames > 0 && !is_whole(here, status.frames)) {
+    if (status.frames > 0 && !is_whole(here, status.frames, kind == 3)) {
       ++counts.lost_recordings;
       std::printf("%s: not as it was written\n", here.c_str());
     } else {
