@@ -42,6 +42,13 @@ std::string wrong_place(const RgbdCamera& camera, const MarkerShift& shift) {
       shift.marker, shift.shift * 180 / std::numbers::pi, camera.name, camera.name);
 }
 
+std::string late(const RgbdCamera& camera, double late_s) {
+  return fmt::format(
+      "{}: what moves is seen where it was {:.2f} s before: its images are late, or their "
+      "timestamps wrong. diminish sync-check measures the delay",
+      camera.name, late_s);
+}
+
 std::string no_fit(const std::string& camera) {
   return camera +
          ": what it sees does not fit the picture. Has it moved? diminish calibrate rig --repair. "
@@ -67,6 +74,8 @@ void Doubt::judge(const Rig& rig, const Options& options, const Evidence& eviden
       doubt(wrong_scale(rig.rgbd[k], *scale), report);
     } else if (shift && is_wrong(*shift)) {
       doubt(wrong_place(rig.rgbd[k], *shift), report);
+    } else if (evidence.late_s[k]) {
+      doubt(late(rig.rgbd[k], *evidence.late_s[k]), report);
     } else if (k < report.fit.size() && report.fit[k] && *report.fit[k] < options.least_fit) {
       doubt(no_fit(rig.rgbd[k].name), report);
     }

@@ -32,6 +32,7 @@ class Doubt {
   struct Evidence {
     const std::vector<std::optional<MarkerScale>>& scales;
     const std::vector<std::optional<MarkerShift>>& shifts;
+    const std::vector<std::optional<double>>& late_s;  ///< (StreamDelay)
   };
   /// From `report.fit` and the evidence: sets `report.in_doubt`, and says in `report.messages` why,
   /// and what to do.

@@ -30,6 +30,7 @@
 #include "scene/scene_fit.h"
 #include "scene/scene_sampler.h"
 #include "scene/standing_things.h"
+#include "scene/stream_delay.h"
 
 namespace diminish {
 namespace {
@@ -89,6 +90,7 @@ struct Pipeline::Implementation {
         refinement(rig.color, PoseRefinement::usual_width, PoseRefinement::usual_last_step, false,
                    PoseRefinement::usual_coarser),
         fit(rig.color),
+        delay(rig.color),
         scale(rig, scene),
         agreement(rig, scene),
         background(rig.color),
@@ -150,6 +152,15 @@ struct Pipeline::Implementation {
     if (correction) refinement.apply(*correction, poses, samples);
   }
 
+  /// From what earlier frames showed.
+  void find_delays(const FrameSet& frame, const Poses& poses) {
+    late_s.assign(rig.rgbd.size(), std::nullopt);
+    if (!methods.remembers || !poses.color_from_world) return;
+    delay.find(
+        {frame.color, frame.stamp_s, *poses.color_from_world, occluders.masks().color, samples},
+        late_s);
+  }
+
   void find_smoothing(const FrameSet& frame) {
     if (!options.smooth_colors || occluders.objects().empty()) return;
     smoothing = smoothing_share(rig, frame, occluders.masks().color, samples.surfaces,
@@ -180,6 +191,8 @@ struct Pipeline::Implementation {
   SceneSamples samples;
   PoseRefinement refinement;
   SceneFit fit;
+  StreamDelay delay;
+  std::vector<std::optional<double>> late_s;
   DepthScale scale;
   std::vector<std::optional<MarkerScale>> scales;
   MarkerAgreement agreement;
@@ -230,13 +243,16 @@ void Pipeline::share_memory(Pipeline& other) {
   implementation_->memory.share(other.implementation_->memory);
   implementation_->occluders.share(other.implementation_->occluders);
   implementation_->doubt.share(other.implementation_->doubt);
+  implementation_->delay.share(other.implementation_->delay);
 }
 void Pipeline::take_turn() {
   implementation_->memory.take_turn();
   implementation_->occluders.take_turn();
   implementation_->doubt.take_turn();
+  implementation_->delay.take_turn();
 }
 void Pipeline::pass_turn() {
+  implementation_->delay.end_turn();
   implementation_->doubt.end_turn();
   implementation_->occluders.end_turn();
   implementation_->memory.end_turn();
@@ -338,7 +354,8 @@ void Pipeline::Implementation::process(const FrameSet& given, DiminishedFrame& r
       fit.find(frame.color, masks.color, samples, report.fit);
       scale.find(frame, report.markers, scales);
       agreement.find(frame, report.markers, report.poses, shifts);
-      Doubt::judge(rig, options, {scales, shifts}, report);
+      find_delays(frame, report.poses);
+      Doubt::judge(rig, options, {scales, shifts, late_s}, report);
     });
   };
   const auto estimate = [&](const Rect& part) {

@@ -1,0 +1,201 @@
+#include "scene/stream_delay.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace diminish {
+namespace {
+
+constexpr int usual_columns = 320;
+constexpr double bin_s = 1 / 30.;
+constexpr double longest_s = 0.3;
+/// Between moments that are compared.
+constexpr double apart_s = 0.06;
+constexpr std::size_t most_moments = 5;
+/// What was seen longer ago counts less.
+constexpr double half_life_s = 0.5;
+/// A change that noise does not make, levels.
+constexpr int least_change = 24;
+constexpr double greatest_error = 60;
+/// Of changed samples, at a lag.
+constexpr double fewest = 100;
+/// A delay that harms.
+constexpr double least_late_s = 0.05;
+/// The error at the true lag, of that now. With good cameras, now has the least.
+constexpr double least_share = 0.93;
+
+int level_of(const Bgr& color) {
+  return color.b + 2 * color.g + color.r;
+}
+
+/// A sample of a place where the user's picture has changed.
+struct Changed {
+  float level;
+  std::array<int, most_moments> then;
+};
+
+/// How bright the user's camera shows what an RGB-D camera shows: a line, by least squares.
+class Relation {
+ public:
+  void add(double shown, double own) {
+    count_ += 1;
+    shown_ += shown;
+    own_ += own;
+    product_ += shown * own;
+    square_ += own * own;
+  }
+  bool is_known() const { return square_ - own_ * own_ / std::max(1., count_) > count_; }
+  double operator()(double own) const {
+    const double gain = (product_ - shown_ * own_ / count_) / (square_ - own_ * own_ / count_);
+    return shown_ / count_ + gain * (own - own_ / count_);
+  }
+
+ private:
+  double count_ = 0, shown_ = 0, own_ = 0, product_ = 0, square_ = 0;
+};
+
+}  // namespace
+
+StreamDelay::StreamDelay(const Intrinsics& color)
+    : projection_(Lens(color)), shrinkage_(std::max(1, color.width / usual_columns)) {}
+
+void StreamDelay::find(const Inputs& inputs, std::vector<std::optional<double>>& late_s) {
+  turn_.wait(shared_->turns);
+  const struct End {
+    Turn& turn;
+    ~End() { turn.end(); }
+  } end{turn_};
+  remember(inputs, late_s.size());
+  const std::vector<SceneSample>& samples = inputs.samples.surfaces;
+  std::size_t begin = 0;
+  for (std::size_t k = 0; k < late_s.size(); ++k) {
+    std::size_t last = begin;
+    while (last < samples.size() && samples[last].source <= k + 1) ++last;
+    compare(inputs, begin, last, shared_->errors[k]);
+    late_s[k] = delay_of(shared_->errors[k]);
+    begin = last;
+  }
+}
+
+std::optional<double> StreamDelay::delay_of(const Errors& errors) {
+  if (errors.count[0] < fewest) return std::nullopt;
+  const double now = errors.levels[0] / errors.count[0];
+  double least = least_share * now;
+  std::optional<double> delay_s;
+  for (std::size_t bin = 1; bin < bins; ++bin) {
+    if (errors.count[bin] < fewest) continue;
+    const double error = errors.levels[bin] / errors.count[bin];
+    if (error >= least) continue;
+    least = error;
+    delay_s = static_cast<double>(bin) * bin_s;
+  }
+  return delay_s && *delay_s >= least_late_s ? delay_s : std::nullopt;
+}
+
+void StreamDelay::remember(const Inputs& inputs, std::size_t cameras) {
+  std::deque<Moment>& moments = shared_->moments;
+  std::vector<Errors>& errors = shared_->errors;
+  constexpr double longest_pause_s = 1;
+  const double lost_s = moments.empty() ? 0 : inputs.stamp_s - moments.front().stamp_s;
+  if (!moments.empty() && !(lost_s > 0 && lost_s < longest_pause_s)) {
+    moments.clear();
+    errors.clear();
+  }
+  errors.resize(cameras);
+  const double left = std::exp2(-lost_s / half_life_s);
+  for (Errors& of_camera : errors) {
+    for (double& levels : of_camera.levels) levels *= left;
+    for (double& count : of_camera.count) count *= left;
+  }
+  while (!moments.empty() && moments.back().stamp_s < inputs.stamp_s - longest_s) {
+    moments.pop_back();
+  }
+  Moment& now = moments.emplace_front();
+  now.stamp_s = inputs.stamp_s;
+  now.color_from_world = inputs.color_from_world;
+  const int s = shrinkage_;
+  now.grey.resize(inputs.picture.width() / s, inputs.picture.height() / s);
+  for (int y = 0; y < now.grey.height(); ++y) {
+    const std::uint8_t* const hidden = inputs.occlusion.row(y * s + s / 2);
+    const Bgr* const upper = inputs.picture.row(y * s + s / 4);
+    const Bgr* const lower = inputs.picture.row(y * s + s - 1 - s / 4);
+    for (int x = 0; x < now.grey.width(); ++x) {
+      const int left_x = x * s + s / 4;
+      const int right_x = x * s + s - 1 - s / 4;
+      const int sum = level_of(upper[left_x]) + level_of(upper[right_x]) + level_of(lower[left_x]) +
+                      level_of(lower[right_x]);
+      const bool is_object = hidden[x * s + s / 2] != 0;
+      now.grey(x, y) = static_cast<std::uint8_t>(is_object ? 0 : std::max(1, sum / 16));
+    }
+  }
+}
+
+void StreamDelay::compare(const Inputs& inputs, std::size_t begin, std::size_t end,
+                          Errors& errors) const {
+  struct Then {
+    const Image<std::uint8_t>& grey;
+    FloatTransform from_now;
+    std::size_t bin;
+  };
+  std::vector<Then> moments;
+  double last_s = inputs.stamp_s + 1;
+  const RigidTransform world_from_color = inputs.color_from_world.inverse();
+  for (const Moment& moment : shared_->moments) {
+    if (moments.size() == most_moments || moment.stamp_s > last_s - apart_s) continue;
+    last_s = moment.stamp_s;
+    const auto bin =
+        static_cast<std::size_t>(std::lround((inputs.stamp_s - moment.stamp_s) / bin_s));
+    if (bin >= bins) break;
+    moments.push_back(
+        {moment.grey, FloatTransform(moment.color_from_world * world_from_color), bin});
+  }
+  if (moments.size() < 2) return;
+  const auto scale = 1 / static_cast<float>(shrinkage_);
+  /// 0 where it is not known
+  const auto level_then = [&](const Then& then, const Eigen::Vector3f& point_m) {
+    const auto at = [&](int axis) {
+      return then.from_now.apply(axis, point_m.x(), point_m.y(), point_m.z());
+    };
+    constexpr float nearest_m = 0.05F;
+    const float z = at(2);
+    float u = 0;
+    float v = 0;
+    if (!(z > nearest_m) || !projection_.distort(at(0) / z, at(1) / z, u, v)) return 0;
+    const float column = (u + 0.5F) * scale;
+    const float row = (v + 0.5F) * scale;
+    if (!(column >= 0 && row >= 0 && column < static_cast<float>(then.grey.width()) &&
+          row < static_cast<float>(then.grey.height()))) {
+      return 0;
+    }
+    return int{then.grey(static_cast<int>(column), static_cast<int>(row))};
+  };
+  std::vector<Changed> changed;
+  Relation relation;
+  for (std::size_t i = begin; i < end; ++i) {
+    const SceneSample& sample = inputs.samples.surfaces[i];
+    Changed seen{static_cast<float>(level_of(sample.color)) / 4, {}};
+    int least = 255;
+    int greatest = 0;
+    for (std::size_t m = 0; m < moments.size() && least > 0; ++m) {
+      seen.then[m] = level_then(moments[m], sample.point_m);
+      least = std::min(least, seen.then[m]);
+      greatest = std::max(greatest, seen.then[m]);
+    }
+    if (least == 0) continue;
+    if (greatest - least >= least_change) {
+      changed.push_back(seen);
+    } else {
+      relation.add(seen.then[0], seen.level);
+    }
+  }
+  if (!relation.is_known()) return;
+  for (const Changed& seen : changed) {
+    const double expected = relation(seen.level);
+    for (std::size_t m = 0; m < moments.size(); ++m) {
+      errors.levels[moments[m].bin] += std::min(greatest_error, std::abs(seen.then[m] - expected));
+      errors.count[moments[m].bin] += 1;
+    }
+  }
+}
+
+}  // namespace diminish
