@@ -74,21 +74,35 @@ void CandidateChoice::choose(const FineViews& views, const SweepPlanes& planes,
   const int height = views.reference.height();
   inverse_depth.resize(width, height);
   for (Image<std::uint8_t>& costs : costs_) costs.resize(width, height);
-  const auto candidate = [&](std::size_t number, Pair columns, Pair rows) {
-    const float plane = coarse(number % 2 == 0 ? columns.own : columns.next,
-                               number / 2 == 0 ? rows.own : rows.next);
-    return plane == SemiGlobalMatching::none ? 0.F : planes.inverse_depth(plane);
+  for (auto& column : columns_) column.resize(static_cast<std::size_t>(width));
+  for (int x = 0; x < width; ++x) {
+    const Pair columns = coarse_pixels(x, coarse.width());
+    columns_[0][static_cast<std::size_t>(x)] = columns.own;
+    columns_[1][static_cast<std::size_t>(x)] = columns.next;
+  }
+  // The inverse depths of the two coarse rows beside a fine one; 0 where nothing is known
+  const auto load_rows = [&](int y, Scratch& scratch) {
+    const Pair rows = coarse_pixels(y, coarse.height());
+    for (std::size_t i = 0; i < 2; ++i) {
+      std::vector<float>& depths = scratch.coarse_rows[i];
+      depths.resize(static_cast<std::size_t>(coarse.width()));
+      const float* const planes_of_row = coarse.row(i == 0 ? rows.own : rows.next);
+      for (std::size_t x = 0; x < depths.size(); ++x) {
+        const float plane = planes_of_row[x];
+        depths[x] = plane == SemiGlobalMatching::none ? 0.F : planes.inverse_depth(plane);
+      }
+    }
   };
   for_rows(height, [&](Rows rows) {
-    std::vector<float>& depths = scratch_[rows.band].inverse_depths;
+    Scratch& scratch = scratch_[rows.band];
+    std::vector<float>& depths = scratch.inverse_depths;
     depths.resize(static_cast<std::size_t>(width));
     for (int y = rows.first; y < rows.last; ++y) {
-      const Pair coarse_rows = coarse_pixels(y, coarse.height());
+      load_rows(y, scratch);
       for (std::size_t number = 0; number < candidates; ++number) {
-        for (int x = 0; x < width; ++x) {
-          depths[static_cast<std::size_t>(x)] =
-              candidate(number, coarse_pixels(x, coarse.width()), coarse_rows);
-        }
+        const float* const known = scratch.coarse_rows[number / 2].data();
+        const int* const columns = columns_[number % 2].data();
+        for (std::size_t x = 0; x < depths.size(); ++x) depths[x] = known[columns[x]];
         HWY_DYNAMIC_DISPATCH(MatchRow)
         (views.parallax, y, views.reference_census.row(y), depths.data(), width,
          views.other_census.data(), views.other_census.width(), views.other_census.height(),
@@ -113,19 +127,19 @@ void CandidateChoice::choose(const FineViews& views, const SweepPlanes& planes,
         });
         add_columns<reach>(scratch.columns[number].data(), width, scratch.sums[number].data());
       }
-      const Pair coarse_rows = coarse_pixels(y, coarse.height());
+      load_rows(y, scratch);
       float* const chosen = inverse_depth.row(y);
       for (int x = 0; x < width; ++x) {
-        const Pair columns = coarse_pixels(x, coarse.width());
+        const auto i = static_cast<std::size_t>(x);
         float best = 0;
         int least = 1 << 16;
         for (std::size_t number = 0; number < candidates; ++number) {
-          const int cost = scratch.sums[number][static_cast<std::size_t>(x)];
-          if (cost >= least) continue;
-          const float depth = candidate(number, columns, coarse_rows);
-          if (!(depth > 0)) continue;
-          best = depth;
-          least = cost;
+          const int cost = scratch.sums[number][i];
+          const auto column = static_cast<std::size_t>(columns_[number % 2][i]);
+          const float depth = scratch.coarse_rows[number / 2][column];
+          const bool is_better = cost < least && depth > 0;
+          best = is_better ? depth : best;
+          least = is_better ? cost : least;
         }
         chosen[x] = best;
       }

@@ -23,10 +23,12 @@ class CandidateChoice {
   /// Memory of a band.
   struct Scratch {
     std::vector<float> inverse_depths;
+    std::array<std::vector<float>, 2> coarse_rows;  ///< likewise
     std::array<std::vector<std::uint16_t>, candidates> columns, sums;
   };
 
   std::array<Image<std::uint8_t>, candidates> costs_;
+  std::array<std::vector<int>, 2> columns_;  ///< of the coarse pixels beside each fine one
   Scratch scratch_[most_bands];
 };
 

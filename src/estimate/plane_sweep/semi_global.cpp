@@ -20,14 +20,30 @@ constexpr std::uint8_t too_much = 255;
 /// What a path pays for going to the next plane, in census bits.
 constexpr std::uint8_t next_plane = 3;
 
-/// What a path pays for going further, if brightness changes by so much: little at an edge.
-/// At most 31: four paths' costs, with a census's most bits each, fit into a byte.
-inline std::uint8_t far_plane(int change) {
+/// What a path pays for going further, by how much brightness changes: little at an edge. At most
+/// 31: four paths' costs, with a census's most bits each, fit into a byte.
+constexpr std::array<std::uint8_t, 256> far_plane = [] {
   constexpr int most = 30;
   constexpr int least = 20;
   constexpr int edge = 12;
-  return static_cast<std::uint8_t>(std::max(least, most * edge / (edge + change)));
-}
+  std::array<std::uint8_t, 256> cost{};
+  for (int change = 0; change < 256; ++change) {
+    cost[static_cast<std::size_t>(change)] =
+        static_cast<std::uint8_t>(std::max(least, most * edge / (edge + change)));
+  }
+  return cost;
+}();
+
+/// A path's next pixel.
+struct PathStep {
+  const std::uint8_t* costs;
+  std::uint8_t* sums;
+  const std::uint8_t* before;  ///< the path's costs at the pixel before
+  std::uint8_t* path;          ///< those at this pixel
+  std::uint8_t least;          ///< of `before`; then of `path`
+  std::uint8_t far;            ///< what it pays for going further than to the next plane
+  bool add;                    ///< to the sums, which other paths have begun
+};
 
 /// A path's memory: the costs of one pixel, with `too_much` on both sides.
 constexpr int path_pitch(int pitch) {
@@ -66,9 +82,9 @@ HWY_INLINE hn::Vec<Bytes> LeastOfAll(hn::Vec<Bytes> v) {
 
 /// In how many bits a pixel's code differs from those in the other view, plane by plane. shift: so
 /// that planes out of view lie at negative columns.
-void MatchPixel(std::uint32_t code, float x, const std::uint32_t* other, int width,
-                const float* scale, const float* shift, const std::int32_t* row, int pitch,
-                std::uint8_t* costs) {
+HWY_INLINE void MatchPixel(std::uint32_t code, float x, const std::uint32_t* other, int width,
+                           const float* scale, const float* shift, const std::int32_t* row,
+                           int pitch, std::uint8_t* costs) {
   const hn::CappedTag<float, 16> d;
   const hn::RebindToSigned<decltype(d)> di;
   const hn::RebindToUnsigned<decltype(d)> du;
@@ -88,37 +104,48 @@ void MatchPixel(std::uint32_t code, float x, const std::uint32_t* other, int wid
   }
 }
 
+/// A row's pixels, `pitch` costs each, of which the first `count` are planes'.
+void MatchRow(const std::uint32_t* codes, int pixels, const std::uint32_t* other, int width,
+              const float* scale, const float* shift, const std::int32_t* row, int count, int pitch,
+              std::uint8_t* costs) {
+  for (int x = 0; x < pixels; ++x, costs += pitch) {
+    MatchPixel(codes[x], static_cast<float>(x), other, width, scale, shift, row, pitch, costs);
+    std::fill(costs + count, costs + pitch, too_much);
+  }
+}
+
 /// The path's costs at a pixel from those at the pixel before it. before, path: of `path_pitch`,
 /// from the first plane on. Returns their least. Adds them to the pixel's sums.
-HWY_INLINE std::uint8_t Step(const std::uint8_t* costs, const std::uint8_t* before,
-                             std::uint8_t least_before, std::uint8_t far, int pitch,
-                             std::uint8_t* path, std::uint8_t* sums, bool add) {
+template <bool add>
+HWY_INLINE std::uint8_t Follow(const PathStep& step, int pitch) {
   const Bytes d;
   const auto lanes = static_cast<int>(hn::Lanes(d));
-  const auto base = hn::Set(d, least_before);
-  const auto limit = hn::SaturatedAdd(base, hn::Set(d, far));
+  const auto base = hn::Set(d, step.least);
+  const auto limit = hn::SaturatedAdd(base, hn::Set(d, step.far));
   const auto next = hn::Set(d, next_plane);
   auto least = hn::Set(d, too_much);
   for (int k = 0; k < pitch; k += lanes) {
-    const auto beside = hn::Min(hn::LoadU(d, before + k - 1), hn::LoadU(d, before + k + 1));
+    const auto beside =
+        hn::Min(hn::LoadU(d, step.before + k - 1), hn::LoadU(d, step.before + k + 1));
     const auto best =
-        hn::Min(hn::Min(hn::LoadU(d, before + k), hn::SaturatedAdd(beside, next)), limit);
-    const auto cost = hn::SaturatedAdd(hn::LoadU(d, costs + k), hn::Sub(best, base));
-    hn::StoreU(cost, d, path + k);
+        hn::Min(hn::Min(hn::LoadU(d, step.before + k), hn::SaturatedAdd(beside, next)), limit);
+    const auto cost = hn::SaturatedAdd(hn::LoadU(d, step.costs + k), hn::Sub(best, base));
+    hn::StoreU(cost, d, step.path + k);
     least = hn::Min(least, cost);
-    hn::StoreU(add ? hn::SaturatedAdd(hn::LoadU(d, sums + k), cost) : cost, d, sums + k);
+    hn::StoreU(add ? hn::SaturatedAdd(hn::LoadU(d, step.sums + k), cost) : cost, d, step.sums + k);
   }
   return hn::GetLane(LeastOfAll(least));
 }
 
-std::uint8_t StepPath(const std::uint8_t* costs, const std::uint8_t* before,
-                      std::uint8_t least_before, std::uint8_t far, int pitch, std::uint8_t* path,
-                      std::uint8_t* sums, bool add) {
-  return Step(costs, before, least_before, far, pitch, path, sums, add);
+/// A path's pixel waits for the one before it. Several paths fill the time.
+void FollowPaths(PathStep* steps, int count, int pitch) {
+  for (PathStep* step = steps; step < steps + count; ++step) {
+    step->least = step->add ? Follow<true>(*step, pitch) : Follow<false>(*step, pitch);
+  }
 }
 
 /// The first of the planes with the least sum.
-int FindLeast(const std::uint8_t* sums, int pitch) {
+HWY_INLINE int FindLeast(const std::uint8_t* sums, int pitch) {
   const Bytes d;
   const auto lanes = static_cast<int>(hn::Lanes(d));
   auto least = hn::LoadU(d, sums);
@@ -131,6 +158,29 @@ int FindLeast(const std::uint8_t* sums, int pitch) {
   return 0;
 }
 
+/// From the costs of the best plane and of those beside it: where between them the least lies.
+HWY_INLINE float Between(int before, int best, int after) {
+  const int bend = before + after - 2 * best;
+  return bend > 0 ? 0.5F * static_cast<float>(before - after) / static_cast<float>(bend) : 0.F;
+}
+
+/// The best plane of each of a row's pixels, if it is clearly better than all but its neighbours.
+/// Changes `sums`.
+void ChoosePlanes(std::uint8_t* sums, int pixels, int count, int pitch, float* found) {
+  for (int i = 0; i < pixels; ++i, sums += pitch) {
+    const int best = FindLeast(sums, pitch);
+    found[i] = SemiGlobalMatching::none;
+    // At the ends of the range the least may lie beyond it.
+    if (best == 0 || best >= count - 1) continue;
+    const int cost = sums[best];
+    const float plane = static_cast<float>(best) + Between(sums[best - 1], cost, sums[best + 1]);
+    std::fill_n(sums + best - 1, 3, too_much);
+    const int second = sums[FindLeast(sums, pitch)];
+    constexpr int better_by = 2;
+    if (second - cost >= better_by) found[i] = plane;
+  }
+}
+
 }  // namespace
 }  // namespace diminish::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -139,31 +189,16 @@ HWY_AFTER_NAMESPACE();
 namespace diminish {
 namespace {
 
-HWY_EXPORT(MatchPixel);
-HWY_EXPORT(StepPath);
-HWY_EXPORT(FindLeast);
+HWY_EXPORT(MatchRow);
+HWY_EXPORT(FollowPaths);
+HWY_EXPORT(ChoosePlanes);
 
-/// From the costs of the best plane and of those beside it: where between them the least lies.
-float between(int before, int best, int after) {
-  const int bend = before + after - 2 * best;
-  return bend > 0 ? 0.5F * static_cast<float>(before - after) / static_cast<float>(bend) : 0.F;
-}
+/// Rows whose paths are followed together, each in both directions.
+constexpr int rows_together = 2;
+constexpr int columns_together = 32;
 
-/// The best plane of a pixel, if it is clearly better than all but its neighbours. Changes `sums`.
-float choose(std::uint8_t* sums, int count, int pitch) {
-  const int best = HWY_DYNAMIC_DISPATCH(FindLeast)(sums, pitch);
-  // At the ends of the range the least may lie beyond it.
-  if (best == 0 || best >= count - 1) return SemiGlobalMatching::none;
-  const int cost = sums[best];
-  const float plane = static_cast<float>(best) + between(sums[best - 1], cost, sums[best + 1]);
-  std::fill_n(sums + best - 1, 3, too_much);
-  const int second = sums[HWY_DYNAMIC_DISPATCH(FindLeast)(sums, pitch)];
-  constexpr int better_by = 2;
-  return second - cost >= better_by ? plane : SemiGlobalMatching::none;
-}
-
-int change(std::uint8_t a, std::uint8_t b) {
-  return std::abs(a - b);
+std::uint8_t far_plane_between(std::uint8_t a, std::uint8_t b) {
+  return far_plane[static_cast<std::size_t>(std::abs(a - b))];
 }
 
 /// A path's costs at its pixel number i and at the one before, which take turns in its memory.
@@ -171,6 +206,7 @@ class PathCosts {
  public:
   static std::size_t size(int pitch) { return 2 * static_cast<std::size_t>(path_pitch(pitch)); }
 
+  PathCosts() = default;
   PathCosts(std::uint8_t* memory, int pitch) : memory_(memory), pitch_(pitch) {}
 
   void begin() {
@@ -182,8 +218,8 @@ class PathCosts {
   std::uint8_t* before(int i) { return here(i + 1); }
 
  private:
-  std::uint8_t* memory_;
-  int pitch_;
+  std::uint8_t* memory_ = nullptr;
+  int pitch_ = 0;
 };
 
 }  // namespace
@@ -215,86 +251,109 @@ void SemiGlobalMatching::match(const MatchedViews& views, const SweepPlanes& pla
 
 /// Finds the costs, and follows the two paths along each row.
 void SemiGlobalMatching::follow_rows(const MatchedViews& views, int count) {
-  const int other_width = views.other_census.width();
-  const int other_height = views.other_census.height();
   for_rows(
       views.reference.height(),
       [&](Rows rows) {
         Scratch& scratch = scratch_[rows.band];
         scratch.planes.shift.resize(scales_.size());
         scratch.planes.row.resize(scales_.size());
-        scratch.paths.resize(PathCosts::size(pitch_));
-        for (int y = rows.first; y < rows.last; ++y) {
-          for (std::size_t k = 0; k < scales_.size(); ++k) {
-            const float d = inverse_depths_[k];
-            const float s = scales_[k];
-            const auto v = static_cast<int>(
-                std::nearbyint(static_cast<float>(y) * s + views.parallax.shift_y(d, s)));
-            const bool in_view = v >= 0 && v < other_height;
-            constexpr float out_of_view = -1e6F;
-            scratch.planes.shift[k] = in_view ? views.parallax.shift_x(d, s) : out_of_view;
-            scratch.planes.row[k] = in_view ? v * other_width : 0;
-          }
-          for (int x = 0; x < width_; ++x) {
-            std::uint8_t* const costs = costs_.data() + at(x, y);
-            HWY_DYNAMIC_DISPATCH(MatchPixel)
-            (views.reference_census(x, y), static_cast<float>(x), views.other_census.data(),
-             other_width, scales_.data(), scratch.planes.shift.data(), scratch.planes.row.data(),
-             pitch_, costs);
-            std::fill(costs + count, costs + pitch_, too_much);
-          }
-          const std::uint8_t* const grey = views.reference.row(y);
-          for (const bool is_back : {false, true}) {
-            PathCosts path(scratch.paths.data(), pitch_);
-            path.begin();
-            std::uint8_t least = 0;
-            int last_x = is_back ? width_ - 1 : 0;
-            for (int i = 0; i < width_; ++i) {
-              const int x = is_back ? width_ - 1 - i : i;
-              least =
-                  HWY_DYNAMIC_DISPATCH(StepPath)(costs_.data() + at(x, y), path.before(i), least,
-                                                 far_plane(change(grey[x], grey[last_x])), pitch_,
-                                                 path.here(i), sums_.data() + at(x, y), is_back);
-              last_x = x;
-            }
-          }
+        scratch.paths.resize(2 * rows_together * PathCosts::size(pitch_));
+        for (int y = rows.first; y < rows.last; y += rows_together) {
+          const int together = std::min(rows_together, rows.last - y);
+          for (int i = 0; i < together; ++i) match_row(views, count, y + i, scratch.planes);
+          follow_rows_together(views, y, together, scratch);
         }
       },
       16);
 }
 
+void SemiGlobalMatching::match_row(const MatchedViews& views, int count, int y,
+                                   RowOfPlanes& planes) {
+  const int other_width = views.other_census.width();
+  const int other_height = views.other_census.height();
+  for (std::size_t k = 0; k < scales_.size(); ++k) {
+    const float d = inverse_depths_[k];
+    const float s = scales_[k];
+    const auto v =
+        static_cast<int>(std::nearbyint(static_cast<float>(y) * s + views.parallax.shift_y(d, s)));
+    const bool in_view = v >= 0 && v < other_height;
+    constexpr float out_of_view = -1e6F;
+    planes.shift[k] = in_view ? views.parallax.shift_x(d, s) : out_of_view;
+    planes.row[k] = in_view ? v * other_width : 0;
+  }
+  HWY_DYNAMIC_DISPATCH(MatchRow)
+  (views.reference_census.row(y), width_, views.other_census.data(), other_width, scales_.data(),
+   planes.shift.data(), planes.row.data(), count, pitch_, costs_.data() + at(0, y));
+}
+
+void SemiGlobalMatching::follow_rows_together(const MatchedViews& views, int y, int rows,
+                                              Scratch& scratch) {
+  constexpr int most = 2 * rows_together;
+  std::array<PathStep, most> steps{};
+  std::array<PathCosts, most> paths;
+  for (std::size_t k = 0; k < most; ++k) {
+    paths[k] = PathCosts(scratch.paths.data() + k * PathCosts::size(pitch_), pitch_);
+    paths[k].begin();
+  }
+  for (int i = 0; i < width_; ++i) {
+    for (int k = 0; k < 2 * rows; ++k) {
+      const bool is_back = k % 2 != 0;
+      const int row = y + k / 2;
+      const int x = is_back ? width_ - 1 - i : i;
+      const int last_x = i == 0 ? x : is_back ? x + 1 : x - 1;
+      const std::uint8_t* const grey = views.reference.row(row);
+      PathStep& step = steps[static_cast<std::size_t>(k)];
+      PathCosts& path = paths[static_cast<std::size_t>(k)];
+      step.costs = costs_.data() + at(x, row);
+      step.sums = sums_.data() + at(x, row);
+      step.before = path.before(i);
+      step.path = path.here(i);
+      step.far = far_plane_between(grey[x], grey[last_x]);
+      // The other way's path has been here if it is beyond the middle.
+      step.add = is_back ? 2 * i >= width_ - 1 : 2 * i > width_ - 1;
+    }
+    HWY_DYNAMIC_DISPATCH(FollowPaths)(steps.data(), 2 * rows, pitch_);
+  }
+}
+
 /// Follows the two paths along each column, which complete the sums, and chooses.
 void SemiGlobalMatching::follow_columns(const MatchedViews& views, int count, Image<float>& found) {
   const int height = views.reference.height();
-  constexpr int columns_of_task = 32;
-  const int tasks = (width_ + columns_of_task - 1) / columns_of_task;
+  const int tasks = (width_ + columns_together - 1) / columns_together;
   column_scratch_.resize(static_cast<std::size_t>(tasks));
   for_tasks(static_cast<std::size_t>(tasks), [&](std::size_t task) {
-    const int first = static_cast<int>(task) * columns_of_task;
-    const int columns = std::min(columns_of_task, width_ - first);
+    const int first = static_cast<int>(task) * columns_together;
+    const auto columns = static_cast<std::size_t>(std::min(columns_together, width_ - first));
     Scratch& scratch = column_scratch_[task];
     const std::size_t size = PathCosts::size(pitch_);
-    scratch.paths.resize(size * columns_of_task);
-    std::array<std::uint8_t, columns_of_task> least{};
+    scratch.paths.resize(size * columns_together);
+    std::array<PathCosts, columns_together> paths;
     for (const bool is_up : {false, true}) {
-      const auto path = [&](int i) {
-        return PathCosts(scratch.paths.data() + static_cast<std::size_t>(i) * size, pitch_);
-      };
-      for (int i = 0; i < columns; ++i) path(i).begin();
-      least.fill(0);
+      std::array<PathStep, columns_together> steps{};
+      for (std::size_t i = 0; i < columns; ++i) {
+        paths[i] = PathCosts(scratch.paths.data() + i * size, pitch_);
+        paths[i].begin();
+        steps[i].add = true;
+      }
       const std::uint8_t* last_grey = nullptr;
       for (int row = 0; row < height; ++row) {
         const int y = is_up ? height - 1 - row : row;
-        const std::uint8_t* const grey = views.reference.row(y);
+        const std::uint8_t* const grey = views.reference.row(y) + first;
         if (last_grey == nullptr) last_grey = grey;
-        for (int i = 0; i < columns; ++i) {
-          const int x = first + i;
-          const auto column = static_cast<std::size_t>(i);
-          std::uint8_t* const sums = sums_.data() + at(x, y);
-          least[column] = HWY_DYNAMIC_DISPATCH(StepPath)(
-              costs_.data() + at(x, y), path(i).before(row), least[column],
-              far_plane(change(grey[x], last_grey[x])), pitch_, path(i).here(row), sums, true);
-          if (is_up) found(x, y) = choose(sums, count, pitch_);
+        std::uint8_t* const sums = sums_.data() + at(first, y);
+        const std::uint8_t* const costs = costs_.data() + at(first, y);
+        for (std::size_t i = 0; i < columns; ++i) {
+          PathStep& step = steps[i];
+          step.costs = costs + i * static_cast<std::size_t>(pitch_);
+          step.sums = sums + i * static_cast<std::size_t>(pitch_);
+          step.before = paths[i].before(row);
+          step.path = paths[i].here(row);
+          step.far = far_plane_between(grey[i], last_grey[i]);
+        }
+        HWY_DYNAMIC_DISPATCH(FollowPaths)(steps.data(), static_cast<int>(columns), pitch_);
+        if (is_up) {
+          HWY_DYNAMIC_DISPATCH(ChoosePlanes)
+          (sums, static_cast<int>(columns), count, pitch_, found.row(y) + first);
         }
         last_grey = grey;
       }

@@ -44,6 +44,8 @@ class SemiGlobalMatching {
 
   void prepare(const MatchedViews& views, const SweepPlanes& planes);
   void follow_rows(const MatchedViews& views, int count);
+  void match_row(const MatchedViews& views, int count, int y, RowOfPlanes& planes);
+  void follow_rows_together(const MatchedViews& views, int y, int rows, Scratch& scratch);
   void follow_columns(const MatchedViews& views, int count, Image<float>& found);
   std::size_t at(int x, int y) const {
     return (static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +

@@ -69,7 +69,7 @@ HWY_EXPORT(ProjectRow);
 constexpr int most_columns = 16384;
 constexpr int at_once = 256;
 
-/// Bilinear, rounded; unknown where one of the four pixels is.
+/// Bilinear, rounded; unknown outside. A picture's pixels are all known.
 std::uint8_t look_up(const Image<std::uint8_t>& pixels, float u, float v) {
   if (!(u >= 0 && v >= 0)) return unknown_grey;
   const auto x = static_cast<int>(u);
@@ -77,10 +77,6 @@ std::uint8_t look_up(const Image<std::uint8_t>& pixels, float u, float v) {
   if (x + 1 >= pixels.width() || y + 1 >= pixels.height()) return unknown_grey;
   const std::uint8_t* const upper = pixels.row(y) + x;
   const std::uint8_t* const lower = upper + pixels.width();
-  if (upper[0] == unknown_grey || upper[1] == unknown_grey || lower[0] == unknown_grey ||
-      lower[1] == unknown_grey) {
-    return unknown_grey;
-  }
   constexpr int unit = 64;
   const auto right = static_cast<int>((u - static_cast<float>(x)) * unit);
   const auto down = static_cast<int>((v - static_cast<float>(y)) * unit);
