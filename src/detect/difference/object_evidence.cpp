@@ -13,33 +13,20 @@ namespace {
 
 /// Neighbouring pixels of one surface: the largest relative step in depth.
 constexpr float largest_step = 0.03F;
-/// Relative distance of two layers from which on they are two surfaces.
-constexpr float two_surfaces = 0.03F;
 
 /// Between colours of the same surface, in levels.
 constexpr float least_threshold = 18;
 constexpr float greatest_threshold = 48;
 
 /// Values of `kind_`.
-constexpr std::uint8_t nothing = 0;      ///< no RGB-D camera sees anything
-constexpr std::uint8_t on_plane = 1;     ///< the nearest surface is a wall or a table
-constexpr std::uint8_t stands = 2;       ///< it is not
-constexpr std::uint8_t stands_free = 3;  ///< and it stands free
+constexpr std::uint8_t nothing = 0;       ///< no RGB-D camera sees anything
+constexpr std::uint8_t something = 1;     ///< whether it is a wall or a table is not asked yet
+constexpr std::uint8_t free_if_none = 2;  ///< if it is none it stands free
+constexpr std::uint8_t on_plane = 3;      ///< it is a wall or a table
 constexpr std::uint8_t visited = 4;
 
 /// A value of `object_`, beside 0 and 255.
 constexpr std::uint8_t in_free_space = 254;
-
-/// How far a colour is from all of a neighbourhood's.
-float difference(const Bgr& color, const Bgr& least, const Bgr& greatest) {
-  const auto beyond = [](std::uint8_t value, std::uint8_t from, std::uint8_t to) {
-    const int d = std::max({0, from - value, value - to});
-    return d * d;
-  };
-  return std::sqrt(static_cast<float>(beyond(color.b, least.b, greatest.b) +
-                                      beyond(color.g, least.g, greatest.g) +
-                                      beyond(color.r, least.r, greatest.r)));
-}
 
 /// How far a colour is from all shades of another.
 float chroma_difference(const Bgr& color, const Bgr& other) {
@@ -47,10 +34,6 @@ float chroma_difference(const Bgr& color, const Bgr& other) {
   const Eigen::Array3f b = to_channels(other);
   const float shade = (a * b).sum() / std::max(1.F, b.square().sum());
   return std::sqrt((a - std::min(shade, 1.F) * b).square().sum());
-}
-
-float gap(const SeenSurface& nearest, const SeenSurface& farthest) {
-  return 1 - nearest.depth_m / farthest.depth_m;
 }
 
 }  // namespace
@@ -67,7 +50,7 @@ bool ObjectEvidence::is_on_plane(const std::vector<BackgroundPlane>& planes, int
 }
 
 bool ObjectEvidence::looks_like(const Bgr& color, int x, int y) const {
-  return difference(color, least_(x, y), greatest_(x, y)) < 0.25F * threshold_;
+  return color_difference(color, least_(x, y), greatest_(x, y)) < 0.25F * threshold_;
 }
 
 Rect ObjectEvidence::find(const Inputs& inputs, Image<Shown>& shown) {
@@ -83,13 +66,13 @@ Rect ObjectEvidence::find(const Inputs& inputs, Image<Shown>& shown) {
   const int fewest = std::max(4, width * height / 2500);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      if (kind_(x, y) != stands_free) continue;
-      collect(layers, x, y);
+      if (kind_(x, y) != free_if_none || lies_on_plane(inputs, x, y)) continue;
+      collect(inputs, x, y);
       Component all;
       for (const Eigen::Vector2i& at : component_) {
         const SeenSurface& nearest = layers.nearest(at.x(), at.y());
         const SeenSurface& farthest = layers.farthest(at.x(), at.y());
-        const Difference& d = difference_(at.x(), at.y());
+        const SurfaceDifference& d = difference_(at.x(), at.y());
         const float apart = gap(nearest, farthest);
         ++all.pixels;
         if (apart < two_surfaces) continue;
@@ -131,7 +114,7 @@ Rect ObjectEvidence::decide(const Inputs& inputs, float threshold, Image<Shown>&
       for (int x = 0; x < width; ++x) {
         const SeenSurface& nearest = inputs.layers.nearest(x, y);
         std::uint8_t& object = object_(x, y);
-        const Difference& d = difference_(x, y);
+        const SurfaceDifference& d = difference_(x, y);
         const bool is_free = unexplained_(x, y) != 0;
         scene_(x, y) = 0;
         if (nearest.source == 0) continue;
@@ -200,21 +183,21 @@ void ObjectEvidence::compare(const Inputs& inputs) {
   difference_.resize(picture.width(), picture.height());
   for_rows(picture.height(), [&](Rows rows) {
     for (int y = rows.first; y < rows.last; ++y) {
+      const SeenSurface* const nearest = inputs.layers.nearest.row(y);
+      const SeenSurface* const farthest = inputs.layers.farthest.row(y);
+      SurfaceDifference* const differences = difference_.row(y);
+      compare_surfaces(nearest, farthest, least_.row(y), greatest_.row(y), picture.width(),
+                       differences);
+      // What is unlike is looked for further around.
       for (int x = 0; x < picture.width(); ++x) {
-        const SeenSurface& nearest = inputs.layers.nearest(x, y);
-        const SeenSurface& farthest = inputs.layers.farthest(x, y);
-        Difference& d = difference_(x, y);
-        d = {};
-        if (nearest.source == 0) continue;
-        const bool is_one = gap(nearest, farthest) < two_surfaces;
-        d.nearest = difference(nearest.color, least_(x, y), greatest_(x, y));
-        d.farthest = is_one ? d.nearest : difference(farthest.color, least_(x, y), greatest_(x, y));
-        d.either = std::min(d.nearest, d.farthest);
+        SurfaceDifference& d = differences[x];
         if (d.either < least_threshold) continue;
-        d.either = difference(nearest.color, least_around_(x, y), greatest_around_(x, y));
-        if (is_one) continue;
-        d.either = std::min(
-            d.either, difference(farthest.color, least_around_(x, y), greatest_around_(x, y)));
+        const auto around = [&](const SeenSurface& surface) {
+          return color_difference(surface.color, least_around_(x, y), greatest_around_(x, y));
+        };
+        d.either = around(nearest[x]);
+        if (gap(nearest[x], farthest[x]) < two_surfaces) continue;
+        d.either = std::min(d.either, around(farthest[x]));
       }
     }
   });
@@ -247,27 +230,31 @@ void ObjectEvidence::mark(const Inputs& inputs, float threshold) {
     for (int y = rows.first; y < rows.last; ++y) {
       for (int x = 0; x < width; ++x) {
         const SeenSurface& nearest = inputs.layers.nearest(x, y);
-        const Difference& d = difference_(x, y);
+        const SurfaceDifference& d = difference_(x, y);
         unexplained_(x, y) = 0;
         kind_(x, y) = nothing;
         if (nearest.source == 0) continue;
         if (d.either > threshold) unexplained_(x, y) = 255;
-        if (is_on_plane(inputs.planes, x, y, nearest.depth_m)) {
-          kind_(x, y) = on_plane;
-        } else if (gap(nearest, inputs.layers.farthest(x, y)) > inputs.clearance &&
-                   d.farthest > threshold && d.nearest < d.farthest) {
-          kind_(x, y) = stands_free;
-        } else {
-          kind_(x, y) = stands;
-        }
+        kind_(x, y) = gap(nearest, inputs.layers.farthest(x, y)) > inputs.clearance &&
+                              d.farthest > threshold && d.nearest < d.farthest
+                          ? free_if_none
+                          : something;
       }
     }
   });
   open(unexplained_, 3);
 }
 
+/// Whether the nearest surface is a wall or a table; remembers it.
+bool ObjectEvidence::lies_on_plane(const Inputs& inputs, int x, int y) {
+  const bool lies = is_on_plane(inputs.planes, x, y, inputs.layers.nearest(x, y).depth_m);
+  if (lies) kind_(x, y) = on_plane;
+  return lies;
+}
+
 /// The surface that a pixel belongs to, down to the planes.
-void ObjectEvidence::collect(const SeenLayers& layers, int x, int y) {
+void ObjectEvidence::collect(const Inputs& inputs, int x, int y) {
+  const SeenLayers& layers = inputs.layers;
   component_.clear();
   open_ends_.clear();
   const auto visit = [&](int column, int row) {
@@ -285,9 +272,11 @@ void ObjectEvidence::collect(const SeenLayers& layers, int x, int y) {
       const int column = at.x() + dx;
       const int row = at.y() + dy;
       if (!kind_.bounds().contains(column, row)) continue;
-      if (kind_(column, row) != stands && kind_(column, row) != stands_free) continue;
+      if (kind_(column, row) != something && kind_(column, row) != free_if_none) continue;
       const float other = layers.nearest(column, row).depth_m;
-      if (std::abs(other - own) <= largest_step * own) visit(column, row);
+      if (std::abs(other - own) > largest_step * own || lies_on_plane(inputs, column, row))
+        continue;
+      visit(column, row);
     }
   }
 }

@@ -5,6 +5,7 @@
 
 #include "detect/difference/free_space.h"
 #include "detect/difference/seen_layers.h"
+#include "detect/difference/surface_comparison.h"
 #include "diminish/image.h"
 #include "diminish/intrinsics.h"
 #include "geometry/ray_table.h"
@@ -61,11 +62,6 @@ class ObjectEvidence {
   bool is_on_plane(const std::vector<BackgroundPlane>& planes, int x, int y, float depth_m) const;
 
  private:
-  /// How far the picture is from the colours of the nearest and of the farthest surface, in levels.
-  struct Difference {
-    float nearest = 0, farthest = 0;
-    float either = 0;  ///< the lesser one, within a larger neighbourhood
-  };
   struct Component {
     int pixels = 0, free = 0;
     int like_nearest = 0, compared = 0;
@@ -73,7 +69,8 @@ class ObjectEvidence {
   void compare(const Inputs& inputs);
   float find_threshold(const SeenLayers& layers);
   void mark(const Inputs& inputs, float threshold);
-  void collect(const SeenLayers& layers, int x, int y);
+  bool lies_on_plane(const Inputs& inputs, int x, int y);
+  void collect(const Inputs& inputs, int x, int y);
   Rect decide(const Inputs& inputs, float threshold, Image<Shown>& shown);
   bool is_unlike_around(const Inputs& inputs, int x, int y, float threshold) const;
   void open(Mask& mask, int reach);
@@ -81,7 +78,7 @@ class ObjectEvidence {
   std::shared_ptr<const RayTable> rays_;  ///< of the small picture
   float threshold_ = 0;                   ///< between colours of the same surface, in levels
   Image<Bgr> least_, greatest_, least_around_, greatest_around_, scratch_;
-  Image<Difference> difference_;
+  Image<SurfaceDifference> difference_;
   std::vector<float> values_;
   Mask kind_, object_, unexplained_, scene_, first_, second_;
   std::vector<Eigen::Vector2i> component_, open_ends_;
