@@ -11,6 +11,7 @@ void add_bench(CLI::App& program, int& exit_code);
 void add_calibrate(CLI::App& program, int& exit_code);
 void add_check(CLI::App& program, int& exit_code);
 void add_compare(CLI::App& program, int& exit_code);
+void add_convert(CLI::App& program, int& exit_code);
 void add_devices(CLI::App& program, int& exit_code);
 void add_help(CLI::App& program, int& exit_code);
 void add_init(CLI::App& program, int& exit_code);

@@ -32,6 +32,7 @@ int run_command(int argc, char** argv) {
   diminish::add_report(program, exit_code);
   diminish::add_repair(program, exit_code);
   diminish::add_compare(program, exit_code);
+  diminish::add_convert(program, exit_code);
   diminish::add_bench(program, exit_code);
   diminish::add_markers(program, exit_code);
   diminish::add_calibrate(program, exit_code);
