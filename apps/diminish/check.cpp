@@ -8,6 +8,7 @@
 #include "diminish/setup_check.h"
 #include "live/live_frame_source.h"
 #include "live_setup.h"
+#include "setup/check/host_traps.h"
 #include "sink/partial_file.h"
 
 namespace diminish {
@@ -26,7 +27,11 @@ struct CheckCommand {
     if (setup.has_live_cameras(input.rig)) {
       const LiveRun run = setup.start();
       LiveFrameSource source(*run.session, seconds);
-      return check_setup(input.rig, input.scene, source, frames);
+      SetupReport report = check_setup(input.rig, input.scene, source, frames);
+      for (Finding& trap : host_traps(input.rig, setup.cameras(input.rig))) {
+        report.findings.push_back(std::move(trap));
+      }
+      return report;
     }
     const auto source = open_recording(input, Options{});
     return check_setup(input.rig, input.scene, *source, frames);
