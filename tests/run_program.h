@@ -27,8 +27,9 @@ class Program {
     return Program(arguments).wait();
   }
 
-  explicit Program(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), testing::program());
+  explicit Program(std::vector<std::string> arguments,
+                   const std::string& executable = testing::program()) {
+    arguments.insert(arguments.begin(), executable);
     const std::string out = (folder_.path() / "out").string();
     const std::string err = (folder_.path() / "err").string();
     process_ = fork();

@@ -20,9 +20,21 @@ struct CalibrateFactoryCommand {
   int execute() const;
 };
 
+/// A camera on the network tells its lenses with its first images.
+void wait_for_intrinsics(CameraSource& source) {
+  constexpr double patience_s = 2;
+  CameraImage image;
+  for (const double end_s = monotonic_now_s() + patience_s;
+       monotonic_now_s() < end_s &&
+       !(source.intrinsics(Sensor::color) && source.intrinsics(Sensor::depth));) {
+    source.read(image, std::chrono::milliseconds(100));
+  }
+}
+
 int CalibrateFactoryCommand::execute() const {
   RigFile rig(out);
   const auto source = open_camera(uri, {.name = camera, .rig = nullptr});
+  wait_for_intrinsics(*source);
   int known = 0;
   for (const auto& [sensor, kind] : {std::pair{Sensor::color, "color"}, {Sensor::depth, "depth"}}) {
     const auto intrinsics = source->intrinsics(sensor);

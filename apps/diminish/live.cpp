@@ -41,6 +41,13 @@ void print_summary(const LiveStatus& status, const LiveRun& run) {
                camera.wrong_size, camera.damaged, camera.stalls, camera.failures,
                camera.reconnects);
   }
+  for (const CameraStatus& camera : status.cameras) {
+    if (!camera.clock) continue;
+    fmt::print("{}: its clock is {:+.1f} ms off, and gains {:+.1f} ppm ({})\n", camera.name,
+               camera.clock->offset_s * 1e3, camera.clock->drift * 1e6,
+               camera.clock->is_trusted ? "stamps are taken as they are"
+                                        : "stamps are brought to this machine's clock");
+  }
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   fmt::print("Peak memory: {:.0f} MB\n", static_cast<double>(usage.ru_maxrss) * 1024 / 1e6);
@@ -67,6 +74,7 @@ int LiveCommand::execute() const {
     next_line_s += 1;
   }
   run.virtual_camera.reset();
+  run.ros2.reset();
   run.session->stop();
   if (run.recording) run.recording->finish();
   print_summary(run.session->status(), run);

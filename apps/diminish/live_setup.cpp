@@ -118,12 +118,21 @@ void LiveSetup::add_output_flags(CLI::App& command) {
       .add_option("--virtual-camera", virtual_camera,
                   "Send the result to this v4l2loopback device, for programs that read a camera")
       ->type_name("DEVICE");
+  command
+      .add_option("--ros2", ros2,
+                  "Publish the result as ROS 2 topics below this name, such as /diminish; "
+                  "?interface=ADDRESS lets other machines see them")
+      ->type_name("NAME");
 }
 
 void LiveRun::say_output_problem() {
-  if (!virtual_camera || virtual_camera->problem().empty()) return;
-  fmt::print(stderr, "diminish: {}\n", virtual_camera->problem());
-  virtual_camera.reset();
+  const auto end_if_broken = [](auto& output) {
+    if (!output || output->problem().empty()) return;
+    fmt::print(stderr, "diminish: {}\n", output->problem());
+    output.reset();
+  };
+  end_if_broken(virtual_camera);
+  end_if_broken(ros2);
 }
 
 LiveRun LiveSetup::start() const {
@@ -147,6 +156,7 @@ LiveRun LiveSetup::start() const {
     constexpr double usual_rate = 30;
     run.virtual_camera = std::make_unique<VirtualCamera>(*run.session, virtual_camera, usual_rate);
   }
+  if (!ros2.empty()) run.ros2 = std::make_unique<Ros2Output>(*run.session, ros2);
   return run;
 }
 

@@ -9,6 +9,7 @@
 #include "background.h"
 #include "diminish/live.h"
 #include "diminish/recording_writer.h"
+#include "diminish/ros2_output.h"
 #include "diminish/virtual_camera.h"
 #include "set_up_flags.h"
 
@@ -20,8 +21,9 @@ struct LiveRun {
   std::shared_ptr<RecordingWriter> recording;  ///< null: none is made
   std::shared_ptr<void> recording_listener;
   std::unique_ptr<VirtualCamera> virtual_camera;
+  std::unique_ptr<Ros2Output> ros2;
 
-  /// Once, if the virtual camera no longer works.
+  /// Once, if the virtual camera or ROS 2 no longer works.
   void say_output_problem();
 };
 
@@ -33,6 +35,7 @@ struct LiveSetup {
   std::vector<std::string> rgbd;
   std::filesystem::path record;
   std::string virtual_camera;
+  std::string ros2;         ///< the topics' base, and its network
   bool draw_clock = false;  ///< into the colour camera's pictures
   Options options;
   Background background;
@@ -42,7 +45,7 @@ struct LiveSetup {
   void add_flags(CLI::App& command);
   /// --color and --rgbd
   void add_camera_flags(CLI::App& command);
-  /// --record and --virtual-camera
+  /// --record, --virtual-camera and --ros2
   void add_output_flags(CLI::App& command);
 
   std::filesystem::path rig_file() const { return folder / "rig.yaml"; }

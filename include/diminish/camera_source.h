@@ -16,6 +16,7 @@
 #include "diminish/intrinsics.h"
 #include "diminish/registry.h"
 #include "diminish/rig.h"
+#include "diminish/rigid_transform.h"
 
 namespace diminish {
 
@@ -73,6 +74,16 @@ struct CameraDevice {
   std::string description;
 };
 
+/// How the clock that stamps a camera's images relates to this machine's.
+struct CameraClock {
+  /// That clock less this machine's (UTC), seconds. Includes the shortest way of an image.
+  double offset_s = 0;
+  double drift = 0;  ///< seconds that it gains on this machine's in a second
+  /// The two are taken for the same: images have the times that their stamps say. Otherwise an
+  /// image that came the shortest way is taken to have been made when it arrived.
+  bool is_trusted = true;
+};
+
 /// A camera, or something that behaves like one. Registered by its URI's scheme, one file each.
 /// Used by one thread.
 class DIMINISH_EXPORT CameraSource {
@@ -105,6 +116,11 @@ class DIMINISH_EXPORT CameraSource {
 
   /// Factory intrinsics, if the driver knows them.
   virtual std::optional<Intrinsics> intrinsics(Sensor) const { return std::nullopt; }
+  /// From the depth sensor to the colour sensor, if the driver knows it.
+  virtual std::optional<RigidTransform> color_from_depth() const { return std::nullopt; }
+
+  /// If another machine's clock stamps the images, what is known of it.
+  virtual std::optional<CameraClock> clock() const { return std::nullopt; }
 };
 
 /// Opens the camera that a URI names. Throws Error that names the URI.

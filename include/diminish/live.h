@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,8 @@ struct CameraStatus {
   std::size_t stalls = 0;      ///< times without an image for a second or more
   std::size_t failures = 0;    ///< times that it could not be opened, or was lost
   std::size_t reconnects = 0;  ///< times that it came back
+  /// Of images that another machine stamps (CameraSource::clock).
+  std::optional<CameraClock> clock;
 };
 
 /// A result of a live session, with its input.

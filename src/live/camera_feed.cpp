@@ -99,6 +99,7 @@ void CameraFeed::read_until_gone() {
     if (status == CameraSource::Status::image) take(image);
     const std::lock_guard lock(mutex_);
     status_.dropped = dropped_before_ + source->dropped();
+    status_.clock = source->clock();
     if (status_.state != CameraState::silent &&
         monotonic_now_s() - last_image_s_ > silent_after_s) {
       status_.state = CameraState::silent;

@@ -6,16 +6,15 @@
 #include <string>
 #include <thread>
 
-#include "diminish/image.h"
 #include "diminish/live.h"
 
 namespace diminish {
 
-/// Hands a session's newest picture to `write` on a thread of its own, until it is destroyed, the
+/// Hands a session's newest frame to `write` on a thread of its own, until it is destroyed, the
 /// session ends or `write` throws.
 class FrameForwarder {
  public:
-  FrameForwarder(const LiveSession& session, std::function<void(const Image<Bgr>&)> write)
+  FrameForwarder(const LiveSession& session, std::function<void(const LiveFrame&)> write)
       : write_(std::move(write)), thread_([this, &session] { run(session); }) {}
   ~FrameForwarder() {
     stopped_ = true;
@@ -48,7 +47,7 @@ class FrameForwarder {
       if (!frame && !session.status().running) return;
       if (!frame) continue;
       number = frame->number;
-      write_(frame->result.picture);
+      write_(*frame);
     }
   }
   void fail(const std::string& what) {
@@ -56,7 +55,7 @@ class FrameForwarder {
     problem_ = what;
   }
 
-  std::function<void(const Image<Bgr>&)> write_;
+  std::function<void(const LiveFrame&)> write_;
   std::atomic<bool> stopped_ = false;
   mutable std::mutex mutex_;  ///< guards the problem
   std::string problem_;

@@ -26,11 +26,11 @@ TEST(FrameForwarder, SaysWhyItNoLongerWritesAndTheSessionGoesOn) {
   LiveSession session(recording.rig, recording.scene, {}, {{"color", replay}, {"rgbd0", replay}},
                       {});
   std::atomic<int> written = 0;
-  const FrameForwarder forwarder(session, [&](const Image<Bgr>& picture) {
-    EXPECT_EQ(picture.width(), recording.rig.color.width);
+  const FrameForwarder forwarder(session, [&](const LiveFrame& frame) {
+    EXPECT_EQ(frame.result.picture.width(), recording.rig.color.width);
     if (++written == 2) throw Error("the device is gone");
   });
-  const FrameForwarder other(session, [](const Image<Bgr>&) { throw 7; });
+  const FrameForwarder other(session, [](const LiveFrame&) { throw 7; });
   EXPECT_EQ(eventual_problem(forwarder), "the device is gone");
   EXPECT_EQ(eventual_problem(other), "an unknown error");
   const std::size_t shown = session.status().frames;

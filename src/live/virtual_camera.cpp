@@ -36,8 +36,8 @@ VirtualCamera::VirtualCamera(const LiveSession& session, const std::string& targ
     throw Error(Error::device,
                 target + ": cannot be opened for writing video; is v4l2loopback loaded?");
   }
-  self.forwarder.emplace(session,
-                         [&self](const Image<Bgr>& picture) { self.video.write(as_mat(picture)); });
+  self.forwarder.emplace(
+      session, [&self](const LiveFrame& frame) { self.video.write(as_mat(frame.result.picture)); });
 }
 
 std::string VirtualCamera::problem() const {

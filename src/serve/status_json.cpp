@@ -13,20 +13,26 @@ double rounded(double value) {
 }
 
 Json camera_json(const CameraStatus& camera) {
-  return {{"name", camera.name},
-          {"uri", camera.uri},
-          {"state", camera_state_names[static_cast<std::size_t>(camera.state)]},
-          {"problem", camera.problem},
-          {"images_per_second", rounded(camera.images_per_second)},
-          {"images", camera.images},
-          {"dropped", camera.dropped},
-          {"duplicates", camera.duplicates},
-          {"out_of_order", camera.out_of_order},
-          {"wrong_size", camera.wrong_size},
-          {"damaged", camera.damaged},
-          {"stalls", camera.stalls},
-          {"failures", camera.failures},
-          {"reconnects", camera.reconnects}};
+  Json json = {{"name", camera.name},
+               {"uri", camera.uri},
+               {"state", camera_state_names[static_cast<std::size_t>(camera.state)]},
+               {"problem", camera.problem},
+               {"images_per_second", rounded(camera.images_per_second)},
+               {"images", camera.images},
+               {"dropped", camera.dropped},
+               {"duplicates", camera.duplicates},
+               {"out_of_order", camera.out_of_order},
+               {"wrong_size", camera.wrong_size},
+               {"damaged", camera.damaged},
+               {"stalls", camera.stalls},
+               {"failures", camera.failures},
+               {"reconnects", camera.reconnects}};
+  if (camera.clock) {
+    json["clock"] = {{"offset_ms", rounded(camera.clock->offset_s * 1e3)},
+                     {"drift_ppm", rounded(camera.clock->drift * 1e6)},
+                     {"trusted", camera.clock->is_trusted}};
+  }
+  return json;
 }
 
 }  // namespace

@@ -190,7 +190,8 @@ function showCameras(status) {
     const posed = isColor ? null : status.posed[names.filter((name) => name !== "color").indexOf(camera.name)];
     const lost = camera.dropped + camera.duplicates + camera.out_of_order + camera.wrong_size + camera.damaged;
     const counts = ["images", "dropped", "duplicates", "out_of_order", "wrong_size", "damaged", "stalls", "failures", "reconnects"];
-    return make("tr", { title: `${camera.uri}\n${counts.map((name) => `${name.replaceAll("_", " ")}: ${camera[name]}`).join("\n")}\n${camera.problem}` },
+    const clock = camera.clock ? `\nits clock: ${camera.clock.offset_ms} ms off, drift ${camera.clock.drift_ppm} ppm` : "";
+    return make("tr", { title: `${camera.uri}\n${counts.map((name) => `${name.replaceAll("_", " ")}: ${camera[name]}`).join("\n")}${clock}\n${camera.problem}` },
       make("td", { textContent: camera.name }),
       make("td", { textContent: camera.state, className: camera.state === "running" ? "good" : "bad" }),
       make("td", { textContent: camera.images_per_second.toFixed(1) }),

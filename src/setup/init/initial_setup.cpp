@@ -75,6 +75,7 @@ FoundCamera look_at_camera(const std::string& uri, const std::string& name) {
     // The user's view is all that is asked of its camera.
     if (name == "color" && found.color) break;
   }
+  found.color_from_depth = source->color_from_depth();
   if (!found.color && !found.depth) {
     throw Error(
         fmt::format("{}: no image within {} s, expected a camera that runs", uri, patience_s));
@@ -108,9 +109,12 @@ std::string initial_rig_yaml(const InitialRig& rig) {
     text += "    " + line("depth", *depth.depth, depth.depth_is_guess);
     text += "    depth_unit_m: 0.001   # millimetres, as most drivers deliver\n";
     text += fmt::format(
-        "    color_from_depth: {}   # a guess, that both sensors are one: `diminish calibrate rig "
-        "RECORDING --depth` measures it\n",
-        as_yaml(RigidTransform{}));
+        "    color_from_depth: {}   # {}\n",
+        as_yaml(depth.color_from_depth.value_or(RigidTransform{})),
+        depth.color_from_depth
+            ? "as the camera's driver tells it"
+            : "a guess, that both sensors are one: `diminish calibrate rig RECORDING --depth` "
+              "measures it");
   }
   if (!rig.color_only.empty()) text += "cameras:   # without depth, which is estimated\n";
   for (const InitialRig::Named& camera : rig.color_only) {

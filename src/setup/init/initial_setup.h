@@ -17,6 +17,8 @@ struct FoundCamera {
   /// image's size.
   std::optional<Intrinsics> color, depth;
   bool color_is_guess = false, depth_is_guess = false;
+  /// As the driver tells it.
+  std::optional<RigidTransform> color_from_depth;
 };
 
 /// Opens a camera and waits for images, for a few seconds at most. name: "color" or an RGB-D

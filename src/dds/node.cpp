@@ -1,0 +1,166 @@
+#include "dds/node.h"
+
+#include <arpa/inet.h>
+#include <fmt/format.h>
+
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
+#include <fastrtps/utils/IPLocator.h>
+#include <ifaddrs.h>
+#include <netinet/in.h>
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/log/Log.hpp>
+#include <map>
+#include <tuple>
+#include <vector>
+
+#include "core/text.h"
+#include "dds/payload_type.h"
+#include "diminish/error.h"
+
+namespace diminish::dds {
+namespace {
+
+using eprosima::fastdds::dds::DomainParticipantFactory;
+using eprosima::fastdds::dds::DomainParticipantQos;
+using eprosima::fastdds::dds::TypeSupport;
+using eprosima::fastdds::rtps::SharedMemTransportDescriptor;
+using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
+using eprosima::fastrtps::rtps::IPLocator;
+using eprosima::fastrtps::rtps::Locator_t;
+
+constexpr const char* loopback = "127.0.0.1";
+constexpr int most_domain = 232;
+/// How many of a machine's processes are looked for on its loopback, where nothing is broadcast.
+constexpr std::uint32_t most_processes = 32;
+/// Room for a few pictures of several megabytes.
+constexpr std::uint32_t segment_bytes = 32u << 20;
+constexpr std::uint32_t socket_bytes = 8u << 20;
+
+/// A program says each second that it is there, and is forgotten after five without a word: one
+/// that comes back is met within about a second.
+constexpr std::int32_t announcement_s = 1;
+constexpr std::int32_t patience_s = 5;
+
+DomainParticipantQos participant_qos(const Network& network) {
+  DomainParticipantQos qos;
+  qos.name("diminish");
+  auto& discovery = qos.wire_protocol().builtin.discovery_config;
+  discovery.leaseDuration_announcementperiod = {announcement_s, 0};
+  discovery.leaseDuration = {patience_s, 0};
+  qos.transport().use_builtin_transports = false;
+  const auto udp = std::make_shared<UDPv4TransportDescriptor>();
+  const std::string& address = network.interface.empty() ? loopback : network.interface;
+  udp->interfaceWhiteList = {address};
+  udp->sendBufferSize = socket_bytes;
+  udp->receiveBufferSize = socket_bytes;
+  if (network.interface.empty()) {
+    udp->maxInitialPeersRange = most_processes;
+    Locator_t peer;
+    IPLocator::setIPv4(peer, loopback);
+    qos.wire_protocol().builtin.initialPeersList.push_back(peer);
+  }
+  qos.transport().user_transports.push_back(udp);
+  if (network.shared_memory) {
+    const auto memory = std::make_shared<SharedMemTransportDescriptor>();
+    memory->segment_size(segment_bytes);
+    qos.transport().user_transports.push_back(memory);
+  }
+  return qos;
+}
+
+/// Throws Error if no network interface of this machine has the address. Fast DDS would say
+/// nothing.
+void expect_own(const std::string& address) {
+  ifaddrs* all = nullptr;
+  if (getifaddrs(&all) != 0) return;
+  std::vector<std::string> own;
+  for (const ifaddrs* one = all; one != nullptr; one = one->ifa_next) {
+    if (one->ifa_addr == nullptr || one->ifa_addr->sa_family != AF_INET) continue;
+    std::array<char, INET_ADDRSTRLEN> text{};
+    const auto* const internet = reinterpret_cast<const sockaddr_in*>(one->ifa_addr);
+    inet_ntop(AF_INET, &internet->sin_addr, text.data(), text.size());
+    own.emplace_back(text.data());
+  }
+  freeifaddrs(all);
+  if (std::find(own.begin(), own.end(), address) != own.end()) return;
+  throw Error(Error::device, fmt::format("interface: expected an address of this machine, one of "
+                                         "{}, got '{}'",
+                                         join(own), printable(address)));
+}
+
+}  // namespace
+
+int default_domain() {
+  const char* const text = std::getenv("ROS_DOMAIN_ID");
+  if (text == nullptr || *text == 0) return 0;
+  const auto number = parse_number(text);
+  if (!number || *number < 0 || *number > most_domain || *number != static_cast<int>(*number)) {
+    throw Error(fmt::format("ROS_DOMAIN_ID: expected a whole number from 0 to {}, got '{}'",
+                            most_domain, printable(text)));
+  }
+  return static_cast<int>(*number);
+}
+
+std::string wire_name(const std::string& ros_name) {
+  return (ros_name.starts_with('/') ? "rt" : "rt/") + ros_name;
+}
+
+void expect_made(const void* made, const std::string& what) {
+  if (made == nullptr) throw Error(Error::device, "ROS 2: " + what);
+}
+
+Node::Implementation::Implementation(const Network& network) {
+  if (!network.interface.empty()) expect_own(network.interface);
+  // It would write to the program's standard output.
+  eprosima::fastdds::dds::Log::ClearConsumers();
+  participant = DomainParticipantFactory::get_instance()->create_participant(
+      static_cast<std::uint32_t>(network.domain), participant_qos(network));
+  expect_made(participant, fmt::format("no participant in domain {}: are all of its ports taken?",
+                                       network.domain));
+}
+
+Node::Implementation::~Implementation() {
+  if (participant == nullptr) return;
+  participant->delete_contained_entities();
+  DomainParticipantFactory::get_instance()->delete_participant(participant);
+}
+
+eprosima::fastdds::dds::Topic* Node::Implementation::topic(const Topic& topic) {
+  const std::lock_guard lock(mutex);
+  const std::string name = wire_name(topic.name);
+  if (auto* const known = participant->lookup_topicdescription(name)) {
+    if (known->get_type_name() != topic.type) {
+      throw Error(fmt::format("ROS 2: expected {} to be of {}, it is used as {}", topic.name,
+                              topic.type, known->get_type_name()));
+    }
+    return static_cast<eprosima::fastdds::dds::Topic*>(known);
+  }
+  if (!participant->find_type(topic.type)) {
+    TypeSupport(new PayloadType(topic.type, most_message_bytes)).register_type(participant);
+  }
+  auto* const made =
+      participant->create_topic(name, topic.type, eprosima::fastdds::dds::TOPIC_QOS_DEFAULT);
+  expect_made(made, topic.name + " is no topic");
+  return made;
+}
+
+std::shared_ptr<Node> Node::open(const Network& network) {
+  static std::mutex mutex;
+  static std::map<std::tuple<int, std::string, bool>, std::weak_ptr<Node>> nodes;
+  const std::lock_guard lock(mutex);
+  std::weak_ptr<Node>& known = nodes[{network.domain, network.interface, network.shared_memory}];
+  if (auto node = known.lock()) return node;
+  const std::shared_ptr<Node> node(new Node(network));
+  known = node;
+  return node;
+}
+
+Node::Node(const Network& network) : implementation_(std::make_unique<Implementation>(network)) {}
+
+Node::~Node() = default;
+
+}  // namespace diminish::dds

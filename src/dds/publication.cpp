@@ -1,0 +1,67 @@
+#include <fastdds/dds/publisher/DataWriter.hpp>
+#include <fastdds/dds/publisher/Publisher.hpp>
+#include <fastdds/dds/publisher/qos/DataWriterQos.hpp>
+
+#include "dds/node.h"
+
+namespace diminish::dds {
+namespace {
+
+using namespace eprosima::fastdds::dds;
+
+constexpr int newest_depth = 2;
+constexpr int kept_depth = 16;
+
+DataWriterQos writer_qos(Delivery delivery) {
+  DataWriterQos qos;
+  qos.reliability().kind =
+      delivery == Delivery::newest ? BEST_EFFORT_RELIABILITY_QOS : RELIABLE_RELIABILITY_QOS;
+  qos.durability().kind =
+      delivery == Delivery::kept ? TRANSIENT_LOCAL_DURABILITY_QOS : VOLATILE_DURABILITY_QOS;
+  qos.history().kind = KEEP_LAST_HISTORY_QOS;
+  qos.history().depth = delivery == Delivery::kept ? kept_depth : newest_depth;
+  qos.data_sharing().off();
+  // Large messages go in pieces, on a thread of their own.
+  qos.publish_mode().kind = ASYNCHRONOUS_PUBLISH_MODE;
+  qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::DYNAMIC_REUSABLE_MEMORY_MODE;
+  return qos;
+}
+
+}  // namespace
+
+struct Publication::Implementation {
+  std::shared_ptr<Node> node;
+  Publisher* publisher = nullptr;
+  DataWriter* writer = nullptr;
+};
+
+Publication::Publication(std::shared_ptr<Node> node, const diminish::dds::Topic& topic,
+                         Delivery delivery)
+    : implementation_(std::make_unique<Implementation>()) {
+  Implementation& self = *implementation_;
+  self.node = std::move(node);
+  auto& inner = self.node->implementation();
+  self.publisher = inner.participant->create_publisher(PUBLISHER_QOS_DEFAULT);
+  expect_made(self.publisher, "no publisher can be made");
+  self.writer = self.publisher->create_datawriter(inner.topic(topic), writer_qos(delivery));
+  expect_made(self.writer, topic.name + " cannot be written");
+}
+
+Publication::~Publication() {
+  if (implementation_->writer)
+    implementation_->publisher->delete_datawriter(implementation_->writer);
+  implementation_->node->implementation().participant->delete_publisher(implementation_->publisher);
+}
+
+void Publication::send(const std::vector<std::uint8_t>& message) {
+  // Fast DDS takes what it only reads as non-const.
+  implementation_->writer->write(const_cast<std::vector<std::uint8_t>*>(&message));
+}
+
+std::size_t Publication::listeners() const {
+  PublicationMatchedStatus status;
+  implementation_->writer->get_publication_matched_status(status);
+  return static_cast<std::size_t>(status.current_count);
+}
+
+}  // namespace diminish::dds

@@ -1,0 +1,130 @@
+#include "live/camera_node.h"
+
+#include <algorithm>
+#include <atomic>
+#include <mutex>
+#include <thread>
+
+#include "camera/ros2_address.h"
+#include "diminish/error.h"
+#include "live/camera_messages.h"
+#include "source/find_camera.h"
+
+namespace diminish {
+namespace {
+
+/// As for a session's cameras.
+constexpr double first_retry_s = 0.2;
+constexpr double last_retry_s = 5;
+
+}  // namespace
+
+struct CameraNode::Implementation {
+  explicit Implementation(const CameraNodeOptions& wanted) : options(wanted) {
+    const CameraUri uri = parse_camera_uri("ros2:" + options.topic);
+    uri.expect_parameters({"domain", "interface", "transport", "reliable"});
+    parse_camera_uri(options.uri);
+    const auto name_of = [&](const char* name) { return ros2_topic(uri, uri.target, name); };
+    name_of("rgbd");
+    if (options.rig) take_lenses(*options.rig);
+    const auto delivery = uri.has("reliable") ? dds::Delivery::reliable : dds::Delivery::newest;
+    messages.emplace(dds::Node::open(parse_ros2_network(uri)), name_of, delivery,
+                     options.jpeg_quality);
+    thread = std::thread([this] { work(); });
+  }
+  ~Implementation() {
+    is_stopped = true;
+    thread.join();
+  }
+
+  void take_lenses(const Rig& rig) {
+    if (options.name == "color") {
+      lenses.color = rig.color;
+      return;
+    }
+    const RgbdCamera* const camera = find_rgbd_camera(rig, options.name);
+    if (!camera) throw Error("the rig has no camera '" + options.name + "'");
+    lenses = {camera->color, std::nullopt, camera->depth_unit_m, camera->color_from_depth};
+    if (camera->measures_depth) lenses.depth = camera->depth;
+  }
+
+  void work() {
+    double retry_s = first_retry_s;
+    while (!is_stopped) {
+      const std::size_t before = status.images;
+      std::string what;
+      try {
+        publish_until_gone();
+        const std::lock_guard lock(mutex);
+        status.has_ended = !is_stopped;
+        return;
+      } catch (const std::exception& error) {
+        what = error.what();
+      } catch (...) {
+        what = "an unknown error";
+      }
+      {
+        const std::lock_guard lock(mutex);
+        status.problem = what;
+        retry_s = status.images > before ? first_retry_s : std::min(2 * retry_s, last_retry_s);
+      }
+      const double end_s = monotonic_now_s() + retry_s;
+      while (!is_stopped && monotonic_now_s() < end_s) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      }
+    }
+  }
+
+  void publish_until_gone() {
+    CameraRequest request;
+    request.name = options.name;
+    request.rig = options.rig ? &*options.rig : nullptr;
+    request.epoch_s = monotonic_now_s();
+    const auto source = open_camera(options.uri, request);
+    CameraImage image;
+    while (!is_stopped) {
+      const auto got = source->read(image, std::chrono::milliseconds(100));
+      if (got == CameraSource::Status::end) return;
+      if (got == CameraSource::Status::image && image.fault.empty()) {
+        if (!options.rig) learn_lenses(*source);
+        messages->send(image, lenses);
+      }
+      const std::lock_guard lock(mutex);
+      if (got == CameraSource::Status::image) {
+        ++(image.fault.empty() ? status.images : status.damaged);
+        if (!image.fault.empty()) status.problem = image.fault;
+      }
+      status.moments = messages->moments();
+      status.color_bytes = messages->color_bytes();
+      status.depth_bytes = messages->depth_bytes();
+      status.listeners = messages->listeners();
+      status.compress_ms = messages->compress_ms();
+    }
+  }
+
+  void learn_lenses(const CameraSource& source) {
+    if (!lenses.color) lenses.color = source.intrinsics(Sensor::color);
+    if (!lenses.depth) lenses.depth = source.intrinsics(Sensor::depth);
+    lenses.color_from_depth = source.color_from_depth().value_or(RigidTransform{});
+  }
+
+  CameraNodeOptions options;
+  NodeLenses lenses;
+  std::optional<CameraMessages> messages;
+  std::atomic<bool> is_stopped = false;
+  mutable std::mutex mutex;  ///< guards the status
+  CameraNodeStatus status;
+  std::thread thread;  ///< last: it uses all of the above
+};
+
+CameraNode::CameraNode(const CameraNodeOptions& options)
+    : implementation_(std::make_unique<Implementation>(options)) {}
+
+CameraNode::~CameraNode() = default;
+
+CameraNodeStatus CameraNode::status() const {
+  const std::lock_guard lock(implementation_->mutex);
+  return implementation_->status;
+}
+
+}  // namespace diminish
