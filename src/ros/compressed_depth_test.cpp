@@ -84,23 +84,24 @@ TEST(CompressedDepth, InverseDepthIsRead) {
 }
 
 TEST(CompressedDepth, WhatIsNotDepthIsRefused) {
-  Depth back;
+  const auto error_for = [](const std::string& format, const Bytes& data) {
+    CompressedImageMessage message;
+    message.format = format;
+    message.data = data;
+    return error_of([&] {
+      Depth back;
+      read_compressed_depth(message, .001, back);
+    });
+  };
   const cv::Mat color(4, 4, CV_8UC3, cv::Scalar(1, 2, 3));
-  EXPECT_THAT(
-      error_of([&] {
-        read_compressed_depth({{}, "16UC1; compressedDepth", with_config(color, 0, 0)}, .001, back);
-      }),
-      HasSubstr("one 16-bit channel"));
-  EXPECT_THAT(error_of([&] {
-                read_compressed_depth({{}, "bgr8; jpeg compressed", Bytes(40)}, .001, back);
-              }),
+  EXPECT_THAT(error_for("16UC1; compressedDepth", with_config(color, 0, 0)),
+              HasSubstr("one 16-bit channel"));
+  EXPECT_THAT(error_for("bgr8; jpeg compressed", Bytes(40)),
               HasSubstr("expected compressed depth of 16UC1 or 32FC1, got 'bgr8; jpeg"));
   Bytes huge(40);
   huge[15] = 0x7f;  // of the width
   huge[16] = 1;
-  EXPECT_THAT(error_of([&] {
-                read_compressed_depth({{}, "16UC1; compressedDepth rvl", huge}, .001, back);
-              }),
+  EXPECT_THAT(error_for("16UC1; compressedDepth rvl", huge),
               HasSubstr("at most 67 million pixels"));
 }
 
