@@ -79,15 +79,16 @@ void RecordingWriter::Implementation::work() {
       waiting_.pop_front();
     }
     std::string problem;
+    bool is_new = false;
     try {
       // Only this thread changes the number of frames.
-      folder_.write(frame->input, fmt::format("{:06}", status_.frames));
+      is_new = folder_.write(frame->input, fmt::format("{:06}", status_.frames));
     } catch (const std::exception& error) {
       problem = error.what();
     }
     const std::lock_guard lock(mutex_);
     if (problem.empty()) {
-      ++status_.frames;
+      status_.frames += is_new ? 1 : 0;
       continue;
     }
     status_.problem = problem;

@@ -68,11 +68,11 @@ TEST_P(Writer, WhatIsWrittenIsReadAgain) {
       auto live = std::make_shared<LiveFrame>();
       live->input = frame;
       offer_and_wait(*writer, live);
-      offer_and_wait(*writer, live);  // as when two frames share an RGB-D image
+      writer->offer(live);  // the same frame again is none
     }
     writer->finish();
     EXPECT_EQ(writer->status().problem, "");
-    EXPECT_EQ(writer->status().frames, 2 * original.size());
+    EXPECT_EQ(writer->status().frames, original.size());
   }
   const std::vector<FrameSet> read = frames_of(copy);  // with what scene.yaml names
   ASSERT_EQ(read.size(), original.size());
@@ -137,11 +137,15 @@ INSTANTIATE_TEST_SUITE_P(Recordings, Writer, ::testing::Values("calendar", "ball
 class CalendarWriter : public Writer {};
 
 TEST_P(CalendarWriter, DropsAndCountsWhatItHasNoTimeFor) {
-  auto live = std::make_shared<LiveFrame>();
-  live->input = frames_of(source_).front();
+  const FrameSet first = frames_of(source_).front();
   const auto writer = write_to(folder_.path() / "copy");
-  constexpr std::size_t offered = 500;
-  for (std::size_t i = 0; i < offered; ++i) writer->offer(live);
+  constexpr std::size_t offered = 100;
+  for (std::size_t i = 0; i < offered; ++i) {
+    auto live = std::make_shared<LiveFrame>();
+    live->input = first;
+    live->input.stamp_s += static_cast<double>(i);
+    writer->offer(live);
+  }
   writer->finish();
   EXPECT_GT(writer->status().dropped, 0U);
   EXPECT_EQ(writer->status().frames + writer->status().dropped, offered);

@@ -97,8 +97,9 @@ void RecordingFolder::follow_clock(double stamp_s) {
   clock_shift_s_ = color_.last_stamp_s + usual_period_s - stamp_s;
 }
 
-void RecordingFolder::write(const FrameSet& frame, const std::string& name) {
+bool RecordingFolder::write(const FrameSet& frame, const std::string& name) {
   follow_clock(frame.stamp_s);
+  if (frame.stamp_s + clock_shift_s_ <= color_.last_stamp_s) return false;
   for (std::size_t k = 0; k < frame.rgbd.size(); ++k) {
     const RgbdFrame& rgbd = frame.rgbd[k];
     if (!rgbd_depth_[k] ? !rgbd.has_picture() : !rgbd.available()) continue;
@@ -111,6 +112,7 @@ void RecordingFolder::write(const FrameSet& frame, const std::string& name) {
       write_image(*rgbd_depth_[k], rgbd.depth, rgbd.depth_stamp_s + clock_shift_s_, name);
   }
   write_image(color_, frame.color, frame.stamp_s + clock_shift_s_, name);
+  return true;
 }
 
 std::string RecordingFolder::file_of(const Stream& stream, const std::string& name,

@@ -29,8 +29,9 @@ class RecordingFolder {
   std::filesystem::path place_of(const std::filesystem::path& named) const;
   /// Adds a frame; its images are called `name`. An image with the timestamp of the one before is
   /// that one, and one that is the colour camera's picture is not written again. If the clock was
-  /// set back, time goes on from the frame before. Throws Error.
-  void write(const FrameSet& frame, const std::string& name);
+  /// set back, time goes on from the frame before. Returns whether it is a new frame: with the
+  /// timestamp of the last one it is not, and nothing is written. Throws Error.
+  bool write(const FrameSet& frame, const std::string& name);
 
  private:
   /// A sensor's folder and list.

@@ -36,7 +36,7 @@ void read_corners(const Config& place, GivenPlane& plane) {
   }
   constexpr double least_area_m2 = 1e-6;
   if (!(plane.normal.norm() > least_area_m2))
-    place.fail("expected corners that are not on one line");
+    place.fail("expected corners in their order around the part, not on one line");
   plane.normal.normalize();
   for (std::size_t i = 0; i < count; ++i) {
     if (std::abs(plane.normal.dot(corners[i] - plane.point)) > 0.01 * size_m) {
