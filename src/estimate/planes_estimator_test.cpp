@@ -251,8 +251,10 @@ TEST(PlanesEstimator, WhatIsNoPlaneIsNamed) {
               HasSubstr("planes[0].normal: expected a direction, got a vector without length"));
   EXPECT_THAT(complaint("{point: [0, 0, 0]}"), HasSubstr("planes[0]: missing key 'normal'"));
   EXPECT_THAT(complaint("{corners: [[0, 0, 0], [1, 0, 0]]}"), HasSubstr("expected 3 to 8 corners"));
-  EXPECT_THAT(complaint("{corners: [[0, 0, 0], [1, 0, 0], [2, 0, 0]]}"),
-              HasSubstr("planes[0].corners: expected corners in their order around the part, not on one line"));
+  EXPECT_THAT(
+      complaint("{corners: [[0, 0, 0], [1, 0, 0], [2, 0, 0]]}"),
+      HasSubstr(
+          "planes[0].corners: expected corners in their order around the part, not on one line"));
   EXPECT_THAT(complaint("{corners: [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.5]]}"),
               HasSubstr("planes[0].corners: expected corners of one plane"));
   EXPECT_THAT(complaint("{corners: [[0, 0, 0], [1, 1, 0], [1, 0, 0], [0, 1, 0]]}"),
