@@ -152,6 +152,13 @@ void StreamDelay::compare(const Inputs& inputs, std::size_t begin, std::size_t e
   if (moments.size() < 2) return;
   const auto scale = 1 / static_cast<float>(shrinkage_);
   /// 0 where it is not known
+  const auto level_at = [&](const Image<std::uint8_t>& grey, float u, float v) {
+    const float column = (u + 0.5F) * scale;
+    const float row = (v + 0.5F) * scale;
+    const bool is_inside = column >= 0 && row >= 0 && column < static_cast<float>(grey.width()) &&
+                           row < static_cast<float>(grey.height());
+    return is_inside ? int{grey(static_cast<int>(column), static_cast<int>(row))} : 0;
+  };
   const auto level_then = [&](const Then& then, const Eigen::Vector3f& point_m) {
     const auto at = [&](int axis) {
       return then.from_now.apply(axis, point_m.x(), point_m.y(), point_m.z());
@@ -161,13 +168,7 @@ void StreamDelay::compare(const Inputs& inputs, std::size_t begin, std::size_t e
     float u = 0;
     float v = 0;
     if (!(z > nearest_m) || !projection_.distort(at(0) / z, at(1) / z, u, v)) return 0;
-    const float column = (u + 0.5F) * scale;
-    const float row = (v + 0.5F) * scale;
-    if (!(column >= 0 && row >= 0 && column < static_cast<float>(then.grey.width()) &&
-          row < static_cast<float>(then.grey.height()))) {
-      return 0;
-    }
-    return int{then.grey(static_cast<int>(column), static_cast<int>(row))};
+    return level_at(then.grey, u, v);
   };
   std::vector<Changed> changed;
   Relation relation;
@@ -177,7 +178,8 @@ void StreamDelay::compare(const Inputs& inputs, std::size_t begin, std::size_t e
     int least = 255;
     int greatest = 0;
     for (std::size_t m = 0; m < moments.size() && least > 0; ++m) {
-      seen.then[m] = level_then(moments[m], sample.point_m);
+      seen.then[m] = m == 0 ? level_at(moments[0].grey, sample.pixel.x(), sample.pixel.y())
+                            : level_then(moments[m], sample.point_m);
       least = std::min(least, seen.then[m]);
       greatest = std::max(greatest, seen.then[m]);
     }

@@ -39,7 +39,8 @@ class StreamDelay {
     const SceneSamples& samples;
   };
   /// late_s: for each RGB-D camera by how much its images are late, to about 0.06 s; nothing where
-  /// they are not, or too little moves. Waits for its turn and ends it. Cost: 0.1 us a sample.
+  /// they are not, or too little moves. Waits for its turn and ends it. Cost: 0.1 us a sample, and
+  /// what it takes to make a picture smaller.
   void find(const Inputs& inputs, std::vector<std::optional<double>>& late_s);
 
  private:
