@@ -1,6 +1,6 @@
 # The two commands to know: `make demo` and `make test`. Everything they need, they install.
 
-.PHONY: help demo test test-page build deps python wheel gallery bench lint format sanitize tsan fuzz soak sbom reproducible clean bench-gl
+.PHONY: help demo test test-page build deps python wheel deb gallery bench lint format sanitize tsan fuzz soak sbom reproducible clean bench-gl
 
 help:
 	@echo "make demo      remove the objects of the bundled recordings, print the figures"
@@ -9,6 +9,7 @@ help:
 	@echo "make build     build the program: build/release/diminish"
 	@echo "make python    build the Python module: build/release/python"
 	@echo "make wheel     pack it for pip: dist/diminish-....whl"
+	@echo "make deb       Debian packages: dist/*.deb"
 	@echo "make gallery   all view modes on all recordings, on one page"
 	@echo "make bench     measure each stage beside its peer"
 	@echo "make bench-gl  measure what runs on the GPU"
@@ -42,6 +43,9 @@ python: deps
 
 wheel: python
 	/usr/bin/python3 python/build_backend.py build/release dist
+
+deb: deps
+	scripts/deb
 
 gallery: build
 	scripts/gallery

@@ -32,6 +32,9 @@ file(RELATIVE_PATH prefix_from_pc /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /pre
 configure_file(cmake/diminish.pc.in diminish.pc @ONLY)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/diminish.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig
   COMPONENT development)
+if(DIMINISH_DEBIAN)
+  include(cmake/debian.cmake)
+endif()
 if(DIMINISH_BUILD_TESTS)
   add_test(NAME library_as_installed COMMAND ${PROJECT_SOURCE_DIR}/scripts/check-library ${PROJECT_BINARY_DIR})
   set_tests_properties(library_as_installed PROPERTIES TIMEOUT 600)
