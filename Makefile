@@ -1,6 +1,6 @@
 # The two commands to know: `make demo` and `make test`. Everything they need, they install.
 
-.PHONY: help demo test test-page build deps python wheel deb gallery bench lint format sanitize tsan fuzz soak sbom reproducible clean bench-gl
+.PHONY: help demo test test-page build deps python wheel deb docs gallery bench lint format sanitize tsan fuzz soak sbom reproducible clean bench-gl
 
 help:
 	@echo "make demo      remove the objects of the bundled recordings, print the figures"
@@ -10,6 +10,7 @@ help:
 	@echo "make python    build the Python module: build/release/python"
 	@echo "make wheel     pack it for pip: dist/diminish-....whl"
 	@echo "make deb       Debian packages: dist/*.deb"
+	@echo "make docs      the docs as a site: build/site/index.html"
 	@echo "make gallery   all view modes on all recordings, on one page"
 	@echo "make bench     measure each stage beside its peer"
 	@echo "make bench-gl  measure what runs on the GPU"
@@ -46,6 +47,10 @@ wheel: python
 
 deb: deps
 	scripts/deb
+
+docs:
+	scripts/install-deps docs
+	/usr/bin/python3 scripts/docs
 
 gallery: build
 	scripts/gallery
