@@ -64,6 +64,7 @@ dds::Network parse_ros2_network(const CameraUri& uri) {
              printable(transport) + "'");
   }
   network.shared_memory = transport == "shm";
+  if (uri.has("mbits")) network.most_mbits = uri.number("mbits", 0, 1, 100'000);
   return network;
 }
 

@@ -49,6 +49,8 @@ TEST(Ros2Address, OtherMachinesAreReachedOnlyIfAnInterfaceIsNamed) {
   EXPECT_EQ(network.interface, "10.0.0.7");
   EXPECT_EQ(network.domain, 42);
   EXPECT_FALSE(network.shared_memory);
+  EXPECT_EQ(network.most_mbits, 0);
+  EXPECT_EQ(parse_ros2_network(parse_camera_uri("ros2:/c?mbits=90")).most_mbits, 90);
   setenv("ROS_DOMAIN_ID", "17", 1);
   EXPECT_EQ(parse("/c").network.domain, 17);
   setenv("ROS_DOMAIN_ID", "many", 1);

@@ -22,6 +22,9 @@ struct Network {
   std::string interface;
   /// Whether processes of this machine hand messages over through shared memory.
   bool shared_memory = true;
+  /// Mbit/s that this process sends at most; 0: as fast as it can. What there is no time for is
+  /// left out, message by message.
+  double most_mbits = 0;
 };
 
 /// ROS_DOMAIN_ID from the environment, else 0. Throws Error if it is not a number from 0 to 232.

@@ -13,6 +13,7 @@
 #include <cstdlib>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/log/Log.hpp>
+#include <fastdds/rtps/flowcontrol/FlowControllerDescriptor.hpp>
 #include <map>
 #include <tuple>
 #include <vector>
@@ -27,6 +28,7 @@ namespace {
 using eprosima::fastdds::dds::DomainParticipantFactory;
 using eprosima::fastdds::dds::DomainParticipantQos;
 using eprosima::fastdds::dds::TypeSupport;
+using eprosima::fastdds::rtps::FlowControllerDescriptor;
 using eprosima::fastdds::rtps::SharedMemTransportDescriptor;
 using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
 using eprosima::fastrtps::rtps::IPLocator;
@@ -39,6 +41,9 @@ constexpr std::uint32_t most_processes = 32;
 /// Room for a few pictures of several megabytes.
 constexpr std::uint32_t segment_bytes = 32u << 20;
 constexpr std::uint32_t socket_bytes = 8u << 20;
+/// How what is sent is spread over time, where there is a limit.
+constexpr const char* flow_controller_name = "limited";
+constexpr std::uint64_t flow_period_ms = 5;
 
 /// A program says each second that it is there, and is forgotten after five without a word: one
 /// that comes back is met within about a second.
@@ -68,6 +73,14 @@ DomainParticipantQos participant_qos(const Network& network) {
     const auto memory = std::make_shared<SharedMemTransportDescriptor>();
     memory->segment_size(segment_bytes);
     qos.transport().user_transports.push_back(memory);
+  }
+  if (network.most_mbits > 0) {
+    const auto flow = std::make_shared<FlowControllerDescriptor>();
+    flow->name = flow_controller_name;
+    flow->period_ms = flow_period_ms;
+    flow->max_bytes_per_period =
+        static_cast<std::int32_t>(network.most_mbits * 1e6 / 8 * flow_period_ms / 1000);
+    qos.flow_controllers().push_back(flow);
   }
   return qos;
 }
@@ -115,6 +128,7 @@ void expect_made(const void* made, const std::string& what) {
 
 Node::Implementation::Implementation(const Network& network) {
   if (!network.interface.empty()) expect_own(network.interface);
+  if (network.most_mbits > 0) flow_controller = flow_controller_name;
   // It would write to the program's standard output.
   eprosima::fastdds::dds::Log::ClearConsumers();
   participant = DomainParticipantFactory::get_instance()->create_participant(
@@ -150,9 +164,10 @@ eprosima::fastdds::dds::Topic* Node::Implementation::topic(const Topic& topic) {
 
 std::shared_ptr<Node> Node::open(const Network& network) {
   static std::mutex mutex;
-  static std::map<std::tuple<int, std::string, bool>, std::weak_ptr<Node>> nodes;
+  static std::map<std::tuple<int, std::string, bool, double>, std::weak_ptr<Node>> nodes;
   const std::lock_guard lock(mutex);
-  std::weak_ptr<Node>& known = nodes[{network.domain, network.interface, network.shared_memory}];
+  std::weak_ptr<Node>& known =
+      nodes[{network.domain, network.interface, network.shared_memory, network.most_mbits}];
   if (auto node = known.lock()) return node;
   const std::shared_ptr<Node> node(new Node(network));
   known = node;

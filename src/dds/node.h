@@ -18,6 +18,8 @@ struct Node::Implementation {
   /// The topic, made if there is none. Throws Error. What is returned is the participant's.
   eprosima::fastdds::dds::Topic* topic(const Topic& topic);
 
+  /// Of Fast DDS's flow controllers, the one for what is sent; null: none.
+  const char* flow_controller = nullptr;
   std::mutex mutex;
   eprosima::fastdds::dds::DomainParticipant* participant = nullptr;
 };

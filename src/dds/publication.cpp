@@ -41,9 +41,11 @@ Publication::Publication(std::shared_ptr<Node> node, const diminish::dds::Topic&
   Implementation& self = *implementation_;
   self.node = std::move(node);
   auto& inner = self.node->implementation();
+  DataWriterQos qos = writer_qos(delivery);
+  if (inner.flow_controller) qos.publish_mode().flow_controller_name = inner.flow_controller;
   self.publisher = inner.participant->create_publisher(PUBLISHER_QOS_DEFAULT);
   expect_made(self.publisher, "no publisher can be made");
-  self.writer = self.publisher->create_datawriter(inner.topic(topic), writer_qos(delivery));
+  self.writer = self.publisher->create_datawriter(inner.topic(topic), qos);
   expect_made(self.writer, topic.name + " cannot be written");
 }
 

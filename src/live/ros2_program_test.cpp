@@ -120,6 +120,9 @@ TEST_F(Ros2Program, ALiveSessionRunsOnNodesAndPublishesItsResult) {
   const CameraImage picture = next_image(*result, Sensor::color);
   EXPECT_EQ(picture.fault, "");
   EXPECT_EQ(picture.color.width(), recording_.rig.color.width);
+  for (int i = 0; i < 300 && !result->intrinsics(Sensor::color); ++i) {
+    next_image(*result, Sensor::color);
+  }
   ASSERT_TRUE(result->intrinsics(Sensor::color));
   EXPECT_NEAR(result->intrinsics(Sensor::color)->fx, recording_.rig.color.fx, 1e-9);
   const auto mask = open_camera("ros2:/diminish?color=mask", {"color", nullptr, 0});
