@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include <thread>
+#include <cmath>
 
 #include "camera/sender_clock.h"
 #include "dds/dds.h"
@@ -28,7 +28,7 @@ class Ros2Camera : public ::testing::Test {
     return *topics_.back();
   }
   template <class Message>
-  static void send(dds::Publication& to, Message message, double stamp_s) {
+  static void send(dds::Publication& to, Message message, [[maybe_unused]] double stamp_s) {
     if constexpr (requires { message.header; }) message.header.stamp_s = stamp_s;
     std::vector<std::uint8_t> bytes;
     ros::write_message(message, bytes);

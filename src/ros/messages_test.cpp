@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <limits>
+
 #include "expect_error.h"
 
 namespace diminish::ros {

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include <fstream>
+#include <algorithm>
 #include <sstream>
 
 #include "expect_error.h"
@@ -38,7 +38,7 @@ std::string with_length(const std::string& text) {
   return raw(static_cast<std::uint32_t>(text.size())) + text;
 }
 
-std::string pack(const std::string& method, const std::string& bytes) {
+std::string pack([[maybe_unused]] const std::string& method, const std::string& bytes) {
   std::string packed(bytes.size() + 1000, '\0');
   std::size_t size = 0;
 #ifdef DIMINISH_HAS_BZIP2
