@@ -55,6 +55,7 @@
 #include "diminish/rig.h"
 #include "diminish/rig_calibration.h"
 #include "diminish/rigid_transform.h"
+#include "diminish/ros2_output.h"
 #include "diminish/runner.h"
 #include "diminish/scan.h"
 #include "diminish/scene.h"
