@@ -19,7 +19,7 @@ struct InitCommand {
   std::filesystem::path folder;
   std::string color;
   std::vector<std::string> rgbd, color_only;  ///< [NAME=]CAMERA
-  double marker_mm = 140;  ///< fits on A4
+  double marker_mm = 140;                     ///< fits on A4
 
   int execute() const;
 };
