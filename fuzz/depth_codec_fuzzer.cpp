@@ -22,7 +22,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   const int height = static_cast<int>(bytes.size() / 2) / width;
   Image<std::uint16_t> pixels(width, height);
-  std::memcpy(pixels.data(), bytes.data(), pixels.size() * 2);
+  if (!pixels.empty()) std::memcpy(pixels.data(), bytes.data(), pixels.size() * 2);
   std::vector<std::uint8_t> compressed;
   ros::compress_depth(pixels, compressed);
   Image<std::uint16_t> back(width, height);
