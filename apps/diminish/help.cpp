@@ -55,10 +55,11 @@ void HelpCommand::execute(const CLI::App& program) const {
     const auto named = chosen->get_subcommands(
         [&word](const CLI::App* below) { return below->get_name() == word; });
     if (named.empty()) {
-      throw Error("help: expected a command of " + path + ", got '" + word + "'");
+      throw Error(fmt::format("help: expected a command of {}, got '{}'", path, word));
     }
     chosen = named.front();
-    path += " " + word;
+    path += ' ';
+    path += word;
   }
   if (!write_to.empty()) {
     write_all(command_tree(program, program.get_name()), write_to);

@@ -37,7 +37,7 @@ class Ros2Camera : public CameraSource {
         opened_s_(monotonic_now_s()),
         subscriptions_(dds::Node::open(address_.network)) {
     const RgbdCamera* const camera =
-        has_rig_ ? find_rgbd_camera(*request.rig, request.name) : nullptr;
+        request.rig != nullptr ? find_rgbd_camera(*request.rig, request.name) : nullptr;
     wants_depth_ = request.name != "color" && (!camera || camera->measures_depth);
     if (camera) depth_unit_m_ = camera->depth_unit_m;
     if (!wants_depth_ && !address_.color && address_.rgbd.empty()) {
@@ -85,7 +85,7 @@ class Ros2Camera : public CameraSource {
   template <class Message>
   void add(const std::string& topic, Role role, Delivery delivery) {
     subscriptions_.add({topic, Message::dds_type}, delivery);
-    topics_.push_back({topic, role});
+    topics_.emplace_back(topic, role);
   }
   void add(const Ros2Address::Stream& stream, Role image, Role info) {
     if (stream.kind == Kind::image) {
