@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -16,6 +15,7 @@
 #include "inpaint/plane_colors.h"
 #include "inpaint/surface_rules.h"
 #include "membrane/smooth_filling.h"
+#include "scene/thing_step.h"
 
 namespace diminish {
 namespace {
@@ -283,7 +283,7 @@ class SurfaceInpainting : public Inpainter {
           if (state_row(row)[column] != state::foreground || !measured.contains(column, row)) {
             continue;
           }
-          if (std::abs(holes.depth_m(column, row) - side_m(x, y)) < surface_rules::thing_step_m) {
+          if (may_be_one_thing(holes.depth_m(column, row), side_m(x, y))) {
             kinds(column - box.x + 1, row - box.y + 1) = SmoothFilling::known;
           }
         }

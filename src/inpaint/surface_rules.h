@@ -16,7 +16,4 @@ inline constexpr int plane_rim_percent = 60;
 /// contact shadow, which disappears with the object.
 inline constexpr float shadow = 0.85F;
 
-/// Depths of one thing, from pixel to pixel, differ by less.
-inline constexpr float thing_step_m = 0.05F;
-
 }  // namespace diminish::surface_rules

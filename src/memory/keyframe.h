@@ -13,7 +13,7 @@
 #include "diminish/rig.h"
 #include "diminish/rigid_transform.h"
 #include "diminish/scene_samples.h"
-#include "geometry/projection.h"
+#include "geometry/point_projection.h"
 #include "geometry/ray_table.h"
 #include "memory/point_rows.h"
 #include "memory/testimony.h"
@@ -111,26 +111,6 @@ class KeyframeGrid {
   Projection lens_;  ///< of the grid
   std::shared_ptr<const RayTable> rays_, overview_rays_;
 };
-
-/// The pixel nearest to the projection of a point; nothing behind the camera or outside the lens.
-struct Pixel {
-  int x, y;
-};
-inline std::optional<Pixel> project(const Projection& lens, const Eigen::Vector3f& point_m) {
-  float u = 0;
-  float v = 0;
-  if (!(point_m.z() > PointView::nearest_m) ||
-      !lens.distort(point_m.x() / point_m.z(), point_m.y() / point_m.z(), u, v)) {
-    return std::nullopt;
-  }
-  constexpr float most = PointView::most_px;
-  if (!(std::abs(u) < most && std::abs(v) < most)) return std::nullopt;
-  return Pixel{static_cast<int>(std::lrint(u)), static_cast<int>(std::lrint(v))};
-}
-inline Eigen::Vector3f transform(const FloatTransform& a_from_b, const Eigen::Vector3f& point_m) {
-  const auto& [x, y, z] = std::array{point_m.x(), point_m.y(), point_m.z()};
-  return {a_from_b.apply(0, x, y, z), a_from_b.apply(1, x, y, z), a_from_b.apply(2, x, y, z)};
-}
 
 /// How far around the objects to remove a keyframe holds nothing: a cell of the grid, and what
 /// their edges shine onto.

@@ -27,9 +27,9 @@ HWY_INLINE void FindSome(D d, const PointRow& points, const PointView& view, int
   hn::Vec<D> u, v;
   const auto in_radius =
       Distort<model>(d, view.lens, hn::Div(apply(0), z), hn::Div(apply(1), z), u, v);
-  const auto limit = set(PointView::most_px);
+  const auto limit = set(farthest_px);
   const auto valid =
-      hn::And(hn::And(hn::Gt(own_z, hn::Zero(d)), hn::Gt(z, set(PointView::nearest_m))),
+      hn::And(hn::And(hn::Gt(own_z, hn::Zero(d)), hn::Gt(z, set(nearest_seen_m))),
               hn::And(in_radius, hn::And(hn::Lt(hn::Abs(u), limit), hn::Lt(hn::Abs(v), limit))));
   // Invalid values become 0, which can be converted safely.
   const auto column = hn::NearestInt(hn::IfThenElseZero(valid, u));

@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "diminish/image.h"
-#include "geometry/projection.h"
+#include "geometry/point_projection.h"
 
 namespace diminish {
 
@@ -17,9 +17,6 @@ struct PointRow {
 
 /// Another camera that looks at these points, with an image of its own.
 struct PointView {
-  static constexpr float nearest_m = 0.05F;  ///< it sees nothing nearer
-  static constexpr float most_px = 1e6F;     ///< from its image; distortion may say more
-
   FloatTransform from_points;  ///< from their frame to the camera's
   const Projection& lens;
   Rect inside;  ///< the part of the image that counts

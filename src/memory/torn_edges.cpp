@@ -125,16 +125,10 @@ void TornEdges::close_pixel(const View& view, const Pixel& pixel, float z_m,
 std::optional<Bgr> TornEdges::look(const View& view, const Eigen::Vector3f& x_in_color) const {
   constexpr float same_surface = 0.03F;
   const Eigen::Vector3f point = transform(view.keyframe_from_color, x_in_color);
-  float u = 0;
-  float v = 0;
-  if (!(point.z() > PointView::nearest_m) ||
-      !grid_.lens().distort(point.x() / point.z(), point.y() / point.z(), u, v)) {
-    return std::nullopt;
-  }
-  const auto scale = static_cast<float>(grid_.step());
-  const auto rounded = [](float value) { return static_cast<int>(std::lrint(value)); };
-  const Pixel place{rounded(u), rounded(v)};
-  const Pixel pixel{rounded(u * scale), rounded(v * scale)};
+  const auto at = project_exactly(grid_.lens(), point);
+  if (!at) return std::nullopt;
+  const Pixel place = nearest_pixel(*at);
+  const Pixel pixel = nearest_pixel(static_cast<float>(grid_.step()) * *at);
   if (!view.depth.bounds().contains(place.x, place.y) ||
       !view.picture.bounds().contains(pixel.x, pixel.y)) {
     return std::nullopt;

@@ -40,6 +40,7 @@ void begin(const FrameSet& frame, DiminishedFrame& result) {
   result.name = frame.name;
   result.index = frame.index;
   result.stamp_s = frame.stamp_s;
+  result.surfaces.standing_depth_m.resize(0, 0);
   FrameReport& report = result.report;
   report.mask_pixels = report.valid_pixels = report.missing_pixels = 0;
   report.witnessed_pixels = report.remembered_pixels = 0;
@@ -423,7 +424,6 @@ void Pipeline::Implementation::process(const FrameSet& given, DiminishedFrame& r
   stage(Stage::colors,
         [&] { compositor.correct_colors(inputs, color_maps.by_source(), *corrector, result); });
   stage(Stage::inpainting, [&] {
-    result.surfaces.standing_depth_m.resize(0, 0);
     if (completes_sides()) {
       standing_things.find(
           {frame, report.poses, masks, objects, result.reconstruction, *background.planes()},

@@ -8,6 +8,7 @@
 #include "core/runs.h"
 #include "depth/depth_noise.h"
 #include "diminish/diminished_frame.h"
+#include "scene/thing_step.h"
 
 namespace diminish {
 namespace {
@@ -15,8 +16,6 @@ namespace {
 /// A plane on which things stand faces at least this far up in the picture (cosine).
 constexpr float least_up = 0.35F;
 constexpr float lowest_top_m = 0.02F;
-/// Depths of one thing, from pixel to pixel, differ by less.
-constexpr float step_m = 0.05F;
 /// A top rises less steeply than this.
 constexpr float top_slope = 0.3F;
 /// Pixels to each side at which a top's slope is measured: far enough for the noise in depth.
@@ -30,7 +29,6 @@ constexpr float deepest_m = 0.5F;
 /// A camera looks through a place if it measures something this far behind it.
 constexpr DepthNoise behind{0.03F, 0.01F};
 constexpr int widest_slit_px = 24;
-constexpr float nearest_m = 0.1F;
 
 const BackgroundPlane* find_support(const std::vector<BackgroundPlane>& planes) {
   const BackgroundPlane* best = nullptr;
@@ -57,53 +55,45 @@ struct StandingThings::View {
     const float drawn = depth_m(x, y);
     if (drawn == 0) return true;
     const std::uint8_t source = input.reconstruction.source(x, y);
-    return drawn > z_m + step_m && source != provenance::witnessed &&
+    return drawn > z_m + thing_step_m && source != provenance::witnessed &&
            source != provenance::remembered;
   }
 };
 
 StandingThings::StandingThings(const Rig& rig) : color_(Lens(rig.color)), rays_(rig.color) {
   for (const RgbdCamera& camera : rig.rgbd) {
-    cameras_.push_back({Projection(Lens(camera.depth)),
-                        static_cast<float>(camera.depth_unit_m),
-                        {},
-                        Eigen::Vector3f::Zero()});
+    Camera& added = cameras_.emplace_back();
+    added.lens = Projection(Lens(camera.depth));
+    added.unit_m = static_cast<float>(camera.depth_unit_m);
   }
 }
 
 void StandingThings::place_cameras(const Input& input) {
   for (std::size_t k = 0; k < cameras_.size(); ++k) {
     Camera& camera = cameras_[k];
-    camera.depth_from_color.reset();
-    if (!input.poses.color_from_depth[k] || !input.frame.rgbd[k].available()) continue;
-    camera.depth_from_color.emplace(input.poses.color_from_depth[k]->inverse());
-    camera.centre = input.poses.color_from_depth[k]->translation.cast<float>();
+    camera.depth = {};
+    const auto& color_from_depth = input.poses.color_from_depth[k];
+    if (!color_from_depth || !input.frame.rgbd[k].available()) continue;
+    camera.depth = input.frame.rgbd[k].depth;
+    camera.objects = input.masks.rgbd_depth[k];
+    camera.depth_from_color = FloatTransform(color_from_depth->inverse());
+    camera.centre = color_from_depth->translation.cast<float>();
   }
 }
 
 /// What an RGB-D camera says of a place below a top of this height.
 StandingThings::Place StandingThings::look_at(const View& view, const Camera& camera,
-                                              std::size_t index, const Eigen::Vector3f& point_m,
-                                              float top_height_m) const {
-  const auto coordinate = [&](int axis) {
-    return camera.depth_from_color->apply(axis, point_m.x(), point_m.y(), point_m.z());
-  };
-  const float z = coordinate(2);
-  float u = 0;
-  float v = 0;
-  if (!(z > nearest_m) || !camera.depth.distort(coordinate(0) / z, coordinate(1) / z, u, v)) {
-    return Place::unknown;
-  }
-  const ImageView<std::uint16_t> depth = view.input.frame.rgbd[index].depth;
-  const int x = static_cast<int>(std::lrint(u));
-  const int y = static_cast<int>(std::lrint(v));
-  if (!depth.bounds().contains(x, y)) return Place::unknown;
-  const Mask& objects = view.input.masks.rgbd_depth[index];
-  if (objects.bounds().contains(x, y) && objects(x, y) != 0) return Place::unknown;
-  const float measured = camera.unit_m * static_cast<float>(depth(x, y));
+                                              const Eigen::Vector3f& point_m, float top_height_m) {
+  if (camera.depth.empty()) return Place::unknown;
+  const Eigen::Vector3f point = transform(camera.depth_from_color, point_m);
+  const auto pixel = project(camera.lens, point);
+  if (!pixel || !camera.depth.bounds().contains(pixel->x, pixel->y)) return Place::unknown;
+  const auto& [x, y] = *pixel;
+  if (camera.objects.bounds().contains(x, y) && camera.objects(x, y) != 0) return Place::unknown;
+  const float measured = camera.unit_m * static_cast<float>(camera.depth(x, y));
   if (measured == 0) return Place::unknown;
-  if (measured > z + behind.at(z)) return Place::empty;
-  const Eigen::Vector3f hider = camera.centre + measured / z * (point_m - camera.centre);
+  if (measured > point.z() + behind.at(point.z())) return Place::empty;
+  const Eigen::Vector3f hider = camera.centre + measured / point.z() * (point_m - camera.centre);
   const bool is_side = view.plane.height_m(hider) < top_height_m - lowest_top_m &&
                        (point_m - hider).norm() < deepest_m;
   return is_side ? Place::hidden_by_side : Place::unknown;
@@ -118,9 +108,8 @@ bool StandingThings::is_solid(const View& view, const Eigen::Vector3f& top_m,
     const float below_m = static_cast<float>(i) / (places + 1) * height_m;
     const Eigen::Vector3f point = top_m - below_m * view.plane.normal;
     bool is_hidden = false;
-    for (std::size_t k = 0; k < cameras_.size(); ++k) {
-      if (!cameras_[k].depth_from_color) continue;
-      const Place place = look_at(view, cameras_[k], k, point, height_m);
+    for (const Camera& camera : cameras_) {
+      const Place place = look_at(view, camera, point, height_m);
       is_hidden |= place == Place::hidden_by_side;
       if (place == Place::empty && ++empty > most_empty) return false;
     }
@@ -140,7 +129,7 @@ bool StandingThings::is_top(const View& view, int x, int y) const {
     if (!view.part.contains(column, row)) return false;
     if (view.label(column, row) != surface_label::foreground) return false;
     const Eigen::Vector3f between = point(column, row) - here;
-    return std::abs(between.z()) < step_m &&
+    return std::abs(between.z()) < thing_step_m &&
            std::abs(view.plane.normal.dot(between)) < top_slope * between.norm();
   };
   const auto any = [&](const auto& is_level_at) {
@@ -157,20 +146,15 @@ void StandingThings::lower(const View& view, int x, int y, Surfaces& surfaces) c
   const float height_m = view.plane.height_m(top);
   if (height_m < lowest_top_m) return;
   const Eigen::Vector3f foot = top - height_m * view.plane.normal;
-  float u = 0;
-  float v = 0;
-  if (!(foot.z() > nearest_m) || !color_.distort(foot.x() / foot.z(), foot.y() / foot.z(), u, v)) {
-    return;
-  }
+  const auto end = project_exactly(color_, foot);
+  if (!end) return;
   const Eigen::Vector2f start(static_cast<float>(x), static_cast<float>(y));
-  const Eigen::Vector2f way = Eigen::Vector2f(u, v) - start;
+  const Eigen::Vector2f way = *end - start;
   const auto steps = static_cast<int>(std::ceil(way.lpNorm<Eigen::Infinity>()));
   bool is_checked = false;
   for (int i = 1; i <= steps; ++i) {
     const float share = static_cast<float>(i) / static_cast<float>(steps);
-    const Eigen::Vector2f at = start + share * way;
-    const int column = static_cast<int>(std::lrint(at.x()));
-    const int row = static_cast<int>(std::lrint(at.y()));
+    const auto& [column, row] = nearest_pixel(start + share * way);
     if (!view.part.contains(column, row)) return;
     // 1 / z is linear along a line in the picture.
     const float z = 1 / (1 / top.z() + share * (1 / foot.z() - 1 / top.z()));
@@ -183,14 +167,14 @@ void StandingThings::lower(const View& view, int x, int y, Surfaces& surfaces) c
   }
 }
 
-/// Marks the pixels of things beside or above which is something further away. Not those at the
-/// back: what is below them is hidden by what is below the front.
+/// Marks a row's pixels of things that have something further away beside or below them. Not those
+/// at the back: what is below them is hidden by what is below the front.
 void StandingThings::find_edges(const View& view, int y, int begin, int end, std::uint8_t* edges) {
   const std::uint8_t* const label = view.label.row(y);
   const float* const own = view.input.reconstruction.depth_m.row(y);
   const float* const below = view.input.reconstruction.depth_m.row(y + 1);
   for (int x = begin; x < end; ++x) {
-    const float furthest = own[x] + step_m;
+    const float furthest = own[x] + thing_step_m;
     const bool is_beside = any_of(own[x - 1] == 0, own[x - 1] > furthest, own[x + 1] == 0,
                                   own[x + 1] > furthest, below[x] == 0, below[x] > furthest);
     edges[x] = all_of(label[x] == surface_label::foreground, is_beside) ? 1 : 0;
@@ -213,7 +197,7 @@ void StandingThings::close_slits(const View& view, Surfaces& surfaces) {
       const float z = stands ? surfaces.standing_depth_m(x, y) : view.depth_m(x, y);
       const bool is_slit = x - last > 1 && x - last <= widest_slit_px &&
                            (stands || label[last] == surface_label::standing) &&
-                           std::abs(z - last_z) < step_m;
+                           may_be_one_thing(z, last_z);
       bool is_free = is_slit;
       for (int k = last + 1; is_free && k < x; ++k) {
         is_free = view.hides(k, y, std::max(z, last_z));
@@ -244,7 +228,7 @@ void StandingThings::drop_loose(const View& view, Surfaces& surfaces) {
   regions_.connect(Connectivity::four);
   const auto touches = [&](int x, int y, float z_m) {
     return view.part.contains(x, y) && surfaces.label(x, y) == surface_label::foreground &&
-           std::abs(view.depth_m(x, y) - z_m) < step_m;
+           may_be_one_thing(view.depth_m(x, y), z_m);
   };
   is_held_.assign(regions_.regions().size(), 0);
   for (const ConnectedRegions::Run& run : regions_.runs()) {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
+#include <cstdint>
 #include <vector>
 
 #include "core/connected_regions.h"
@@ -12,7 +12,7 @@
 #include "diminish/reconstruction.h"
 #include "diminish/rig.h"
 #include "diminish/surfaces.h"
-#include "geometry/projection.h"
+#include "geometry/point_projection.h"
 #include "geometry/ray_grid.h"
 #include "scene/background_planes.h"
 
@@ -37,24 +37,26 @@ class StandingThings {
   /// Labels the mask's pixels that would show such sides as surface_label::standing, and fills
   /// `surfaces.standing_depth_m`; all other labels are there already. A side hides what an RGB-D
   /// camera sees behind it, but nothing that the colour camera saw there itself. Needs a plane that
-  /// faces upwards in the picture. Deterministic. Cost: 20 ns for each pixel of a thing in the
-  /// mask, 2 us for each of its top's edge.
+  /// faces upwards in the picture. Deterministic. Cost: 8 million instructions a frame of the
+  /// calendar, whose mask has 170,000 pixels.
   void find(const Input& input, Surfaces& surfaces);
 
  private:
   /// An RGB-D camera.
   struct Camera {
-    Projection depth;
-    float unit_m;
-    std::optional<FloatTransform> depth_from_color;  ///< absent: no image or no pose
-    Eigen::Vector3f centre;                          ///< in the colour camera's frame
+    Projection lens;
+    float unit_m = 0;
+    ImageView<std::uint16_t> depth;  ///< empty: no image or no pose
+    ImageView<std::uint8_t> objects;
+    FloatTransform depth_from_color{RigidTransform{}};
+    Eigen::Vector3f centre = Eigen::Vector3f::Zero();  ///< in the colour camera's frame
   };
   struct View;
   enum class Place { empty, hidden_by_side, unknown };
 
   void place_cameras(const Input& input);
-  Place look_at(const View& view, const Camera& camera, std::size_t index,
-                const Eigen::Vector3f& point_m, float top_height_m) const;
+  static Place look_at(const View& view, const Camera& camera, const Eigen::Vector3f& point_m,
+                       float top_height_m);
   bool is_solid(const View& view, const Eigen::Vector3f& top_m, float height_m) const;
   bool is_top(const View& view, int x, int y) const;
   void lower(const View& view, int x, int y, Surfaces& surfaces) const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace diminish {
 namespace {
@@ -11,7 +12,6 @@ constexpr double bin_s = 1 / 30.;
 constexpr double longest_s = 0.3;
 /// Between moments that are compared.
 constexpr double apart_s = 0.06;
-constexpr std::size_t most_moments = 5;
 /// What was seen longer ago counts less.
 constexpr double half_life_s = 0.5;
 /// A change that noise does not make, levels.
@@ -27,12 +27,6 @@ constexpr double least_share = 0.93;
 int level_of(const Bgr& color) {
   return color.b + 2 * color.g + color.r;
 }
-
-/// A sample of a place where the user's picture has changed.
-struct Changed {
-  float level;
-  std::array<int, most_moments> then;
-};
 
 /// How bright the user's camera shows what an RGB-D camera shows: a line, by least squares.
 class Relation {
@@ -66,6 +60,7 @@ void StreamDelay::find(const Inputs& inputs, std::vector<std::optional<double>>&
     ~End() { turn.end(); }
   } end{turn_};
   remember(inputs, late_s.size());
+  choose_moments(inputs);
   const std::vector<SceneSample>& samples = inputs.samples.surfaces;
   std::size_t begin = 0;
   for (std::size_t k = 0; k < late_s.size(); ++k) {
@@ -107,10 +102,11 @@ void StreamDelay::remember(const Inputs& inputs, std::size_t cameras) {
     for (double& levels : of_camera.levels) levels *= left;
     for (double& count : of_camera.count) count *= left;
   }
+  Moment now;
   while (!moments.empty() && moments.back().stamp_s < inputs.stamp_s - longest_s) {
+    now = std::move(moments.back());  // its memory serves again
     moments.pop_back();
   }
-  Moment& now = moments.emplace_front();
   now.stamp_s = inputs.stamp_s;
   now.color_from_world = inputs.color_from_world;
   const int s = shrinkage_;
@@ -128,27 +124,27 @@ void StreamDelay::remember(const Inputs& inputs, std::size_t cameras) {
       now.grey(x, y) = static_cast<std::uint8_t>(is_object ? 0 : std::max(1, sum / 16));
     }
   }
+  moments.push_front(std::move(now));
 }
 
-void StreamDelay::compare(const Inputs& inputs, std::size_t begin, std::size_t end,
-                          Errors& errors) const {
-  struct Then {
-    const Image<std::uint8_t>& grey;
-    FloatTransform from_now;
-    std::size_t bin;
-  };
-  std::vector<Then> moments;
+void StreamDelay::choose_moments(const Inputs& inputs) {
+  chosen_.clear();
   double last_s = inputs.stamp_s + 1;
   const RigidTransform world_from_color = inputs.color_from_world.inverse();
   for (const Moment& moment : shared_->moments) {
-    if (moments.size() == most_moments || moment.stamp_s > last_s - apart_s) continue;
+    if (chosen_.size() == most_moments || moment.stamp_s > last_s - apart_s) continue;
     last_s = moment.stamp_s;
     const auto bin =
         static_cast<std::size_t>(std::lround((inputs.stamp_s - moment.stamp_s) / bin_s));
     if (bin >= bins) break;
-    moments.push_back(
-        {moment.grey, FloatTransform(moment.color_from_world * world_from_color), bin});
+    chosen_.push_back(
+        {&moment.grey, FloatTransform(moment.color_from_world * world_from_color), bin});
   }
+}
+
+void StreamDelay::compare(const Inputs& inputs, std::size_t begin, std::size_t end,
+                          Errors& errors) {
+  const std::vector<Then>& moments = chosen_;
   if (moments.size() < 2) return;
   const auto scale = 1 / static_cast<float>(shrinkage_);
   /// 0 where it is not known
@@ -160,17 +156,10 @@ void StreamDelay::compare(const Inputs& inputs, std::size_t begin, std::size_t e
     return is_inside ? int{grey(static_cast<int>(column), static_cast<int>(row))} : 0;
   };
   const auto level_then = [&](const Then& then, const Eigen::Vector3f& point_m) {
-    const auto at = [&](int axis) {
-      return then.from_now.apply(axis, point_m.x(), point_m.y(), point_m.z());
-    };
-    constexpr float nearest_m = 0.05F;
-    const float z = at(2);
-    float u = 0;
-    float v = 0;
-    if (!(z > nearest_m) || !projection_.distort(at(0) / z, at(1) / z, u, v)) return 0;
-    return level_at(then.grey, u, v);
+    const auto at = project_exactly(projection_, transform(then.from_now, point_m));
+    return at ? level_at(*then.grey, at->x(), at->y()) : 0;
   };
-  std::vector<Changed> changed;
+  changed_.clear();
   Relation relation;
   for (std::size_t i = begin; i < end; ++i) {
     const SceneSample& sample = inputs.samples.surfaces[i];
@@ -178,20 +167,20 @@ void StreamDelay::compare(const Inputs& inputs, std::size_t begin, std::size_t e
     int least = 255;
     int greatest = 0;
     for (std::size_t m = 0; m < moments.size() && least > 0; ++m) {
-      seen.then[m] = m == 0 ? level_at(moments[0].grey, sample.pixel.x(), sample.pixel.y())
+      seen.then[m] = m == 0 ? level_at(*moments[0].grey, sample.pixel.x(), sample.pixel.y())
                             : level_then(moments[m], sample.point_m);
       least = std::min(least, seen.then[m]);
       greatest = std::max(greatest, seen.then[m]);
     }
     if (least == 0) continue;
     if (greatest - least >= least_change) {
-      changed.push_back(seen);
+      changed_.push_back(seen);
     } else {
       relation.add(seen.then[0], seen.level);
     }
   }
   if (!relation.is_known()) return;
-  for (const Changed& seen : changed) {
+  for (const Changed& seen : changed_) {
     const double expected = relation(seen.level);
     for (std::size_t m = 0; m < moments.size(); ++m) {
       errors.levels[moments[m].bin] += std::min(greatest_error, std::abs(seen.then[m] - expected));

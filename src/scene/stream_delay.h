@@ -13,7 +13,7 @@
 #include "diminish/intrinsics.h"
 #include "diminish/rigid_transform.h"
 #include "diminish/scene_samples.h"
-#include "geometry/projection.h"
+#include "geometry/point_projection.h"
 
 namespace diminish {
 
@@ -61,12 +61,27 @@ class StreamDelay {
     std::deque<Moment> moments;  ///< the newest first
     std::vector<Errors> errors;  ///< of each RGB-D camera
   };
+  /// An earlier moment that this frame's samples are compared with.
+  struct Then {
+    const Image<std::uint8_t>* grey;
+    FloatTransform from_now;
+    std::size_t bin;
+  };
+  static constexpr std::size_t most_moments = 5;
+  /// A sample of a place where the user's picture has changed.
+  struct Changed {
+    float level;
+    std::array<int, most_moments> then;
+  };
   void remember(const Inputs& inputs, std::size_t cameras);
-  void compare(const Inputs& inputs, std::size_t begin, std::size_t end, Errors& errors) const;
+  void choose_moments(const Inputs& inputs);
+  void compare(const Inputs& inputs, std::size_t begin, std::size_t end, Errors& errors);
   static std::optional<double> delay_of(const Errors& errors);
 
   Projection projection_;  ///< of the user's camera
   int shrinkage_;
+  std::vector<Then> chosen_;
+  std::vector<Changed> changed_;
   std::shared_ptr<Shared> shared_ = std::make_shared<Shared>();
   Turn turn_;
 };

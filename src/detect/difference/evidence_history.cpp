@@ -73,19 +73,9 @@ bool EvidenceHistory::was_scene(const Inputs& inputs, int x, int y) const {
 
 Shown EvidenceHistory::recall(const Moment& then, const Eigen::Vector3f& point_m,
                               const Inputs& inputs, int x, int y) const {
-  const auto at = [&](int axis) {
-    return then.from_now.apply(axis, point_m.x(), point_m.y(), point_m.z());
-  };
-  constexpr float nearest_m = 0.05F;
-  constexpr float farthest_px = 1e5F;
-  const float z = at(2);
-  float u = 0;
-  float v = 0;
-  if (!(z > nearest_m) || !projection_.distort(at(0) / z, at(1) / z, u, v)) return Shown::unknown;
-  if (!(std::abs(u) < farthest_px && std::abs(v) < farthest_px)) return Shown::unknown;
-  const int column = static_cast<int>(std::lrint(u));
-  const int row = static_cast<int>(std::lrint(v));
-  if (!then.picture.bounds().contains(column, row)) return Shown::unknown;
+  const auto pixel = project(projection_, transform(then.from_now, point_m));
+  if (!pixel || !then.picture.bounds().contains(pixel->x, pixel->y)) return Shown::unknown;
+  const auto& [column, row] = *pixel;
   if (!inputs.evidence.looks_like(then.picture(column, row), x, y)) return Shown::unknown;
   // Between surfaces nothing is certain, but beside it.
   for (const auto& [dx, dy] : {std::pair{0, 0}, {-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {

@@ -1,7 +1,6 @@
 #include "detect/difference/free_space.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace diminish {
 namespace {
@@ -48,18 +47,11 @@ bool FreeSpace::is_free(const Eigen::Vector2f& ray, float from_m, float to_m) co
 
 bool FreeSpace::is_free(const Camera& camera, const Eigen::Vector3f& point_m) const {
   if (camera.depth.empty()) return false;
-  const auto at = [&](int axis) {
-    return camera.depth_from_color.apply(axis, point_m.x(), point_m.y(), point_m.z());
-  };
-  const float z = at(2);
-  float u = 0;
-  float v = 0;
-  if (!(z > 0.05F) || !camera.projection.distort(at(0) / z, at(1) / z, u, v)) return false;
-  if (!(std::abs(u) < 1e5F && std::abs(v) < 1e5F)) return false;
-  const int x = static_cast<int>(std::lrint(u));
-  const int y = static_cast<int>(std::lrint(v));
-  if (!camera.depth.bounds().contains(x, y)) return false;
-  return static_cast<float>(camera.depth(x, y)) * camera.unit_m > (1 + uncertainty) * z;
+  const Eigen::Vector3f point = transform(camera.depth_from_color, point_m);
+  const auto pixel = project(camera.projection, point);
+  if (!pixel || !camera.depth.bounds().contains(pixel->x, pixel->y)) return false;
+  const float measured_m = static_cast<float>(camera.depth(pixel->x, pixel->y)) * camera.unit_m;
+  return measured_m > (1 + uncertainty) * point.z();
 }
 
 }  // namespace diminish

@@ -6,7 +6,7 @@
 #include "diminish/frame_set.h"
 #include "diminish/poses.h"
 #include "diminish/rig.h"
-#include "geometry/projection.h"
+#include "geometry/point_projection.h"
 
 namespace diminish {
 
