@@ -234,38 +234,35 @@ py::object add_pose_source(const std::string& name, const py::object& callable) 
   return callable;
 }
 
+/// Adds a decorator, NAME(METHOD'S NAME), that hands what it decorates to `add`.
+template <class Add>
+void add_decorator(py::module_& module, const char* name, const Add& add, const char* help) {
+  module.def(
+      name,
+      [add](const std::string& method) {
+        return py::cpp_function(
+            [add, method](const py::object& callable) { return add(method, callable); });
+      },
+      py::arg("name"), help);
+}
+
 }  // namespace
 
 void add_methods(py::module_& module) {
-  module.def(
-      "detector",
-      [](const std::string& name) {
-        return py::cpp_function(
-            [name](const py::object& callable) { return add_detector(name, callable); });
-      },
-      py::arg("name"),
+  add_decorator(
+      module, "detector", add_detector,
       "A decorator: adds a detector, for `detector: NAME` in scene.yaml or "
       "Pipeline(detector=NAME).\n\n"
       "It is called with the user's picture and, for each RGB-D camera, (color, depth) or None. "
       "It\n"
       "returns the mask of what to remove, or (mask, [mask of each RGB-D camera's colour image]);\n"
       "None: nothing. Of a class, each pipeline makes an object and calls that.");
-  module.def(
-      "inpainter",
-      [](const std::string& name) {
-        return py::cpp_function(
-            [name](const py::object& callable) { return add_inpainter(name, callable); });
-      },
-      py::arg("name"),
+  add_decorator(
+      module, "inpainter", add_inpainter,
       "A decorator: adds an inpainting method, for the option inpaint=NAME.\n\n"
       "It is called with the picture and the mask of the pixels to fill, and returns the picture.");
-  module.def(
-      "pose_source",
-      [](const std::string& name) {
-        return py::cpp_function(
-            [name](const py::object& callable) { return add_pose_source(name, callable); });
-      },
-      py::arg("name"),
+  add_decorator(
+      module, "pose_source", add_pose_source,
       "A decorator: adds a pose source, for `pose: {source: NAME}` in rig.yaml or "
       "Pipeline(pose_source=NAME).\n\n"
       "It is called with what a detector gets and the time in seconds, and returns a dict of 3 x 4 "

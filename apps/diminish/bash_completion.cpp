@@ -1,6 +1,7 @@
 #include <map>
 
 #include "completion.h"
+#include "core/text.h"
 
 namespace diminish {
 namespace {
@@ -48,11 +49,9 @@ std::string words(const std::string& list) {
 
 /// What offers the values of an option or argument.
 std::string action(const CommandOption& option) {
-  std::string list;
   switch (option.kind) {
     case ValueKind::choice:
-      for (const std::string& choice : option.choices) list += (list.empty() ? "" : " ") + choice;
-      return words(list);
+      return words(join(option.choices, " "));
     case ValueKind::file:
       return "compopt -o filenames; mapfile -t COMPREPLY < <(compgen -f -- \"$cur\")";
     case ValueKind::folder:

@@ -1,4 +1,5 @@
 #include "completion.h"
+#include "core/text.h"
 
 namespace diminish {
 namespace {
@@ -31,11 +32,9 @@ std::string condition(const CommandTree& command) {
 }
 
 std::string values(const CommandOption& option) {
-  std::string list;
   switch (option.kind) {
     case ValueKind::choice:
-      for (const std::string& choice : option.choices) list += (list.empty() ? "" : " ") + choice;
-      return " -a " + in_quotes(list);
+      return " -a " + in_quotes(join(option.choices, " "));
     case ValueKind::file:
       return " -F";
     case ValueKind::folder:

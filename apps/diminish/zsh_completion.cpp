@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "completion.h"
+#include "core/text.h"
 
 namespace diminish {
 namespace {
@@ -21,11 +22,9 @@ std::string escaped(const std::string& plain) {
 }
 
 std::string action(const CommandOption& option) {
-  std::string list;
   switch (option.kind) {
     case ValueKind::choice:
-      for (const std::string& choice : option.choices) list += (list.empty() ? "" : " ") + choice;
-      return "(" + list + ")";
+      return "(" + join(option.choices, " ") + ")";
     case ValueKind::file:
       return "_files";
     case ValueKind::folder:

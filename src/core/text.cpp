@@ -45,8 +45,8 @@ std::vector<std::string_view> split_words(std::string_view line) {
   return words;
 }
 
-std::string join(const std::vector<std::string>& words) {
-  return fmt::format("{}", fmt::join(words, ", "));
+std::string join(const std::vector<std::string>& words, const char* separator) {
+  return fmt::format("{}", fmt::join(words, separator));
 }
 
 std::string read_text_file(const std::filesystem::path& file, std::size_t max_bytes) {

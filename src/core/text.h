@@ -19,7 +19,7 @@ std::string printable(std::string_view text);
 std::vector<std::string_view> split_words(std::string_view line);
 
 /// "a, b, c"
-std::string join(const std::vector<std::string>& words);
+std::string join(const std::vector<std::string>& words, const char* separator = ", ");
 
 /// Reads a whole text file. Throws Error that names the file if it cannot be read or is larger than
 /// `max_bytes`.

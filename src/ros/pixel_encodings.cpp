@@ -47,11 +47,9 @@ constexpr std::array color_encodings = {
 };
 
 std::string known_encodings() {
-  std::string names;
-  for (const ColorEncoding& encoding : color_encodings) {
-    names += (names.empty() ? "" : ", ") + std::string(encoding.name);
-  }
-  return names;
+  std::vector<std::string> names;
+  for (const ColorEncoding& encoding : color_encodings) names.emplace_back(encoding.name);
+  return join(names);
 }
 
 /// Throws Error if the message's rows are not there.

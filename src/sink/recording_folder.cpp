@@ -19,16 +19,6 @@ constexpr int jpeg_quality = 95;
 /// Between two frames, where their timestamps do not tell.
 constexpr double usual_period_s = 1.0 / 30;
 
-void make_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  if (std::filesystem::exists(folder, error) && !std::filesystem::is_empty(folder, error)) {
-    throw Error(Error::io,
-                folder.string() + ": expected an empty folder for the recording, or none");
-  }
-  std::filesystem::create_directories(folder, error);
-  if (error) throw Error(Error::io, folder.string() + ": cannot be made: " + error.message());
-}
-
 bool are_equal(const ImageView<Bgr>& a, const ImageView<Bgr>& b) {
   if (a.width() != b.width() || a.height() != b.height()) return false;
   for (int y = 0; y < a.height(); ++y) {
@@ -38,6 +28,16 @@ bool are_equal(const ImageView<Bgr>& a, const ImageView<Bgr>& b) {
 }
 
 }  // namespace
+
+void make_recording_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  if (std::filesystem::exists(folder, error) && !std::filesystem::is_empty(folder, error)) {
+    throw Error(Error::io,
+                folder.string() + ": expected an empty folder for the recording, or none");
+  }
+  std::filesystem::create_directories(folder, error);
+  if (error) throw Error(Error::io, folder.string() + ": cannot be made: " + error.message());
+}
 
 void copy_to(const std::filesystem::path& from, const std::filesystem::path& to) {
   std::error_code error;
@@ -50,7 +50,7 @@ RecordingFolder::RecordingFolder(std::filesystem::path folder, const Rig& rig,
                                  const std::filesystem::path& scene_file, const Scene& scene,
                                  Pictures pictures)
     : folder_(std::move(folder)), scene_file_(scene_file), pictures_(pictures) {
-  make_folder(folder_);
+  make_recording_folder(folder_);
   copy_to(scene_file, folder_ / "scene.yaml");
   std::set<std::filesystem::path> named;
   for (const OccluderSpec& occluder : scene.occluders) {

@@ -12,6 +12,9 @@
 
 namespace diminish {
 
+/// Throws Error if the folder is there and not empty, or cannot be made.
+void make_recording_folder(const std::filesystem::path& folder);
+
 /// Writes a recording (docs/recording-format.md), without its rig.yaml. Depth is lossless. The
 /// folder holds complete images and lists at any moment.
 class RecordingFolder {

@@ -1,4 +1,3 @@
-#include <array>
 #include <map>
 
 #include "core/text.h"
@@ -9,7 +8,7 @@
 namespace diminish::ros {
 namespace {
 
-constexpr std::array<std::uint8_t, 8> magic = {0x89, 'M', 'C', 'A', 'P', '0', '\r', '\n'};
+constexpr std::string_view magic = "\x89MCAP0\r\n";
 constexpr std::size_t record_head_bytes = 9;
 enum Op : std::uint8_t {
   footer_op = 2,
@@ -24,11 +23,7 @@ enum Op : std::uint8_t {
 class Mcap : public BagReader {
  public:
   explicit Mcap(std::unique_ptr<std::istream> stream) : stream_(std::move(stream)) {
-    std::vector<std::uint8_t> first;
-    if (!read_bytes(*stream_, magic.size(), first) ||
-        !std::equal(first.begin(), first.end(), magic.begin())) {
-      throw Error(Error::input, "expected an MCAP file of version 0");
-    }
+    expect_begin(*stream_, magic, "an MCAP file of version 0");
   }
 
   bool next(BagMessage& message) override {

@@ -32,6 +32,17 @@ bool read_bytes(std::istream& stream, std::uint64_t count, std::vector<std::uint
   return true;
 }
 
+void expect_begin(std::istream& stream, std::string_view magic, const std::string& what) {
+  std::vector<std::uint8_t> first;
+  const auto is_same = [](std::uint8_t byte, char expected) {
+    return byte == static_cast<std::uint8_t>(expected);
+  };
+  if (!read_bytes(stream, magic.size(), first) ||
+      !std::equal(first.begin(), first.end(), magic.begin(), is_same)) {
+    throw Error(Error::input, "expected " + what);
+  }
+}
+
 std::span<const std::uint8_t> Fields::bytes(std::uint64_t count) {
   if (count > rest_.size()) {
     throw Error(Error::input, fmt::format("a record ends too early: expected {} more bytes, got {}",

@@ -19,6 +19,9 @@ inline constexpr std::size_t most_record_bytes = 1u << 30;
 /// most_record_bytes.
 bool read_bytes(std::istream& stream, std::uint64_t count, std::vector<std::uint8_t>& bytes);
 
+/// Throws Error (input), "expected WHAT", if the stream does not begin with these bytes.
+void expect_begin(std::istream& stream, std::string_view magic, const std::string& what);
+
 /// Fields of a record, the least significant byte first. Each throws Error (input) at its end.
 class Fields {
  public:

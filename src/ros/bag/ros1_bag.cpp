@@ -51,11 +51,7 @@ class Header {
 class Ros1Bag : public BagReader {
  public:
   explicit Ros1Bag(std::unique_ptr<std::istream> stream) : stream_(std::move(stream)) {
-    std::vector<std::uint8_t> first;
-    if (!read_bytes(*stream_, magic.size(), first) ||
-        !std::equal(first.begin(), first.end(), magic.begin())) {
-      throw Error(Error::input, "expected a ROS bag of version 2.0");
-    }
+    expect_begin(*stream_, magic, "a ROS bag of version 2.0");
   }
 
   bool next(BagMessage& message) override {

@@ -11,6 +11,7 @@
 #include "setup/convert/bag_images.h"
 #include "setup/convert/convert.h"
 #include "setup/convert/converted_recording.h"
+#include "sink/recording_folder.h"
 #include "source/image_header.h"
 
 namespace diminish {

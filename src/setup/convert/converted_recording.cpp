@@ -65,16 +65,6 @@ bool ConvertedStream::add_file(double stamp_s, const std::string& file) {
   return true;
 }
 
-void make_recording_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  if (std::filesystem::exists(folder, error) && !std::filesystem::is_empty(folder, error)) {
-    throw Error(Error::io,
-                folder.string() + ": expected an empty folder for the recording, or none");
-  }
-  std::filesystem::create_directories(folder, error);
-  if (error) throw Error(Error::io, folder.string() + ": cannot be made: " + error.message());
-}
-
 void write_set_up(const std::filesystem::path& folder, const Rig& rig, bool is_first,
                   const std::string& notes) {
   std::string pose = "{source: marker}";

@@ -35,9 +35,6 @@ class ConvertedStream {
   std::size_t images_ = 0;
 };
 
-/// Throws Error if the folder is there and not empty.
-void make_recording_folder(const std::filesystem::path& folder);
-
 /// Writes rig.yaml, whose user's view is the first RGB-D camera's colour sensor if `is_first`, and
 /// a scene.yaml that removes what stands free. notes: comments, one a line.
 void write_set_up(const std::filesystem::path& folder, const Rig& rig, bool is_first,
