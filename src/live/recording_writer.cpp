@@ -2,11 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <condition_variable>
-#include <deque>
 #include <mutex>
 #include <thread>
 
+#include "core/bounded_queue.h"
 #include "diminish/error.h"
 #include "sink/recording_folder.h"
 
@@ -26,11 +25,9 @@ struct RecordingWriter::Implementation {
   void work();
 
   RecordingFolder folder_;
+  BoundedQueue<std::shared_ptr<const LiveFrame>> waiting_{most_waiting};
   std::mutex mutex_;
-  std::condition_variable changed_;
-  std::deque<std::shared_ptr<const LiveFrame>> waiting_;
   RecordingStatus status_;
-  bool ending_ = false;
   std::thread thread_;
 };
 
@@ -47,53 +44,29 @@ RecordingWriter::Implementation::Implementation(std::filesystem::path folder,
 }
 
 void RecordingWriter::Implementation::finish() {
-  {
-    const std::lock_guard lock(mutex_);
-    ending_ = true;
-  }
-  changed_.notify_all();
+  waiting_.close();
   if (thread_.joinable()) thread_.join();
 }
 
 void RecordingWriter::Implementation::offer(std::shared_ptr<const LiveFrame> frame) {
-  {
-    const std::lock_guard lock(mutex_);
-    if (ending_ || !status_.active) return;
-    if (waiting_.size() >= most_waiting) {
-      ++status_.dropped;
-      return;
-    }
-    waiting_.push_back(std::move(frame));
-  }
-  changed_.notify_all();
+  const std::lock_guard lock(mutex_);
+  if (status_.active && !waiting_.offer(std::move(frame))) ++status_.dropped;
 }
 
 void RecordingWriter::Implementation::work() {
-  while (true) {
-    std::shared_ptr<const LiveFrame> frame;
-    {
-      std::unique_lock lock(mutex_);
-      changed_.wait(lock, [&] { return ending_ || !waiting_.empty(); });
-      if (waiting_.empty()) break;
-      frame = std::move(waiting_.front());
-      waiting_.pop_front();
-    }
+  while (const auto frame = waiting_.take()) {
     std::string problem;
     bool is_new = false;
     try {
       // Only this thread changes the number of frames.
-      is_new = folder_.write(frame->input, fmt::format("{:06}", status_.frames));
+      is_new = folder_.write((*frame)->input, fmt::format("{:06}", status_.frames));
     } catch (const std::exception& error) {
       problem = error.what();
     }
     const std::lock_guard lock(mutex_);
-    if (problem.empty()) {
-      status_.frames += is_new ? 1 : 0;
-      continue;
-    }
+    status_.frames += is_new ? 1 : 0;
     status_.problem = problem;
-    waiting_.clear();
-    break;
+    if (!problem.empty()) break;
   }
   const std::lock_guard lock(mutex_);
   status_.active = false;
