@@ -367,13 +367,15 @@ void Pipeline::Implementation::process(const FrameSet& given, DiminishedFrame& r
     stage(Stage::memory, [&] {
       if (!methods.remembers) return;
       // Where nothing is drawn, depth is estimated and samples are taken only for a keyframe.
-      const std::function<void()> sample_now = [&] {
+      const auto sample_now = [&] {
         estimate(rig.color.bounds());
         sample();
         judge();
       };
-      memory.recall(recalling, samples, report.occluders, looks ? nullptr : sample_now,
-                    report.memory);
+      // Held by reference, it allocates nothing.
+      std::function<void()> sample_later;
+      if (!looks) sample_later = std::ref(sample_now);
+      memory.recall(recalling, samples, report.occluders, sample_later, report.memory);
     });
   };
   const auto prepare = [&] {
@@ -421,15 +423,24 @@ void Pipeline::Implementation::process(const FrameSet& given, DiminishedFrame& r
     background.label(result.reconstruction, result.surfaces);
     Compositor::sort(inputs, result);
   });
-  stage(Stage::colors,
-        [&] { compositor.correct_colors(inputs, color_maps.by_source(), *corrector, result); });
-  stage(Stage::inpainting, [&] {
-    if (completes_sides()) {
+  const auto correct_colors = [&] {
+    stage(Stage::colors,
+          [&] { compositor.correct_colors(inputs, color_maps.by_source(), *corrector, result); });
+  };
+  const auto find_sides = [&] {
+    stage(Stage::inpainting, [&] {
       standing_things.find(
           {frame, report.poses, masks, objects, result.reconstruction, *background.planes()},
           result.surfaces);
-      Compositor::hide_behind_sides(inputs, result);
-    }
+    });
+  };
+  if (completes_sides()) {
+    do_all(find_sides, correct_colors);
+  } else {
+    correct_colors();
+  }
+  stage(Stage::inpainting, [&] {
+    if (completes_sides()) Compositor::hide_behind_sides(inputs, result);
     compositor.inpaint(inputs, *inpainter, result);
   });
   stage(Stage::finish, [&] { compositor.finish(inputs, *mode, result); });

@@ -88,12 +88,12 @@ std::optional<double> StreamDelay::delay_of(const Errors& errors) {
 }
 
 void StreamDelay::remember(const Inputs& inputs, std::size_t cameras) {
-  std::deque<Moment>& moments = shared_->moments;
+  std::vector<Moment>& moments = shared_->moments;
   std::vector<Errors>& errors = shared_->errors;
   constexpr double longest_pause_s = 1;
-  const double lost_s = moments.empty() ? 0 : inputs.stamp_s - moments.front().stamp_s;
+  const double lost_s = moments.empty() ? 0 : inputs.stamp_s - moments.back().stamp_s;
   if (!moments.empty() && !(lost_s > 0 && lost_s < longest_pause_s)) {
-    moments.clear();
+    while (!moments.empty()) forget_oldest();
     errors.clear();
   }
   errors.resize(cameras);
@@ -102,10 +102,11 @@ void StreamDelay::remember(const Inputs& inputs, std::size_t cameras) {
     for (double& levels : of_camera.levels) levels *= left;
     for (double& count : of_camera.count) count *= left;
   }
+  while (!moments.empty() && moments.front().stamp_s < inputs.stamp_s - longest_s) forget_oldest();
   Moment now;
-  while (!moments.empty() && moments.back().stamp_s < inputs.stamp_s - longest_s) {
-    now = std::move(moments.back());  // its memory serves again
-    moments.pop_back();
+  if (!shared_->spare.empty()) {
+    now.grey = std::move(shared_->spare.back());
+    shared_->spare.pop_back();
   }
   now.stamp_s = inputs.stamp_s;
   now.color_from_world = inputs.color_from_world;
@@ -124,14 +125,22 @@ void StreamDelay::remember(const Inputs& inputs, std::size_t cameras) {
       now.grey(x, y) = static_cast<std::uint8_t>(is_object ? 0 : std::max(1, sum / 16));
     }
   }
-  moments.push_front(std::move(now));
+  moments.push_back(std::move(now));
+}
+
+void StreamDelay::forget_oldest() {
+  std::vector<Moment>& moments = shared_->moments;
+  shared_->spare.push_back(std::move(moments.front().grey));
+  moments.erase(moments.begin());
 }
 
 void StreamDelay::choose_moments(const Inputs& inputs) {
   chosen_.clear();
   double last_s = inputs.stamp_s + 1;
   const RigidTransform world_from_color = inputs.color_from_world.inverse();
-  for (const Moment& moment : shared_->moments) {
+  const std::vector<Moment>& moments = shared_->moments;
+  for (std::size_t i = moments.size(); i-- > 0;) {
+    const Moment& moment = moments[i];
     if (chosen_.size() == most_moments || moment.stamp_s > last_s - apart_s) continue;
     last_s = moment.stamp_s;
     const auto bin =

@@ -3,7 +3,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -58,8 +57,9 @@ class StreamDelay {
   };
   struct Shared {
     Turns turns;
-    std::deque<Moment> moments;  ///< the newest first
-    std::vector<Errors> errors;  ///< of each RGB-D camera
+    std::vector<Moment> moments;             ///< the newest last
+    std::vector<Image<std::uint8_t>> spare;  ///< of forgotten ones: their memory serves again
+    std::vector<Errors> errors;              ///< of each RGB-D camera
   };
   /// An earlier moment that this frame's samples are compared with.
   struct Then {
@@ -74,6 +74,7 @@ class StreamDelay {
     std::array<int, most_moments> then;
   };
   void remember(const Inputs& inputs, std::size_t cameras);
+  void forget_oldest();
   void choose_moments(const Inputs& inputs);
   void compare(const Inputs& inputs, std::size_t begin, std::size_t end, Errors& errors);
   static std::optional<double> delay_of(const Errors& errors);
