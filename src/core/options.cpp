@@ -50,8 +50,8 @@ void check(const Options& options, const Rig& rig, const Scene& scene) {
   check(options);
   if (rig.rgbd.empty() && options.memory != "on") {
     throw Error(
-        "memory: expected 'on', and a background (diminish scan): the rig has no RGB-D camera "
-        "(rgbd: []), got '" +
+        "memory: expected 'on', and a background (diminish scan) or planes: the rig has no RGB-D "
+        "camera (rgbd: []), got '" +
         options.memory + "'");
   }
   std::vector<std::string> names;

@@ -18,7 +18,7 @@ bool DepthEstimation::is_needed() const {
 }
 
 bool DepthEstimation::needs_markers() const {
-  return is_needed() &&
+  return (is_needed() || rig_.rgbd.empty()) &&
          std::any_of(scene_.planes.begin(), scene_.planes.end(), [](const GivenPlane& plane) {
            return plane.from == GivenPlane::From::marker;
          });
@@ -75,6 +75,15 @@ void DepthEstimation::estimate(const Markers& markers, const Poses& poses,
   if (!is_any_wanted) return;
   estimator_->estimate({frame_, markers, poses, masks, drawn, options, wanted_}, depths_,
                        messages_);
+}
+
+std::span<const InversePlane> DepthEstimation::own_planes(const Markers& markers,
+                                                          const Poses& poses) {
+  own_planes_.clear();
+  if (!rig_.rgbd.empty()) return {};
+  given_planes_.find(markers, poses, found_, messages_);
+  for (GivenPlanes::Found& found : found_) own_planes_.push_back(std::move(found.plane));
+  return own_planes_;
 }
 
 }  // namespace diminish

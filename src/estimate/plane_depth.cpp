@@ -61,6 +61,26 @@ double least_inverse_depth(double depth_unit_m) {
 
 }  // namespace
 
+bool InversePlane::is_met_by(const Eigen::Vector2d& ray) const {
+  const std::size_t count = corners.size();
+  const Eigen::Vector3d along(ray.x(), ray.y(), 1);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Eigen::Vector3d side = corners[i].cross(corners[(i + 1) % count]);
+    // Inside, as the next corner is
+    if (side.dot(along) * side.dot(corners[(i + 2) % count]) < 0) return false;
+  }
+  return true;
+}
+
+double nearest_inverse_depth(std::span<const InversePlane> planes, const Eigen::Vector2d& ray) {
+  double nearest = 0;
+  for (const InversePlane& plane : planes) {
+    const double inverse = plane.inverse_depth(ray);
+    if (inverse > nearest && plane.is_met_by(ray)) nearest = inverse;
+  }
+  return nearest;
+}
+
 bool is_in_view(const InversePlane& plane, const Intrinsics& view, double depth_unit_m) {
   const InversePlane cut = in_front(plane);
   if (!plane.corners.empty() && cut.corners.empty()) return false;

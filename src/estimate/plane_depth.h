@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "diminish/image.h"
@@ -24,6 +25,8 @@ struct InversePlane {
   double inverse_depth(const Eigen::Vector2d& ray) const {
     return inverse.x() * ray.x() + inverse.y() * ray.y() + inverse.z();
   }
+  /// Whether a ray (x, y, 1) that meets the plane does so in its part.
+  bool is_met_by(const Eigen::Vector2d& ray) const;
   bool is_finite() const { return inverse.allFinite() && inverse.norm() > 1e-4; }
 };
 
@@ -36,6 +39,9 @@ inline InversePlane transformed(const InversePlane& plane, const RigidTransform&
   for (Eigen::Vector3d& corner : there.corners) corner = other_from * corner;
   return there;
 }
+
+/// The nearest plane's inverse depth (1/m) along a ray (x, y, 1); 0 if there is none.
+double nearest_inverse_depth(std::span<const InversePlane> planes, const Eigen::Vector2d& ray);
 
 /// Whether any pixel of the camera shows the plane where nothing is in front of it, nearer than
 /// what a depth image can hold. view: a camera without lens distortion.

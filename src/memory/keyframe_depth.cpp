@@ -19,9 +19,14 @@ KeyframeDepth::KeyframeDepth(const Rig& rig, const KeyframeGrid& grid)
     : grid_(grid), measured_(rig, grid), planes_(grid.intrinsics()), carried_(grid) {}
 
 void KeyframeDepth::draw(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks,
-                         const SceneSamples& samples, const Options& options) {
+                         const SceneSamples& samples, std::span<const InversePlane> planes,
+                         const Options& options) {
   drawn_.region = TiledRegion(grid_.intrinsics().bounds());
-  measured_.draw(frame, poses, masks, options, drawn_.depth_m);
+  if (planes.empty()) {
+    measured_.draw(frame, poses, masks, options, drawn_.depth_m);
+  } else {
+    measured_.draw(planes, drawn_.depth_m);
+  }
   label(samples);
 }
 

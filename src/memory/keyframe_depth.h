@@ -25,8 +25,10 @@ class KeyframeDepth {
 
   /// Two steps, between which other frames may come. First what the RGB-D cameras see is drawn.
   /// poses and samples: after refinement. Cost: MeasuredDepth's, and 1 ms.
+  /// planes: of a rig without RGB-D cameras, in the user's camera's frame.
   void draw(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks,
-            const SceneSamples& samples, const Options& options);
+            const SceneSamples& samples, std::span<const InversePlane> planes,
+            const Options& options);
   /// Then it is completed. objects: to remove, in the picture. keyframe: of that frame, with its
   /// pose and picture; fills `depth` and `doubt`. Cost: 5 ms.
   void complete(const Mask& objects, Keyframe& keyframe);

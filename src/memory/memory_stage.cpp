@@ -36,8 +36,8 @@ void report_ages(std::span<const Recollection> recollections, std::span<const st
 }
 
 RecallInputs with_poses(const RecallInputs& inputs, const Poses& poses) {
-  return {inputs.frame,  poses,          inputs.masks,      inputs.objects,
-          inputs.region, inputs.options, inputs.is_in_doubt};
+  return {inputs.frame,  poses,          inputs.masks,       inputs.objects,
+          inputs.region, inputs.options, inputs.is_in_doubt, inputs.planes};
 }
 
 }  // namespace

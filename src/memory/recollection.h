@@ -7,6 +7,7 @@
 
 #include "diminish/options.h"
 #include "diminish/reconstructor.h"
+#include "estimate/plane_depth.h"
 #include "memory/keyframe_store.h"
 #include "memory/torn_edges.h"
 #include "memory/witness.h"
@@ -24,6 +25,8 @@ struct RecallInputs {
   const TiledRegion& region;  ///< that is drawn
   const Options& options;
   const bool& is_in_doubt;  ///< known once the frame's samples are taken: nothing is learnt then
+  /// Of a rig without RGB-D cameras: where the user's camera sees a surface; in its frame.
+  std::span<const InversePlane> planes = {};
 };
 
 /// Draws a keyframe as an RGB-D camera's images, from the viewpoint of another frame.

@@ -181,7 +181,7 @@ void SceneMemory::learn(const RecallInputs& inputs, const SceneSamples& samples,
   const FrameSet& frame = inputs.frame;
   const bool lost = has_just_lost(objects, frame.stamp_s);
   if (lost || has_jumped_ || !is_worth_a_keyframe(inputs)) return;
-  bool sees = false;
+  bool sees = !inputs.planes.empty();
   for (std::size_t k = 0; k < frame.rgbd.size(); ++k) {
     sees = sees || (frame.rgbd[k].available() && inputs.poses.depth_from_world[k]);
   }
@@ -206,7 +206,7 @@ void SceneMemory::learn(const RecallInputs& inputs, const SceneSamples& samples,
   pending_.objects = inputs.masks.color;
   pending_.is_uncertain = std::any_of(objects.begin(), objects.end(),
                                       [](const auto& object) { return !object.message.empty(); });
-  depth_.draw(frame, inputs.poses, inputs.masks, samples, inputs.options);
+  depth_.draw(frame, inputs.poses, inputs.masks, samples, inputs.planes, inputs.options);
   pending_.steps = 2;
 }
 

@@ -340,8 +340,9 @@ void Pipeline::Implementation::process(const FrameSet& given, DiminishedFrame& r
   drawing.texture = texture.output();
   const auto draw = [&] { stage(Stage::drawing, [&] { backend.draw(drawing, result); }); };
   // Not in the paper: what the colour camera saw earlier
-  const RecallInputs recalling{frame,  report.poses, masks,          objects,
-                               region, options,      report.in_doubt};
+  const RecallInputs recalling{
+      frame,  report.poses, masks,           objects,
+      region, options,      report.in_doubt, estimation.own_planes(report.markers, report.poses)};
   const bool looks = looks_at_scene();
   const auto drawn = [&] { return options.remove_shadows ? rig.color.bounds() : surroundings(); };
   const auto sample = [&] {
@@ -450,9 +451,10 @@ void Pipeline::Implementation::process(const FrameSet& given, DiminishedFrame& r
   }
   const bool is_replaced = doubt.act(frame, options, result);
   texture.finish_frame(backend.has_done(Stage::finish) && !is_replaced, result);
-  if (rig.rgbd.empty() && report.poses.color_from_world && report.memory.keyframes == 0) {
+  if (rig.rgbd.empty() && scene.planes.empty() && report.poses.color_from_world &&
+      report.memory.keyframes == 0) {
     report.messages.emplace_back(
-        "no RGB-D camera and no background (diminish scan): what is hidden is invented");
+        "no RGB-D camera, no background (diminish scan), no planes: what is hidden is invented");
   }
   for (const std::string& message : estimation.messages()) report.messages.push_back(message);
   for (const std::string& message : report.poses.messages) report.messages.push_back(message);

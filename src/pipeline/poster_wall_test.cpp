@@ -44,12 +44,15 @@ class PosterWall : public ::testing::Test {
     return copied;
   }
   void write_pose(const std::string& name, const RigidTransform& camera_from_world) const {
+    std::ofstream(folder.path() / (name + ".txt")) << line(0, camera_from_world);
+  }
+  /// As TUM's lists have it.
+  static std::string line(double stamp_s, const RigidTransform& camera_from_world) {
     const RigidTransform pose = camera_from_world.inverse();
     const Eigen::Quaterniond turn(pose.rotation);
     const Eigen::Vector3d& at = pose.translation;
-    std::ofstream(folder.path() / (name + ".txt"))
-        << fmt::format("0 {:.12f} {:.12f} {:.12f} {:.12f} {:.12f} {:.12f} {:.12f}\n", at.x(),
-                       at.y(), at.z(), turn.x(), turn.y(), turn.z(), turn.w());
+    return fmt::format("{:.6f} {:.12f} {:.12f} {:.12f} {:.12f} {:.12f} {:.12f} {:.12f}\n", stamp_s,
+                       at.x(), at.y(), at.z(), turn.x(), turn.y(), turn.z(), turn.w());
   }
   /// 3 levels; 4 mm of depth.
   void add_noise() {
@@ -130,6 +133,72 @@ TEST_F(PosterWall, IsRememberedWhereOnlyItsPlaneIsKnown) {
   Mask inside(truth.width(), truth.height(), 0);
   inside.fill(patch, 255);
   EXPECT_GT(testing::psnr_db(result.picture, truth, inside), 35);
+}
+
+// The user's camera is the only one. It moves between what it remembers and what it shows, so that
+// only the right plane puts the wall's pattern in its place.
+class LoneCamera : public PosterWall {
+ protected:
+  /// What it shows of the patch, seen by the user 0.2 m beside where the keyframe was taken; dB.
+  double quality_with(const std::vector<GivenPlane>& planes) {
+    scene.planes = planes;
+    testing::AnalyticFrame before({.has_box = false}, {}, LensModel::plumb_bob,
+                                  Eigen::Vector3d(-0.15, 0.02, 1.2));
+    testing::AnalyticFrame now({.has_box = false}, {}, LensModel::plumb_bob,
+                               Eigen::Vector3d(0.05, 0.02, 1.2));
+    write_poses({{0, *before.poses.color_from_world}, {2, *now.poses.color_from_world}});
+    Rig rig = now.rig;
+    rig.pose_source = "file";
+    folder.write("lone.yaml", "source: file\nfiles: {color: color.txt}\n");
+    rig.pose = Config::load(folder.path() / "lone.yaml");
+    Options options;
+    options.memory = "on";
+    Pipeline pipeline(rig, scene, options);
+    const Intrinsics& color = rig.color;
+    GivenMask nothing{"patch", Mask(color.width, color.height, 0), {}};
+    DiminishedFrame result;
+    before.frame.masks = {nothing};
+    pipeline.process(before.frame, result);
+    copy(now.frame.color.view(), truth);
+    now.frame.masks = {nothing};
+    now.frame.masks[0].color.fill(patch, 255);
+    now.frame.color.own().fill(patch, Bgr{255, 0, 255});
+    // A keyframe is ready after two frames.
+    for (int i = 0; i < 3; ++i) {
+      now.frame.stamp_s = 2 + 0.03 * i;
+      pipeline.process(now.frame, result);
+    }
+    remembered = result.report.remembered_pixels;
+    EXPECT_EQ(result.report.valid_pixels, remembered) << "nobody sees it now";
+    Mask inside(truth.width(), truth.height(), 0);
+    inside.fill(patch, 255);
+    return testing::psnr_db(result.picture, truth, inside);
+  }
+  void write_poses(const std::vector<std::pair<double, RigidTransform>>& color_from_world) const {
+    std::ofstream file(folder.path() / "color.txt");
+    for (const auto& [stamp_s, pose] : color_from_world) {
+      for (const double later_s : {0., 0.03, 0.06}) file << line(stamp_s + later_s, pose);
+    }
+  }
+
+  std::size_t remembered = 0;
+};
+
+TEST_F(LoneCamera, RemembersWhatLiesOnAPlane) {
+  const double by_plane = quality_with({GivenPlane{}});
+  EXPECT_GT(remembered, std::size_t{patch.width} * patch.height * 9 / 10);
+  EXPECT_GT(by_plane, 30);
+  // A plane that is only nearer would do as well: the keyframe is moved until it fits the picture.
+  GivenPlane tilted;
+  tilted.normal = {0.6, 0, 0.8};
+  EXPECT_LT(quality_with({tilted}), by_plane - 6);
+}
+
+TEST_F(LoneCamera, RemembersNothingBesideThePlane) {
+  GivenPlane elsewhere;
+  elsewhere.corners = {{2, 2, 0}, {3, 2, 0}, {3, 3, 0}, {2, 3, 0}};
+  quality_with({elsewhere});
+  EXPECT_EQ(remembered, 0U);
 }
 
 }  // namespace
