@@ -9,6 +9,7 @@
 
 #include "composite/compositor.h"
 #include "composite/smoothing_share.h"
+#include "composite/steady_inventions.h"
 #include "depth/camera_choice.h"
 #include "depth/depth_stage.h"
 #include "detect/occlusion_masks.h"
@@ -97,7 +98,8 @@ struct Pipeline::Implementation {
         background(rig.color),
         standing_things(rig),
         backend(rig),
-        memory(rig) {}
+        memory(rig),
+        steady_inventions(rig.color) {}
 
   void set_options(const Options& wanted) {
     check(wanted, rig, scene);
@@ -206,6 +208,7 @@ struct Pipeline::Implementation {
   Backend backend;
   MemoryStage memory;
   Compositor compositor;
+  SteadyInventions steady_inventions;
   bool wants_reconstruction = true;
   Doubt doubt;
   FrameTexture texture;
@@ -245,14 +248,17 @@ void Pipeline::share_memory(Pipeline& other) {
   implementation_->occluders.share(other.implementation_->occluders);
   implementation_->doubt.share(other.implementation_->doubt);
   implementation_->delay.share(other.implementation_->delay);
+  implementation_->steady_inventions.share(other.implementation_->steady_inventions);
 }
 void Pipeline::take_turn() {
   implementation_->memory.take_turn();
   implementation_->occluders.take_turn();
   implementation_->doubt.take_turn();
   implementation_->delay.take_turn();
+  implementation_->steady_inventions.take_turn();
 }
 void Pipeline::pass_turn() {
+  implementation_->steady_inventions.end_turn();
   implementation_->delay.end_turn();
   implementation_->doubt.end_turn();
   implementation_->occluders.end_turn();
@@ -261,6 +267,7 @@ void Pipeline::pass_turn() {
 void Pipeline::forget() {
   implementation_->memory.forget();
   implementation_->doubt.forget();
+  implementation_->steady_inventions.forget();
 }
 
 void Pipeline::set_background(const Scan& scan) {
@@ -443,6 +450,10 @@ void Pipeline::Implementation::process(const FrameSet& given, DiminishedFrame& r
   stage(Stage::inpainting, [&] {
     if (completes_sides()) Compositor::hide_behind_sides(inputs, result);
     compositor.inpaint(inputs, *inpainter, result);
+    if (methods.remembers) {
+      steady_inventions.steady(
+          {frame.stamp_s, report.poses.color_from_world, objects, background.planes()}, result);
+    }
   });
   stage(Stage::finish, [&] { compositor.finish(inputs, *mode, result); });
 
