@@ -1,218 +1,16 @@
 #include "diminish/pipeline.h"
-#include "core/tasks.h"
 
 #include <oneapi/tbb/task_arena.h>
 
-#include <atomic>
-#include <functional>
-#include <vector>
+#include <tuple>
 
-#include "composite/compositor.h"
-#include "composite/smoothing_share.h"
-#include "composite/steady_inventions.h"
-#include "depth/camera_choice.h"
-#include "depth/depth_stage.h"
-#include "detect/occlusion_masks.h"
 #include "diminish/validate.h"
-#include "estimate/depth_estimation.h"
-#include "memory/memory_stage.h"
-#include "pipeline/backend.h"
-#include "pipeline/doubt.h"
-#include "pipeline/frame_check.h"
-#include "pipeline/frame_texture.h"
-#include "pipeline/methods.h"
-#include "pipeline/stage_timer.h"
-#include "pose/camera_poses.h"
-#include "pose/depth_scale.h"
-#include "pose/frame_markers.h"
-#include "pose/pose_refinement.h"
-#include "scene/background.h"
-#include "scene/color_maps.h"
-#include "scene/scene_fit.h"
-#include "scene/scene_sampler.h"
-#include "scene/standing_things.h"
-#include "scene/stream_delay.h"
+#include "pipeline/frame_stages.h"
 
 namespace diminish {
-namespace {
 
-/// A result without anything of an earlier frame. A skipped frame's images are empty.
-void begin(const FrameSet& frame, DiminishedFrame& result) {
-  result.name = frame.name;
-  result.index = frame.index;
-  result.stamp_s = frame.stamp_s;
-  result.surfaces.standing_depth_m.resize(0, 0);
-  FrameReport& report = result.report;
-  report.mask_pixels = report.valid_pixels = report.missing_pixels = 0;
-  report.witnessed_pixels = report.remembered_pixels = 0;
-  report.fit.clear();
-  report.in_doubt = false;
-  report.memory = {};
-  report.milliseconds.fill(0);
-  report.frame_ms = 0;
-  report.drawing.milliseconds = 0;
-  report.drawing.device.clear();
-  report.drawing.passes.clear();
-  report.skipped = frame.color.empty();
-  report.faults = frame.faults;
-  report.messages.clear();
-  for (const RgbdFrame& rgbd : frame.rgbd) {
-    if (!rgbd.missing.empty()) report.messages.push_back(rgbd.missing);
-  }
-  if (!report.skipped) return;
-  report.markers = {};
-  report.poses = {};
-  report.occluders.clear();
-  result.picture = {};
-  result.mask = {};
-  result.provenance = {};
-  result.objects = {};
-  result.reconstruction = {};
-  result.surfaces = {};
-}
-
-constexpr int no_stage = -1;
-
-}  // namespace
-
-/// The stages, with what they have made of this frame.
-struct Pipeline::Implementation {
-  Implementation(const Rig& rig_, const Scene& scene_)
-      : rig(rig_),
-        scene(scene_),
-        estimation(rig, scene),
-        camera_poses(rig, scene),
-        occluders(rig, scene),
-        markers(rig, scene.marker_dictionary,
-                camera_poses.needs_markers() || occluders.needs_markers() ||
-                    estimation.needs_markers()),
-        choice(rig),
-        depth(rig),
-        sampler(rig),
-        refinement(rig.color, PoseRefinement::usual_width, PoseRefinement::usual_last_step, false,
-                   PoseRefinement::usual_coarser),
-        fit(rig.color),
-        delay(rig.color),
-        scale(rig, scene),
-        agreement(rig, scene),
-        background(rig.color),
-        standing_things(rig),
-        backend(rig),
-        memory(rig),
-        steady_inventions(rig.color) {}
-
-  void set_options(const Options& wanted) {
-    check(wanted, rig, scene);
-    estimation.choose(wanted.estimate_depth);
-    backend.choose(wanted.backend);
-    occluders.draw_by(backend.mask_drawer());
-    options = wanted;
-    corrector = &correctors.get(options.color_correct);
-    inpainter = &inpainters.get(options.inpaint);
-    mode = &modes.get(options.mode);
-    methods = {corrector->declaration(), inpainter->declaration(), options.mode,
-               options.memory != "off"};
-  }
-
-  /// The part of the picture around the objects that is reconstructed.
-  Rect surroundings() const {
-    const Rect whole = rig.color.bounds();
-    if (options.whole_view) return whole;
-    return intersect(grow(occluders.objects(), options.surroundings_px), whole);
-  }
-  /// Whether anything is to be drawn. A shadow may be in view without its object.
-  bool looks_at_scene() const {
-    return options.whole_view || options.remove_shadows || !occluders.objects().empty();
-  }
-  Background::Wanted wanted_background() const {
-    const bool shadows = options.lift_shadows || options.remove_shadows;
-    return {shadows || methods.inpainting.uses_surfaces, shadows};
-  }
-  bool completes_sides() const {
-    return options.complete_sides && methods.inpainting.uses_surfaces && background.planes();
-  }
-  void choose_region() {
-    region.set(surroundings());
-    if (options.remove_shadows) {
-      region.set(join(region, background.shaded_part()));
-    } else if (!options.whole_view) {
-      region.keep_near(occluders.masks().color, options.surroundings_px);
-    }
-  }
-  /// Those that add nothing to what is drawn get no pose.
-  void spare_cameras(const FrameSet& frame, FrameReport& report) {
-    report.spared.clear();
-    if (options.whole_view || options.remove_shadows || occluders.objects().empty()) return;
-    report.spared =
-        choice.find_spared(frame, measured_poses, occluders.masks(), occluders.objects());
-    for (std::size_t k = 0; k < report.spared.size(); ++k) {
-      if (report.spared[k]) measured_poses.color_from_depth[k].reset();
-    }
-  }
-  void refine_poses(const FrameSet& frame, Poses& poses) {
-    if (!options.refine_poses) return;
-    const auto correction = refinement.refine(frame, occluders.masks().color, samples);
-    if (correction) refinement.apply(*correction, poses, samples);
-  }
-
-  /// From what earlier frames showed.
-  void find_delays(const FrameSet& frame, const Poses& poses) {
-    late_s.assign(rig.rgbd.size(), std::nullopt);
-    if (!methods.remembers || !poses.color_from_world) return;
-    delay.find(
-        {frame.color, frame.stamp_s, *poses.color_from_world, occluders.masks().color, samples},
-        late_s);
-  }
-
-  void find_smoothing(const FrameSet& frame) {
-    if (!options.smooth_colors || occluders.objects().empty()) return;
-    smoothing = smoothing_share(rig, frame, occluders.masks().color, samples.surfaces,
-                                color_maps.by_source());
-  }
-
-  void process(const FrameSet& frame, DiminishedFrame& result);
-
-  Rig rig;
-  Scene scene;
-  Options options;
-  Methods<ColorCorrector> correctors;
-  Methods<Inpainter> inpainters;
-  Methods<ViewMode> modes;
-  ColorCorrector* corrector = nullptr;  ///< what the options name
-  Inpainter* inpainter = nullptr;
-  const ViewMode* mode = nullptr;
-  FrameMethods methods;
-
-  DepthEstimation estimation;
-  CameraPoses camera_poses;
-  OccluderStage occluders;
-  FrameMarkers markers;
-  Poses measured_poses;
-  CameraChoice choice;
-  DepthStage depth;
-  SceneSampler sampler;
-  SceneSamples samples;
-  PoseRefinement refinement;
-  SceneFit fit;
-  StreamDelay delay;
-  std::vector<std::optional<double>> late_s;
-  DepthScale scale;
-  std::vector<std::optional<MarkerScale>> scales;
-  MarkerAgreement agreement;
-  std::vector<std::optional<MarkerShift>> shifts;
-  Background background;
-  StandingThings standing_things;
-  ColorMaps color_maps;
-  int smoothing = 0;   ///< its share
-  TiledRegion region;  ///< to be drawn
-  Backend backend;
-  MemoryStage memory;
-  Compositor compositor;
-  SteadyInventions steady_inventions;
-  bool wants_reconstruction = true;
-  Doubt doubt;
-  FrameTexture texture;
-  std::atomic<int> begun_stage = no_stage;
+struct Pipeline::Implementation : FrameStages {
+  using FrameStages::FrameStages;
 };
 
 Pipeline::Pipeline(const Rig& rig, const Scene& scene, const Options& options) {
@@ -244,25 +42,18 @@ const Options& Pipeline::options() const {
 }
 
 void Pipeline::share_memory(Pipeline& other) {
-  implementation_->memory.share(other.implementation_->memory);
-  implementation_->occluders.share(other.implementation_->occluders);
-  implementation_->doubt.share(other.implementation_->doubt);
-  implementation_->delay.share(other.implementation_->delay);
-  implementation_->steady_inventions.share(other.implementation_->steady_inventions);
+  std::apply(
+      [&](auto&... own) {
+        std::apply([&](auto&... others) { (own.share(others), ...); },
+                   other.implementation_->shared());
+      },
+      implementation_->shared());
 }
 void Pipeline::take_turn() {
-  implementation_->memory.take_turn();
-  implementation_->occluders.take_turn();
-  implementation_->doubt.take_turn();
-  implementation_->delay.take_turn();
-  implementation_->steady_inventions.take_turn();
+  std::apply([](auto&... shared) { (shared.take_turn(), ...); }, implementation_->shared());
 }
 void Pipeline::pass_turn() {
-  implementation_->steady_inventions.end_turn();
-  implementation_->delay.end_turn();
-  implementation_->doubt.end_turn();
-  implementation_->occluders.end_turn();
-  implementation_->memory.end_turn();
+  std::apply([](auto&... shared) { (shared.end_turn(), ...); }, implementation_->shared());
 }
 void Pipeline::forget() {
   implementation_->memory.forget();
@@ -282,7 +73,7 @@ void Pipeline::process(const FrameSet& frame, DiminishedFrame& result) {
   const struct Pass {
     Pipeline& pipeline;
     ~Pass() {
-      pipeline.implementation_->begun_stage = no_stage;
+      pipeline.implementation_->begun_stage = FrameStages::no_stage;
       pipeline.pass_turn();
     }
   } pass{*this};
@@ -292,186 +83,7 @@ void Pipeline::process(const FrameSet& frame, DiminishedFrame& result) {
 
 std::optional<Stage> Pipeline::stage() const {
   const int begun = implementation_->begun_stage;
-  return begun == no_stage ? std::nullopt : std::optional(static_cast<Stage>(begun));
-}
-
-// Meerits & Saito 2015, section 3, in its order.
-void Pipeline::Implementation::process(const FrameSet& given, DiminishedFrame& result) {
-  FrameReport& report = result.report;
-  expect_sizes(given, rig);
-  const FrameSet& frame = estimation.begin(given);
-  begin(frame, result);
-  texture.begin_frame();
-  backend.begin_frame();
-  if (report.skipped) return;
-
-  const ScopedTimer frame_timer(report.frame_ms);
-  const auto stage = [&](Stage which, const auto& work) {
-    if (backend.has_done(which)) return;
-    begun_stage = static_cast<int>(which);
-    const tracing::Scope scope(stage_names[static_cast<std::size_t>(which)]);
-    const ScopedTimer timer(report.milliseconds[static_cast<std::size_t>(which)]);
-    work();
-  };
-  const OcclusionMasks& masks = occluders.masks();
-  const Rect& objects = occluders.objects();
-
-  // 3.2 Camera poses, objects to remove
-  stage(Stage::poses, [&] {
-    markers.find(frame, report.markers);
-    camera_poses.estimate(frame, report.markers, measured_poses);
-  });
-  stage(Stage::objects, [&] {
-    occluders.detect({frame, report.markers, measured_poses, options}, report.occluders);
-  });
-
-  // 3.3 Reconstruction of what is behind them, for which the scene has to be known
-  spare_cameras(frame, report);
-  report.poses = measured_poses;
-  background.clear();
-  const auto learn = [&] {
-    do_all(
-        [&] {
-          stage(Stage::background, [&] { background.find(objects, samples, wanted_background()); });
-        },
-        [&] {
-          stage(Stage::color_maps, [&] {
-            color_maps.fit(frame.color, masks.color, samples.surfaces, methods.color.maps);
-            find_smoothing(frame);
-          });
-        });
-  };
-  FrameInputs drawing{frame,   depth.depths(), report.poses, masks,
-                      objects, region,         options,      methods};
-  drawing.wants_reconstruction = wants_reconstruction;
-  drawing.texture = texture.output();
-  const auto draw = [&] { stage(Stage::drawing, [&] { backend.draw(drawing, result); }); };
-  // Not in the paper: what the colour camera saw earlier
-  const RecallInputs recalling{
-      frame,  report.poses, masks,           objects,
-      region, options,      report.in_doubt, estimation.own_planes(report.markers, report.poses)};
-  const bool looks = looks_at_scene();
-  const auto drawn = [&] { return options.remove_shadows ? rig.color.bounds() : surroundings(); };
-  const auto sample = [&] {
-    stage(Stage::samples, [&] { sampler.sample(frame, measured_poses, masks, samples); });
-    stage(Stage::refinement, [&] { refine_poses(frame, report.poses); });
-  };
-  // Nothing that is drawn waits for this; what is learnt from the frame does.
-  const auto judge = [&] {
-    stage(Stage::refinement, [&] {
-      report.fit.resize(rig.rgbd.size());
-      fit.find(frame.color, masks.color, samples, report.fit);
-      scale.find(frame, report.markers, scales);
-      agreement.find(frame, report.markers, report.poses, shifts);
-      find_delays(frame, report.poses);
-      Doubt::judge(rig, options, {scales, shifts, late_s}, report);
-    });
-  };
-  const auto estimate = [&](const Rect& part) {
-    stage(Stage::estimation,
-          [&] { estimation.estimate(report.markers, measured_poses, masks, part, options); });
-  };
-  const auto recall = [&] {
-    stage(Stage::memory, [&] {
-      if (!methods.remembers) return;
-      // Where nothing is drawn, depth is estimated and samples are taken only for a keyframe.
-      const auto sample_now = [&] {
-        estimate(rig.color.bounds());
-        sample();
-        judge();
-      };
-      // Held by reference, it allocates nothing.
-      std::function<void()> sample_later;
-      if (!looks) sample_later = std::ref(sample_now);
-      memory.recall(recalling, samples, report.occluders, sample_later, report.memory);
-    });
-  };
-  const auto prepare = [&] {
-    stage(Stage::inpainting, [&] {
-      if (!objects.empty()) inpainter->prepare(frame.color, masks.color, objects);
-    });
-  };
-  // What is learnt of the scene may be needed only after the drawing: then both are done together.
-  if (looks) estimate(drawn());
-  const bool learns_while_drawing = looks && backend.only_draws() && !options.remove_shadows;
-  if (looks) {
-    do_all(
-        [&] {
-          stage(Stage::depth, [&] { depth.clean(frame, measured_poses, masks, drawn(), options); });
-        },
-        [&] {
-          sample();
-          if (!learns_while_drawing) learn();
-        });
-  }
-  const auto judge_and_recall = [&] {
-    if (looks) judge();
-    recall();
-  };
-  choose_region();
-  if (learns_while_drawing) {
-    do_all(judge_and_recall, draw, learn, prepare);
-  } else {
-    drawing.planes = background.planes();
-    drawing.shadows = background.shadows();
-    drawing.color_maps = color_maps.by_source();
-    drawing.smoothing_share = smoothing;
-    do_all(judge_and_recall, draw);
-    prepare();
-  }
-  stage(Stage::merging, [&] {
-    if (!methods.remembers) return;
-    memory.merge(recalling, color_maps.by_source(), result.reconstruction, report.memory);
-    Doubt::judge_background(memory.background_fit(), options, report);
-  });
-
-  // 3.4 Compositing, colour correction, inpainting; a backend may have done these
-  const Compositor::Inputs inputs{frame.color, masks.color, objects, options, smoothing};
-  stage(Stage::compositing, [&] {
-    background.label(result.reconstruction, result.surfaces);
-    Compositor::sort(inputs, result);
-  });
-  const auto correct_colors = [&] {
-    stage(Stage::colors,
-          [&] { compositor.correct_colors(inputs, color_maps.by_source(), *corrector, result); });
-  };
-  const auto find_sides = [&] {
-    stage(Stage::inpainting, [&] {
-      standing_things.find(
-          {frame, report.poses, masks, objects, result.reconstruction, *background.planes()},
-          result.surfaces);
-    });
-  };
-  if (completes_sides()) {
-    do_all(find_sides, correct_colors);
-  } else {
-    correct_colors();
-  }
-  stage(Stage::inpainting, [&] {
-    if (completes_sides()) Compositor::hide_behind_sides(inputs, result);
-    compositor.inpaint(inputs, *inpainter, result);
-    if (methods.remembers) {
-      steady_inventions.steady(
-          {frame.stamp_s, report.poses.color_from_world, objects, background.planes()}, result);
-    }
-  });
-  stage(Stage::finish, [&] { compositor.finish(inputs, *mode, result); });
-
-  for (const std::string* message : {&occluders.message(), &backend.message()}) {
-    if (!message->empty()) report.messages.push_back(*message);
-  }
-  const bool is_replaced = doubt.act(frame, options, result);
-  texture.finish_frame(backend.has_done(Stage::finish) && !is_replaced, result);
-  if (rig.rgbd.empty() && scene.planes.empty() && report.poses.color_from_world &&
-      report.memory.keyframes == 0) {
-    report.messages.emplace_back(
-        "no RGB-D camera, no background (diminish scan), no planes: what is hidden is invented");
-  }
-  for (const std::string& message : estimation.messages()) report.messages.push_back(message);
-  for (const std::string& message : report.poses.messages) report.messages.push_back(message);
-  for (const OccluderReport& occluder : report.occluders) {
-    if (!occluder.message.empty()) report.messages.push_back(occluder.message);
-  }
+  return begun == FrameStages::no_stage ? std::nullopt : std::optional(static_cast<Stage>(begun));
 }
 
 }  // namespace diminish

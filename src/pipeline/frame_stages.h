@@ -1,0 +1,103 @@
+#pragma once
+
+#include <atomic>
+#include <optional>
+#include <tuple>
+#include <vector>
+
+#include "composite/compositor.h"
+#include "composite/steady_inventions.h"
+#include "depth/camera_choice.h"
+#include "depth/depth_stage.h"
+#include "detect/occlusion_masks.h"
+#include "estimate/depth_estimation.h"
+#include "memory/memory_stage.h"
+#include "pipeline/backend.h"
+#include "pipeline/doubt.h"
+#include "pipeline/frame_texture.h"
+#include "pipeline/methods.h"
+#include "pose/camera_poses.h"
+#include "pose/depth_scale.h"
+#include "pose/frame_markers.h"
+#include "pose/pose_refinement.h"
+#include "scene/background.h"
+#include "scene/color_maps.h"
+#include "scene/scene_fit.h"
+#include "scene/scene_sampler.h"
+#include "scene/standing_things.h"
+#include "scene/stream_delay.h"
+
+namespace diminish {
+
+/// The stages, with what they have made of this frame.
+struct FrameStages {
+  FrameStages(const Rig& rig_, const Scene& scene_);
+
+  void set_options(const Options& wanted);
+
+  /// The part of the picture around the objects that is reconstructed.
+  Rect surroundings() const;
+  /// Whether anything is to be drawn. A shadow may be in view without its object.
+  bool looks_at_scene() const;
+  Background::Wanted wanted_background() const;
+  bool completes_sides() const;
+  void choose_region();
+  /// Those that add nothing to what is drawn get no pose.
+  void spare_cameras(const FrameSet& frame, FrameReport& report);
+  void refine_poses(const FrameSet& frame, Poses& poses);
+
+  /// From what earlier frames showed.
+  void find_delays(const FrameSet& frame, const Poses& poses);
+
+  void find_smoothing(const FrameSet& frame);
+
+  /// All stages. The caller has taken the frame's turn in what is shared.
+  void process(const FrameSet& frame, DiminishedFrame& result);
+  /// What the frames of one sequence share, each in its turn.
+  auto shared() { return std::tie(memory, occluders, doubt, delay, steady_inventions); }
+
+  Rig rig;
+  Scene scene;
+  Options options;
+  Methods<ColorCorrector> correctors;
+  Methods<Inpainter> inpainters;
+  Methods<ViewMode> modes;
+  ColorCorrector* corrector = nullptr;  ///< what the options name
+  Inpainter* inpainter = nullptr;
+  const ViewMode* mode = nullptr;
+  FrameMethods methods;
+
+  DepthEstimation estimation;
+  CameraPoses camera_poses;
+  OccluderStage occluders;
+  FrameMarkers markers;
+  Poses measured_poses;
+  CameraChoice choice;
+  DepthStage depth;
+  SceneSampler sampler;
+  SceneSamples samples;
+  PoseRefinement refinement;
+  SceneFit fit;
+  StreamDelay delay;
+  std::vector<std::optional<double>> late_s;
+  DepthScale scale;
+  std::vector<std::optional<MarkerScale>> scales;
+  MarkerAgreement agreement;
+  std::vector<std::optional<MarkerShift>> shifts;
+  Background background;
+  StandingThings standing_things;
+  ColorMaps color_maps;
+  int smoothing = 0;   ///< its share
+  TiledRegion region;  ///< to be drawn
+  Backend backend;
+  MemoryStage memory;
+  Compositor compositor;
+  SteadyInventions steady_inventions;
+  bool wants_reconstruction = true;
+  Doubt doubt;
+  FrameTexture texture;
+  static constexpr int no_stage = -1;
+  std::atomic<int> begun_stage = no_stage;
+};
+
+}  // namespace diminish
