@@ -1,9 +1,10 @@
 # The two commands to know: `make demo` and `make test`. Everything they need, they install.
 
-.PHONY: help demo test test-page build deps python wheel deb docs gallery bench lint format sanitize tsan fuzz soak sbom reproducible clean bench-gl
+.PHONY: help demo demo-nodes test test-page build deps python wheel deb docs gallery bench lint format sanitize tsan fuzz soak sbom reproducible clean bench-gl
 
 help:
 	@echo "make demo      remove the objects of the bundled recordings, print the figures"
+	@echo "make demo-nodes  the workbench's cameras as programs of their own, on a web page"
 	@echo "make test      build and run all tests"
 	@echo "make test-page test the web page in a browser"
 	@echo "make build     build the program: build/release/diminish"
@@ -30,6 +31,9 @@ build: deps
 
 demo: build
 	scripts/demo
+
+demo-nodes: build
+	scripts/demo-nodes
 
 test: deps
 	scripts/build

@@ -23,6 +23,12 @@ struct Timeline {
   double lap_s = 0;    ///< how long the recording is
   double rate = 1;
 
+  /// Laps begin at whole multiples of their length, so that all processes of this machine show the
+  /// same moment.
+  void keep_in_step() {
+    const double length_s = lap_s / rate;
+    epoch_s = std::floor(epoch_s / length_s) * length_s;
+  }
   double due_s(double stamp_s, std::size_t lap) const {
     return epoch_s + (stamp_s - first_s + static_cast<double>(lap) * lap_s) / rate;
   }
@@ -107,14 +113,15 @@ class Replay {
 class RecordingCamera : public CameraSource {
  public:
   RecordingCamera(const CameraUri& uri, const CameraRequest& request) {
-    uri.expect_parameters({"loop", "rate", "camera"});
+    uri.expect_parameters({"loop", "rate", "camera", "in-step"});
     const std::filesystem::path folder = uri.target;
     const Rig rig = load_rig(folder / "rig.yaml");
     const bool loop = uri.has("loop");
     const auto color = load_stream_list(folder / "color.txt");
-    const Timeline timeline{request.epoch_s, color.front().stamp_s,
-                            color.back().stamp_s - color.front().stamp_s + median_period_s(color),
-                            uri.number("rate", 1, 0.01, 100)};
+    Timeline timeline{request.epoch_s, color.front().stamp_s,
+                      color.back().stamp_s - color.front().stamp_s + median_period_s(color),
+                      uri.number("rate", 1, 0.01, 100)};
+    if (uri.has("in-step")) timeline.keep_in_step();
     const std::string name = uri.text_of("camera", request.name);
     if (name == "color") {
       color_.emplace(folder / "color.txt", rig.color, timeline, loop);

@@ -81,6 +81,18 @@ TEST_F(RecordingCamera, ALoopGoesOnWithoutAGapInTime) {
   EXPECT_EQ(place(images.back()), 7 + static_cast<long>(camera->dropped()));
 }
 
+TEST_F(RecordingCamera, LoopsInStepShowTheSameMomentWheneverTheyBegin) {
+  constexpr double lap_s = 0.03;
+  for (const double later_s : {0., 0.007, 0.021}) {
+    epoch_s_ = monotonic_now_s() + later_s;
+    const auto camera = open("color", "?loop&rate=10&in-step");
+    for (const CameraImage& image : read_all(*camera, 4)) {
+      const double in_lap = std::fmod(image.stamp_s + 1e-6, lap_s) / lap_s;
+      EXPECT_EQ(image.color(0, 0).b, static_cast<int>(3 * in_lap));
+    }
+  }
+}
+
 TEST_F(RecordingCamera, ALoopReadsAnImageWhenItsTimeComesAndKeepsItIfItIsShort) {
   const auto camera = open("color", "?loop&rate=2");
   recording_.write("color/2.png", cv::Mat(30, 40, CV_8UC3, cv::Scalar(100, 50, 200)));
