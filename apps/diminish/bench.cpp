@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -13,6 +12,7 @@
 #include <thread>
 
 #include "allocations.h"
+#include "bench_figures.h"
 #include "commands.h"
 #include "diminish/diminish.h"
 #include "diminish/runner.h"
@@ -21,10 +21,7 @@
 #include "option_flags.h"
 #include "preloaded_source.h"
 #include "set_up_flags.h"
-#include "sink/distribution.h"
 #include "sink/partial_file.h"
-#include "sink/time_table.h"
-#include "start_up.h"
 
 namespace diminish {
 namespace {
@@ -45,11 +42,6 @@ double cpu_s() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-/// How fast frames go by, and what each costs.
-struct Rate {
-  double fps = 0, cpu_ms = 0;
-};
-
 /// Counts from the frame on at which it is started.
 class RateMeter {
  public:
@@ -65,23 +57,6 @@ class RateMeter {
  private:
   Clock::time_point start_ = Clock::now();
   double cpu_s_ = cpu_s();
-};
-
-/// What was measured.
-struct Figures {
-  std::size_t frames = 0, left_out = 0, measured = 0;
-  StartUp start_up{};
-  std::array<Distribution, time_row_count> times_ms;  ///< by row of the table of times
-  double throughput_fps = 0;
-  Rate reading, run;   ///< from files: without the pipeline, and with it
-  std::string device;  ///< the GPU; empty: the CPU
-  std::vector<std::pair<std::string, double>> gpu_passes_ms;  ///< medians
-  double frame_ms = 0, cpu_frame_ms = 0;                      ///< medians, by turns
-  double remembering_frame_ms = 0, forgetful_frame_ms = 0;    ///< medians, by turns
-  Distribution memory_ms;                                     ///< how much longer a frame takes
-  Distribution allocated_bytes, allocations;                  ///< per frame
-  WorkAndSpan cost{};
-  std::size_t peak_memory_bytes = 0;
 };
 
 struct BenchCommand {
@@ -101,15 +76,15 @@ struct BenchCommand {
   /// Frames that let each thread's memory grow to its size.
   std::size_t warm_up() const { return 2 * static_cast<std::size_t>(threads); }
 
-  std::vector<FrameSet> load(const Recording& input, Figures& figures) const;
+  std::vector<FrameSet> load(const Recording& input, BenchFigures& figures) const;
   void measure_latency(const Recording& input, const std::vector<FrameSet>& frames,
-                       Figures& figures) const;
+                       BenchFigures& figures) const;
   void measure_backend(const Recording& input, const std::vector<FrameSet>& frames,
-                       Figures& figures) const;
+                       BenchFigures& figures) const;
   void measure_memory(const Recording& input, const std::vector<FrameSet>& frames,
-                      Figures& figures) const;
+                      BenchFigures& figures) const;
   void measure_throughput(const Recording& input, std::vector<FrameSet> frames,
-                          Figures& figures) const;
+                          BenchFigures& figures) const;
   Rate run_rate(const Recording& input, FrameSource& source) const;
   Rate reading_rate(FrameSource& source) const;
 };
@@ -140,7 +115,7 @@ class NoSink : public FrameSink {
   void append(const FrameSet&, const DiminishedFrame&) override {}
 };
 
-std::vector<FrameSet> BenchCommand::load(const Recording& input, Figures& figures) const {
+std::vector<FrameSet> BenchCommand::load(const Recording& input, BenchFigures& figures) const {
   const auto source = open_recording(input, options);
   std::vector<FrameSet> loaded;
   FrameSet frame;
@@ -159,7 +134,7 @@ std::vector<FrameSet> BenchCommand::load(const Recording& input, Figures& figure
 }
 
 void BenchCommand::measure_latency(const Recording& input, const std::vector<FrameSet>& loaded,
-                                   Figures& figures) const {
+                                   BenchFigures& figures) const {
   DiminishedFrame result;
   Pipeline pipeline = warm_pipeline(input, loaded, options, result);
   constexpr std::size_t fewest_frames = 20;
@@ -208,7 +183,7 @@ void process_in_turn(Pipeline& first, Pipeline& second, const std::vector<FrameS
 
 /// The chosen backend beside the CPU's.
 void BenchCommand::measure_backend(const Recording& input, const std::vector<FrameSet>& loaded,
-                                   Figures& figures) const {
+                                   BenchFigures& figures) const {
   Options by_cpu = options;
   by_cpu.backend = "cpu";
   Pipeline chosen(input.rig, input.scene, options);
@@ -238,7 +213,7 @@ void BenchCommand::measure_backend(const Recording& input, const std::vector<Fra
 
 /// Each frame with the memory beside the same without.
 void BenchCommand::measure_memory(const Recording& input, const std::vector<FrameSet>& loaded,
-                                  Figures& figures) const {
+                                  BenchFigures& figures) const {
   Options without = options;
   without.memory = "off";
   Pipeline remembering(input.rig, input.scene, options);
@@ -259,7 +234,7 @@ void BenchCommand::measure_memory(const Recording& input, const std::vector<Fram
 }
 
 void BenchCommand::measure_throughput(const Recording& input, std::vector<FrameSet> loaded,
-                                      Figures& figures) const {
+                                      BenchFigures& figures) const {
   const double frame_s = figures.times_ms[whole_frame_row].average / 1000;
   const auto count =
       warm_up() + std::max<std::size_t>(
@@ -309,129 +284,11 @@ Rate BenchCommand::reading_rate(FrameSource& source) const {
   return meter.rate(begun - warm_up());
 }
 
-void print(const Figures& figures, int threads) {
-  for (const TimeGroup& group : time_groups) {
-    fmt::print("{:<20}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>16}\n", group.title, "avg", "min", "max",
-               "p50", "p95", "p99", group.paper_title);
-    for (std::size_t i = group.begin; i < group.end; ++i) {
-      const TimeRow& row = time_rows()[i];
-      const Distribution& d = figures.times_ms[i];
-      fmt::print("{:<20}{:>9.2f}{:>9.2f}{:>9.2f}{:>9.2f}{:>9.2f}{:>9.2f}{:>16}\n", row.title,
-                 d.average, d.least, d.most, d.p50, d.p95, d.p99, row.paper_ms);
-    }
-  }
-  const Distribution& total = figures.times_ms[whole_frame_row];
-  fmt::print("{} frames, measured {} times; {} skipped without a colour image\n", figures.frames,
-             figures.measured, figures.left_out);
-  fmt::print("One at a time: p50 {:.2f}, p95 {:.2f}, p99 {:.2f} ms; {:.1f} frames/s\n", total.p50,
-             total.p95, total.p99, 1000 / total.average);
-  fmt::print("Work {:.2f} ms, span {:.2f} ms: at best {:.1f} times as fast as on one core\n",
-             figures.cost.work_ms, figures.cost.span_ms,
-             figures.cost.work_ms / std::max(figures.cost.span_ms, 1e-6));
-  fmt::print("Longest chain, ms:");
-  for (const auto& [stage, ms] : figures.cost.chain_ms) fmt::print(" {} {:.2f}", stage, ms);
-  fmt::print("\nParallel regions: {}, with {} tasks of {:.0f} us\n", figures.cost.regions,
-             figures.cost.tasks, 1000 * figures.cost.work_ms / std::max(figures.cost.tasks, 1));
-  fmt::print("Pipelined, {} threads: {:.1f} frames/s\n", threads, figures.throughput_fps);
-  fmt::print("From files: {:.1f} frames/s; reading alone {:.1f} frames/s, ratio {:.2f}\n",
-             figures.run.fps, figures.reading.fps, figures.run.fps / figures.reading.fps);
-  fmt::print("  each core busy: {:.1f} ms a frame, {:.1f} of them for reading: a ratio of {:.2f}\n",
-             figures.run.cpu_ms, figures.reading.cpu_ms,
-             figures.reading.cpu_ms / figures.run.cpu_ms);
-  if (figures.frame_ms > 0) {
-    fmt::print("Frame on {}: p50 {:.2f} ms; with the CPU backend {:.2f} ms, ratio {:.2f}\n",
-               figures.device.empty() ? "the CPU" : figures.device, figures.frame_ms,
-               figures.cpu_frame_ms, figures.cpu_frame_ms / figures.frame_ms);
-  }
-  if (figures.remembering_frame_ms > 0) {
-    fmt::print(
-        "Frame with memory: p50 {:.2f} ms; without {:.2f} ms, ratio {:.2f}; "
-        "longer by p50 {:.2f}, p95 {:.2f}, p99 {:.2f} ms\n",
-        figures.remembering_frame_ms, figures.forgetful_frame_ms,
-        figures.remembering_frame_ms / figures.forgetful_frame_ms, figures.memory_ms.p50,
-        figures.memory_ms.p95, figures.memory_ms.p99);
-  }
-  double gpu_ms = 0;
-  for (const auto& [name, ms] : figures.gpu_passes_ms) {
-    fmt::print("  GPU time, {:<10}{:>9.3f} ms\n", name, ms);
-    gpu_ms += ms;
-  }
-  if (gpu_ms > 0) fmt::print("  GPU time, {:<10}{:>9.3f} ms\n", "total", gpu_ms);
-  fmt::print("Start-up: {:.0f} ms to the first frame; {:.0f} MB for each pipeline\n",
-             figures.start_up.first_frame_ms,
-             static_cast<double>(figures.start_up.pipeline_bytes) / 1e6);
-  fmt::print("Peak memory: {:.0f} MB\n", static_cast<double>(figures.peak_memory_bytes) / 1e6);
-  if (count_allocations) {
-    fmt::print("Allocated per frame: {:.0f} bytes (at most {:.0f}) in {:.0f} allocations\n",
-               figures.allocated_bytes.p50, figures.allocated_bytes.most, figures.allocations.p50);
-  } else {
-    fmt::print("Allocated per frame: not counted, except in builds with benchmarks\n");
-  }
-}
-
-nlohmann::ordered_json to_json(const Distribution& d) {
-  return {{"avg", d.average}, {"min", d.least}, {"max", d.most},
-          {"p50", d.p50},     {"p95", d.p95},   {"p99", d.p99}};
-}
-
-std::string cpu_name() {
-  std::ifstream info("/proc/cpuinfo");
-  const std::string key = "model name";
-  for (std::string line; std::getline(info, line);) {
-    const std::size_t colon = line.find(": ");
-    if (line.starts_with(key) && colon != std::string::npos) return line.substr(colon + 2);
-  }
-  return "unknown";
-}
-
-void write_json(const BenchCommand& command, const Figures& figures) {
-  const Distribution& total = figures.times_ms[whole_frame_row];
-  nlohmann::ordered_json json;
-  json["recording"] = command.recording.string();
-  json["frames"] = figures.frames;
-  json["threads"] = command.threads;
-  json["busy"] = command.busy;
-  json["machine"] = {{"cpu", cpu_name()}, {"cores", std::thread::hardware_concurrency()}};
-  json["latency_ms"] = to_json(total);
-  json["latency_fps"] = 1000 / total.average;
-  json["throughput_fps"] = figures.throughput_fps;
-  json["from_files_fps"] = figures.run.fps;
-  json["reading_fps"] = figures.reading.fps;
-  json["from_files_cpu_ms"] = figures.run.cpu_ms;
-  json["reading_cpu_ms"] = figures.reading.cpu_ms;
-  json["work_ms"] = figures.cost.work_ms;
-  json["span_ms"] = figures.cost.span_ms;
-  for (const auto& [stage, ms] : figures.cost.chain_ms) json["span_by_stage_ms"][stage] = ms;
-  json["parallel_regions"] = figures.cost.regions;
-  json["tasks"] = figures.cost.tasks;
-  for (std::size_t row = 0; row < time_row_count; ++row) {
-    json["stages"][time_rows()[row].key] = to_json(figures.times_ms[row]);
-  }
-  if (figures.frame_ms > 0) {
-    json["backend"] = {{"device", figures.device},
-                       {"frame_p50_ms", figures.frame_ms},
-                       {"cpu_frame_p50_ms", figures.cpu_frame_ms}};
-    for (const auto& [name, ms] : figures.gpu_passes_ms) json["backend"]["gpu_ms"][name] = ms;
-  }
-  if (figures.remembering_frame_ms > 0) {
-    json["memory"] = {{"frame_p50_ms", figures.remembering_frame_ms},
-                      {"off_frame_p50_ms", figures.forgetful_frame_ms},
-                      {"longer_ms", to_json(figures.memory_ms)}};
-  }
-  json["first_frame_ms"] = figures.start_up.first_frame_ms;
-  json["pipeline_bytes"] = figures.start_up.pipeline_bytes;
-  json["peak_memory_bytes"] = figures.peak_memory_bytes;
-  if (count_allocations) {
-    json["allocated_bytes_per_frame"] = figures.allocated_bytes.p50;
-  }
-  write_file(command.json, json.dump(2) + "\n");
-}
-
 int BenchCommand::execute() const {
   Recording input = load_recording(recording);
   flags.apply(input.rig, input.scene);
   check(options, input.rig, input.scene);
-  Figures figures;
+  BenchFigures figures;
   std::vector<FrameSet> loaded = load(input, figures);
   figures.start_up = measure_start_up(input, loaded, options);
   figures.cost = measure_work_and_span(input, loaded, options);
@@ -445,7 +302,9 @@ int BenchCommand::execute() const {
   getrusage(RUSAGE_SELF, &usage);
   figures.peak_memory_bytes = static_cast<std::size_t>(usage.ru_maxrss) * 1024;
   print(figures, threads);
-  if (!json.empty()) write_json(*this, figures);
+  if (!json.empty()) {
+    write_file(json, to_json(figures, {recording, threads, busy}).dump(2) + "\n");
+  }
   return 0;
 }
 
