@@ -29,6 +29,9 @@ constexpr float deepest_m = 0.5F;
 /// A camera looks through a place if it measures something this far behind it.
 constexpr DepthNoise behind{0.03F, 0.01F};
 constexpr int widest_slit_px = 24;
+/// From one side of a slit to the other: what is seen of a thing may be its front, and its side
+/// hang from the far end of its top.
+constexpr float slit_step_m = 3 * thing_step_m;
 
 const BackgroundPlane* find_support(const std::vector<BackgroundPlane>& planes) {
   const BackgroundPlane* best = nullptr;
@@ -197,7 +200,7 @@ void StandingThings::close_slits(const View& view, Surfaces& surfaces) {
       const float z = stands ? surfaces.standing_depth_m(x, y) : view.depth_m(x, y);
       const bool is_slit = x - last > 1 && x - last <= widest_slit_px &&
                            (stands || label[last] == surface_label::standing) &&
-                           may_be_one_thing(z, last_z);
+                           std::abs(z - last_z) < slit_step_m;
       bool is_free = is_slit;
       for (int k = last + 1; is_free && k < x; ++k) {
         is_free = view.hides(k, y, std::max(z, last_z));
