@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <map>
 
 #include "completion.h"
@@ -66,7 +68,7 @@ std::string cases(const std::string& indent, const std::map<std::string, std::st
                   const std::string& end) {
   std::string result;
   for (const auto& [what, pattern] : patterns) {
-    result += indent + pattern + ") " + what + end + " ;;\n";
+    result += fmt::format("{}{}) {}{} ;;\n", indent, pattern, what, end);
   }
   return result;
 }
