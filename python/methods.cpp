@@ -236,7 +236,7 @@ py::object add_pose_source(const std::string& name, const py::object& callable) 
 
 /// Adds a decorator, NAME(METHOD'S NAME), that hands what it decorates to `add`.
 template <class Add>
-void add_decorator(py::module_& module, const char* name, const Add& add, const char* help) {
+void add_decorator(py::module_& module, const char* name, Add add, const char* help) {
   module.def(
       name,
       [add](const std::string& method) {
