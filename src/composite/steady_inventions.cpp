@@ -96,8 +96,8 @@ void SteadyInventions::mix(const Inputs& inputs, DiminishedFrame& result) const 
 void SteadyInventions::mix(const Eigen::Vector2f& at, int share, Bgr& color) const {
   const Shared& last = *shared_;
   constexpr int one = 256;
-  const auto x = static_cast<int>(at.x() * one + 0.5F);
-  const auto y = static_cast<int>(at.y() * one + 0.5F);
+  const auto x = static_cast<int>(std::lrint(at.x() * one));
+  const auto y = static_cast<int>(std::lrint(at.y() * one));
   const int left = x >> 8;
   const int top = y >> 8;
   if (!last.inner.contains(left, top)) return;

@@ -45,7 +45,8 @@ void read_row(const std::uint16_t* measured, const std::uint8_t* masked, int wid
     return;
   }
   for (int x = 0; x < width; ++x) {
-    depth_m[x] = static_cast<float>(masked[x * step] == 0 ? measured[x * step] : 0) * unit_m;
+    const std::ptrdiff_t at = std::ptrdiff_t{x} * step;
+    depth_m[x] = static_cast<float>(masked[at] == 0 ? measured[at] : 0) * unit_m;
   }
 }
 

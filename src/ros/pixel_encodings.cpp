@@ -48,6 +48,7 @@ constexpr std::array color_encodings = {
 
 std::string known_encodings() {
   std::vector<std::string> names;
+  names.reserve(std::size(color_encodings));
   for (const ColorEncoding& encoding : color_encodings) names.emplace_back(encoding.name);
   return join(names);
 }
