@@ -15,6 +15,9 @@ namespace {
 using std::chrono::milliseconds;
 using ::testing::HasSubstr;
 
+/// An image is left out when it is two of these periods late, 0.4 s: no busy machine is.
+const std::string slowly = "?rate=0.5";
+
 class RecordingCamera : public ::testing::Test {
  protected:
   std::unique_ptr<CameraSource> open(const std::string& name, const std::string& parameters) {
@@ -39,12 +42,12 @@ class RecordingCamera : public ::testing::Test {
 };
 
 TEST_F(RecordingCamera, DeliversEachImageNotBeforeItsTime) {
-  const auto camera = open("color", "?rate=4");
+  const auto camera = open("color", slowly);
   for (int i = 0; i < 3; ++i) {
     CameraImage image;
     ASSERT_EQ(camera->read(image, milliseconds(1000)), CameraSource::Status::image);
     EXPECT_GE(monotonic_now_s(), image.stamp_s);
-    EXPECT_NEAR(image.stamp_s, epoch_s_ + 0.1 * i / 4, 1e-6);
+    EXPECT_NEAR(image.stamp_s, epoch_s_ + 0.1 * i / 0.5, 1e-6);
     EXPECT_EQ(image.sensor, Sensor::color);
     EXPECT_EQ(image.color(0, 0), (Bgr{static_cast<std::uint8_t>(i), 50, 200}));
   }
@@ -53,12 +56,12 @@ TEST_F(RecordingCamera, DeliversEachImageNotBeforeItsTime) {
 }
 
 TEST_F(RecordingCamera, AnRgbdCameraDeliversBothSensorsOnTheRecordingsClock) {
-  const auto camera = open("rgbd0", "?rate=4");
+  const auto camera = open("rgbd0", slowly);
   const std::vector<CameraImage> images = read_all(*camera, 10);
   std::map<Sensor, int> counts;
   for (const CameraImage& image : images) {
     const int i = counts[image.sensor]++;
-    EXPECT_NEAR(image.stamp_s, epoch_s_ + (0.1 * i + 0.001) / 4, 1e-6);
+    EXPECT_NEAR(image.stamp_s, epoch_s_ + (0.1 * i + 0.001) / 0.5, 1e-6);
     const bool is_depth = image.sensor == Sensor::depth;
     EXPECT_EQ(is_depth ? image.depth(3, 3) - 1000 : image.color(3, 3).b, i);
   }
@@ -96,9 +99,16 @@ TEST_F(RecordingCamera, LoopsInStepShowTheSameMomentWheneverTheyBegin) {
 TEST_F(RecordingCamera, ALoopReadsAnImageWhenItsTimeComesAndKeepsItIfItIsShort) {
   const auto camera = open("color", "?loop&rate=2");
   recording_.write("color/2.png", cv::Mat(30, 40, CV_8UC3, cv::Scalar(100, 50, 200)));
-  EXPECT_EQ(read_all(*camera, 3).at(2).color(0, 0).b, 100);
+  // A busy machine may come too late for images before it: its time tells which one it is.
+  const auto next_third = [&] {
+    while (true) {
+      const CameraImage image = read_all(*camera, 1).at(0);
+      if (std::lround((image.stamp_s - epoch_s_) / 0.05) % 3 == 2) return image.color(0, 0).b;
+    }
+  };
+  EXPECT_EQ(next_third(), 100);
   std::filesystem::remove_all(recording_.path("color"));
-  EXPECT_EQ(read_all(*camera, 3).at(2).color(0, 0).b, 100);
+  EXPECT_EQ(next_third(), 100);
 }
 
 TEST_F(RecordingCamera, WhatIsLongOverdueIsLeftOutAndCounted) {
@@ -112,7 +122,7 @@ TEST_F(RecordingCamera, WhatIsLongOverdueIsLeftOutAndCounted) {
 
 TEST_F(RecordingCamera, ADamagedImageIsAFault) {
   recording_.write("color/1.png", "no picture");
-  for (const char* parameters : {"?rate=10", "?rate=10&loop"}) {
+  for (const char* parameters : {"?rate=0.5", "?rate=0.5&loop"}) {
     const auto camera = open("color", parameters);
     const std::vector<CameraImage> images = read_all(*camera, 3);
     ASSERT_EQ(images.size(), 3U);
