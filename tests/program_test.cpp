@@ -124,8 +124,8 @@ TEST_F(ProgramTest, AnInterruptedRunLeavesWholeFiles) {
   const fs::path folder = recording.path("interrupted");
   Program program(
       {"run", testing::recordings_dir() + "/calendar", "--out", folder.string(), "--threads", "1"});
-  for (int i = 0; i < 600 && !fs::exists(folder / "result/000000.png"); ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  for (int i = 0; i < 30000 && !fs::exists(folder / "result/000000.png"); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   kill(program.process(), SIGINT);
   const auto outcome = program.wait();
