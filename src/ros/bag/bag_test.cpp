@@ -22,7 +22,6 @@
 namespace diminish::ros {
 namespace {
 
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 /// Bytes, the least significant first.
@@ -211,12 +210,12 @@ TEST(Bag, WhatIsBrokenIsSaid) {
                                                "x")),
       HasSubstr("compressed by bz2, lz4 or zstd, got 'rar'"));
   for (const std::string& method : methods({"bz2", "lz4"})) {
-    EXPECT_THAT(
-        error(open_ros1_bag, magic + ros1_record(5,
-                                                 with_length("compression=" + method) +
-                                                     with_length("size=" + raw(std::uint32_t{9})),
-                                                 "junk")),
-        HasSubstr("a chunk is broken: expected 9 bytes of " + method));
+    std::string header = with_length("compression=" + method);
+    header += with_length("size=" + raw(std::uint32_t{9}));
+    std::string bag = magic;
+    bag += ros1_record(5, header, "junk");
+    EXPECT_THAT(error(open_ros1_bag, bag),
+                HasSubstr("a chunk is broken: expected 9 bytes of " + method));
   }
 }
 
