@@ -11,8 +11,8 @@
 namespace diminish {
 namespace {
 
-/// After which half of an invention is a later one's. Short: sharp edges are lost where fillings
-/// that differ are mixed for long.
+/// After this time, half of what is shown comes from later frames. It is short, because mixing
+/// fillings that differ for long blurs their edges.
 constexpr double half_life_s = 0.035;
 /// Between frames that follow one another.
 constexpr double longest_s = 0.5;
@@ -36,17 +36,12 @@ float depth_at(const Surfaces& surfaces, const std::vector<BackgroundPlane>& pla
 }  // namespace
 
 void SteadyInventions::forget() {
-  turn_.wait(shared_->turns);
+  const Turn::Held turn = turn_.hold(shared_->turns);
   shared_->color_from_world.reset();
-  turn_.end();
 }
 
 void SteadyInventions::steady(const Inputs& inputs, DiminishedFrame& result) {
-  turn_.wait(shared_->turns);
-  const struct End {
-    Turn& turn;
-    ~End() { turn.end(); }
-  } end{turn_};
+  const Turn::Held turn = turn_.hold(shared_->turns);
   mix(inputs, result);
   keep(inputs, result);
 }

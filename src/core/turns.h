@@ -61,6 +61,23 @@ class Turn {
     turns_ = nullptr;
   }
 
+  /// A turn that has come, until the end of a scope.
+  class Held {
+   public:
+    explicit Held(Turn& turn) : turn_(turn) {}
+    ~Held() { turn_.end(); }
+    Held(const Held&) = delete;
+    Held& operator=(const Held&) = delete;
+
+   private:
+    Turn& turn_;
+  };
+  /// Waits as wait() does; the turn ends with what is returned.
+  [[nodiscard]] Held hold(Turns& turns) {
+    wait(turns);
+    return Held(*this);
+  }
+
  private:
   Turns* turns_ = nullptr;
   std::size_t number_ = 0;

@@ -17,14 +17,11 @@ struct Columns {
 Columns columns_of(const InversePlane& plane, const Intrinsics& view, int y) {
   double first = 0;
   double last = view.width;
-  const std::size_t count = plane.corners.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    const Eigen::Vector3d side = plane.corners[i].cross(plane.corners[(i + 1) % count]);
-    // Inside, as the next corner is
-    const double sign = side.dot(plane.corners[(i + 2) % count]) < 0 ? -1 : 1;
+  for (std::size_t i = 0; i < plane.corners.size(); ++i) {
+    const Eigen::Vector3d side = plane.inward(i);
     const double at_zero =
-        sign * (side.x() * (-view.cx / view.fx) + side.y() * ((y - view.cy) / view.fy) + side.z());
-    const double step = sign * side.x() / view.fx;
+        side.x() * (-view.cx / view.fx) + side.y() * ((y - view.cy) / view.fy) + side.z();
+    const double step = side.x() / view.fx;
     const double crossing = step != 0 ? -at_zero / step : 0;
     if (step > 0) {
       first = std::max(first, std::ceil(crossing));
@@ -61,13 +58,17 @@ double least_inverse_depth(double depth_unit_m) {
 
 }  // namespace
 
-bool InversePlane::is_met_by(const Eigen::Vector2d& ray) const {
+Eigen::Vector3d InversePlane::inward(std::size_t i) const {
   const std::size_t count = corners.size();
+  const Eigen::Vector3d normal = corners[i].cross(corners[(i + 1) % count]);
+  // The next corner is inside.
+  return normal.dot(corners[(i + 2) % count]) < 0 ? -normal : normal;
+}
+
+bool InversePlane::is_met_by(const Eigen::Vector2d& ray) const {
   const Eigen::Vector3d along(ray.x(), ray.y(), 1);
-  for (std::size_t i = 0; i < count; ++i) {
-    const Eigen::Vector3d side = corners[i].cross(corners[(i + 1) % count]);
-    // Inside, as the next corner is
-    if (side.dot(along) * side.dot(corners[(i + 2) % count]) < 0) return false;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    if (inward(i).dot(along) < 0) return false;
   }
   return true;
 }

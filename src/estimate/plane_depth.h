@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -25,6 +26,8 @@ struct InversePlane {
   double inverse_depth(const Eigen::Vector2d& ray) const {
     return inverse.x() * ray.x() + inverse.y() * ray.y() + inverse.z();
   }
+  /// The normal, to the inside, of the plane through the camera and the part's i-th side.
+  Eigen::Vector3d inward(std::size_t i) const;
   /// Whether a ray (x, y, 1) that meets the plane does so in its part.
   bool is_met_by(const Eigen::Vector2d& ray) const;
   bool is_finite() const { return inverse.allFinite() && inverse.norm() > 1e-4; }

@@ -68,6 +68,10 @@ void RecordingWriter::Implementation::work() {
     status_.problem = problem;
     if (!problem.empty()) break;
   }
+  // After a problem nothing more is written: what waits goes.
+  waiting_.close();
+  while (waiting_.take()) {
+  }
   const std::lock_guard lock(mutex_);
   status_.active = false;
 }

@@ -13,6 +13,22 @@ namespace {
 constexpr float guess_doubt = 0.2F;
 constexpr float plane_doubt = 0.05F;
 
+/// planes: in the user's camera's frame. depth_m: 0 where there is none.
+void draw_planes(std::span<const InversePlane> planes, const KeyframeGrid& grid,
+                 Image<float>& depth_m) {
+  const int width = grid.intrinsics().width;
+  const int height = grid.intrinsics().height;
+  depth_m.resize(width, height);
+  for_rows(height, [&](Rows rows) {
+    for (int y = rows.first; y < rows.last; ++y) {
+      for (int x = 0; x < width; ++x) {
+        const double inverse = nearest_inverse_depth(planes, grid.ray(x, y).cast<double>());
+        depth_m(x, y) = inverse > 0 ? static_cast<float>(1 / inverse) : 0;
+      }
+    }
+  });
+}
+
 }  // namespace
 
 KeyframeDepth::KeyframeDepth(const Rig& rig, const KeyframeGrid& grid)
@@ -25,7 +41,7 @@ void KeyframeDepth::draw(const FrameSet& frame, const Poses& poses, const Occlus
   if (planes.empty()) {
     measured_.draw(frame, poses, masks, options, drawn_.depth_m);
   } else {
-    measured_.draw(planes, drawn_.depth_m);
+    draw_planes(planes, grid_, drawn_.depth_m);
   }
   label(samples);
 }

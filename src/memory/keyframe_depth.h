@@ -1,11 +1,13 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "diminish/reconstruction.h"
 #include "diminish/scene_samples.h"
 #include "diminish/surfaces.h"
+#include "estimate/plane_depth.h"
 #include "memory/carried_depth.h"
 #include "memory/color_edges.h"
 #include "memory/keyframe.h"

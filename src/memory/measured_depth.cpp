@@ -165,18 +165,4 @@ void MeasuredDepth::draw(const FrameSet& frame, const Poses& poses, const Occlus
   }
 }
 
-void MeasuredDepth::draw(std::span<const InversePlane> planes, Image<float>& depth_m) const {
-  const int width = grid_.intrinsics().width;
-  const int height = grid_.intrinsics().height;
-  depth_m.resize(width, height);
-  for_rows(height, [&](Rows rows) {
-    for (int y = rows.first; y < rows.last; ++y) {
-      for (int x = 0; x < width; ++x) {
-        const double inverse = nearest_inverse_depth(planes, grid_.ray(x, y).cast<double>());
-        depth_m(x, y) = inverse > 0 ? static_cast<float>(1 / inverse) : 0;
-      }
-    }
-  });
-}
-
 }  // namespace diminish

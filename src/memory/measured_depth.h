@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <span>
 #include <vector>
 
 #include "core/rows.h"
@@ -9,7 +8,6 @@
 #include "diminish/occlusion_masks.h"
 #include "diminish/options.h"
 #include "diminish/poses.h"
-#include "estimate/plane_depth.h"
 #include "memory/keyframe.h"
 
 namespace diminish {
@@ -25,8 +23,6 @@ class MeasuredDepth {
   /// ns a depth pixel that is used: of those that are much finer than the grid, only some are.
   void draw(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks,
             const Options& options, Image<float>& depth_m);
-  /// The same of planes, in the user's camera's frame.
-  void draw(std::span<const InversePlane> planes, Image<float>& depth_m) const;
 
  private:
   struct Camera {

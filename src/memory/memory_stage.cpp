@@ -44,11 +44,7 @@ RecallInputs with_poses(const RecallInputs& inputs, const Poses& poses) {
 
 template <class Work>
 auto MemoryStage::in_turn(const Work& work) {
-  turn_.wait(shared_->turns);
-  const struct End {
-    Turn& turn;
-    ~End() { turn.end(); }
-  } end{turn_};
+  const Turn::Held turn = turn_.hold(shared_->turns);
   return work();
 }
 

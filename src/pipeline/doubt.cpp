@@ -99,11 +99,7 @@ bool Doubt::act(const FrameSet& frame, const Options& options, DiminishedFrame& 
 }
 
 bool Doubt::hold(const FrameSet& frame, DiminishedFrame& result) {
-  turn_.wait(shared_->turns);
-  const struct End {
-    Turn& turn;
-    ~End() { turn.end(); }
-  } end{turn_};
+  const Turn::Held turn = turn_.hold(shared_->turns);
   Shared& held = *shared_;
   if (!shows_doubtful(result)) {
     held.stamp_s = frame.stamp_s;
@@ -126,9 +122,8 @@ bool Doubt::hold(const FrameSet& frame, DiminishedFrame& result) {
 }
 
 void Doubt::forget() {
-  turn_.wait(shared_->turns);
+  const Turn::Held turn = turn_.hold(shared_->turns);
   shared_->picture = {};
-  turn_.end();
 }
 
 }  // namespace diminish

@@ -1,6 +1,5 @@
 #include "pipeline/frame_stages.h"
 
-#include <algorithm>
 #include <functional>
 
 #include "composite/smoothing_share.h"
@@ -289,13 +288,14 @@ void FrameStages::process(const FrameSet& given, DiminishedFrame& result) {
           result.surfaces);
     });
   };
-  if (completes_sides()) {
+  const bool has_sides = completes_sides();
+  if (has_sides) {
     do_all(find_sides, correct_colors);
   } else {
     correct_colors();
   }
   stage(Stage::inpainting, [&] {
-    if (completes_sides()) Compositor::hide_behind_sides(inputs, result);
+    if (has_sides) Compositor::hide_behind_sides(inputs, result);
     compositor.inpaint(inputs, *inpainter, result);
     if (methods.remembers) {
       steady_inventions.steady(

@@ -54,11 +54,7 @@ StreamDelay::StreamDelay(const Intrinsics& color)
     : projection_(Lens(color)), shrinkage_(std::max(1, color.width / usual_columns)) {}
 
 void StreamDelay::find(const Inputs& inputs, std::vector<std::optional<double>>& late_s) {
-  turn_.wait(shared_->turns);
-  const struct End {
-    Turn& turn;
-    ~End() { turn.end(); }
-  } end{turn_};
+  const Turn::Held turn = turn_.hold(shared_->turns);
   remember(inputs, late_s.size());
   choose_moments(inputs);
   const std::vector<SceneSample>& samples = inputs.samples.surfaces;
@@ -139,8 +135,8 @@ void StreamDelay::choose_moments(const Inputs& inputs) {
   double last_s = inputs.stamp_s + 1;
   const RigidTransform world_from_color = inputs.color_from_world.inverse();
   const std::vector<Moment>& moments = shared_->moments;
-  for (std::size_t i = moments.size(); i-- > 0;) {
-    const Moment& moment = moments[i];
+  for (auto newest = moments.rbegin(); newest != moments.rend(); ++newest) {
+    const Moment& moment = *newest;
     if (chosen_.size() == most_moments || moment.stamp_s > last_s - apart_s) continue;
     last_s = moment.stamp_s;
     const auto bin =
