@@ -135,8 +135,8 @@ void StreamDelay::choose_moments(const Inputs& inputs) {
   double last_s = inputs.stamp_s + 1;
   const RigidTransform world_from_color = inputs.color_from_world.inverse();
   const std::vector<Moment>& moments = shared_->moments;
-  for (auto newest = moments.rbegin(); newest != moments.rend(); ++newest) {
-    const Moment& moment = *newest;
+  for (std::size_t i = moments.size(); i-- > 0;) {
+    const Moment& moment = moments[i];
     if (chosen_.size() == most_moments || moment.stamp_s > last_s - apart_s) continue;
     last_s = moment.stamp_s;
     const auto bin =
