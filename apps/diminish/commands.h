@@ -16,6 +16,7 @@ void add_convert(CLI::App& program, int& exit_code);
 void add_devices(CLI::App& program, int& exit_code);
 void add_help(CLI::App& program, int& exit_code);
 void add_init(CLI::App& program, int& exit_code);
+void add_keys(CLI::App& program, int& exit_code);
 void add_latency_test(CLI::App& program, int& exit_code);
 void add_live(CLI::App& program, int& exit_code);
 void add_markers(CLI::App& program, int& exit_code);

@@ -64,13 +64,17 @@ dds::Network parse_ros2_network(const CameraUri& uri) {
              printable(transport) + "'");
   }
   network.shared_memory = transport == "shm";
+  network.keys = uri.text_of("keys", "");
+  if (uri.has("keys") && network.keys.empty()) {
+    uri.fail("keys: expected a folder that `diminish keys` made");
+  }
   if (uri.has("mbits")) network.most_mbits = uri.number("mbits", 0, 1, 100'000);
   return network;
 }
 
 Ros2Address parse_ros2_address(const CameraUri& uri) {
   uri.expect_parameters({"color", "depth", "info", "depth_info", "rgbd", "tf", "clock", "domain",
-                         "interface", "transport", "reliable"});
+                         "interface", "transport", "reliable", "keys"});
   Ros2Address address;
   address.network = parse_ros2_network(uri);
   if (uri.has("color")) address.color = stream(uri, "color", "info");

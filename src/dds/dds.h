@@ -25,6 +25,9 @@ struct Network {
   /// Mbit/s that this process sends at most; 0: as fast as it can. What there is no time for is
   /// left out, message by message.
   double most_mbits = 0;
+  /// The folder with this participant's keys (KeyFiles): only those with keys of the same authority
+  /// see it, and are seen. Empty: no keys, everybody who has none.
+  std::string keys;
 };
 
 /// ROS_DOMAIN_ID from the environment, else 0. Throws Error if it is not a number from 0 to 232.

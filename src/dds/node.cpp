@@ -5,6 +5,7 @@
 
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
+#include <fastrtps/config.h>
 #include <fastrtps/utils/IPLocator.h>
 #include <ifaddrs.h>
 #include <netinet/in.h>
@@ -14,11 +15,13 @@
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/log/Log.hpp>
 #include <fastdds/rtps/flowcontrol/FlowControllerDescriptor.hpp>
+#include <filesystem>
 #include <map>
 #include <tuple>
 #include <vector>
 
 #include "core/text.h"
+#include "dds/key_files.h"
 #include "dds/payload_type.h"
 #include "diminish/error.h"
 
@@ -85,6 +88,29 @@ DomainParticipantQos participant_qos(const Network& network) {
   return qos;
 }
 
+/// DDS Security 1.1, 9: its builtin plugins, which every implementation has. Throws Error.
+void use_keys(const std::filesystem::path& folder, DomainParticipantQos& qos) {
+  // Fast DDS without its plugins would say nothing, and encrypt nothing.
+  if (HAVE_SECURITY == 0) throw Error("keys: this build's Fast DDS is without DDS Security");
+  const KeyFiles files(folder);
+  check(files);
+  const auto set = [&](const char* name, const std::string& value) {
+    qos.properties().properties().emplace_back(std::string("dds.sec.") + name, value);
+  };
+  const auto file = [](const std::filesystem::path& path) {
+    return "file://" + std::filesystem::absolute(path).string();
+  };
+  set("auth.plugin", "builtin.PKI-DH");
+  set("auth.builtin.PKI-DH.identity_ca", file(files.identity_authority));
+  set("auth.builtin.PKI-DH.identity_certificate", file(files.certificate));
+  set("auth.builtin.PKI-DH.private_key", file(files.private_key));
+  set("access.plugin", "builtin.Access-Permissions");
+  set("access.builtin.Access-Permissions.permissions_ca", file(files.permissions_authority));
+  set("access.builtin.Access-Permissions.governance", file(files.governance));
+  set("access.builtin.Access-Permissions.permissions", file(files.permissions));
+  set("crypto.plugin", "builtin.AES-GCM-GMAC");
+}
+
 /// Throws Error if no network interface of this machine has the address. Fast DDS would say
 /// nothing.
 void expect_own(const std::string& address) {
@@ -129,12 +155,19 @@ void expect_made(const void* made, const std::string& what) {
 Node::Implementation::Implementation(const Network& network) {
   if (!network.interface.empty()) expect_own(network.interface);
   if (network.most_mbits > 0) flow_controller = flow_controller_name;
+  if (!network.keys.empty()) refusal = ": do the permissions in " + network.keys + " allow it?";
   // It would write to the program's standard output.
   eprosima::fastdds::dds::Log::ClearConsumers();
+  DomainParticipantQos qos = participant_qos(network);
+  std::string doubt;
+  if (!network.keys.empty()) {
+    use_keys(network.keys, qos);
+    doubt = ", or do the permissions in " + network.keys + " not allow it";
+  }
   participant = DomainParticipantFactory::get_instance()->create_participant(
-      static_cast<std::uint32_t>(network.domain), participant_qos(network));
-  expect_made(participant, fmt::format("no participant in domain {}: are all of its ports taken?",
-                                       network.domain));
+      static_cast<std::uint32_t>(network.domain), qos);
+  expect_made(participant, fmt::format("no participant in domain {}: are all of its ports taken{}?",
+                                       network.domain, doubt));
 }
 
 Node::Implementation::~Implementation() {
@@ -164,10 +197,11 @@ eprosima::fastdds::dds::Topic* Node::Implementation::topic(const Topic& topic) {
 
 std::shared_ptr<Node> Node::open(const Network& network) {
   static std::mutex mutex;
-  static std::map<std::tuple<int, std::string, bool, double>, std::weak_ptr<Node>> nodes;
+  static std::map<std::tuple<int, std::string, bool, double, std::string>, std::weak_ptr<Node>>
+      nodes;
   const std::lock_guard lock(mutex);
-  std::weak_ptr<Node>& known =
-      nodes[{network.domain, network.interface, network.shared_memory, network.most_mbits}];
+  std::weak_ptr<Node>& known = nodes[{network.domain, network.interface, network.shared_memory,
+                                      network.most_mbits, network.keys}];
   if (auto node = known.lock()) return node;
   const std::shared_ptr<Node> node(new Node(network));
   known = node;

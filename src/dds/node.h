@@ -20,6 +20,8 @@ struct Node::Implementation {
 
   /// Of Fast DDS's flow controllers, the one for what is sent; null: none.
   const char* flow_controller = nullptr;
+  /// Why a topic may be refused where there are keys.
+  std::string refusal;
   std::mutex mutex;
   eprosima::fastdds::dds::DomainParticipant* participant = nullptr;
 };

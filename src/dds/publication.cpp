@@ -46,7 +46,7 @@ Publication::Publication(std::shared_ptr<Node> node, const diminish::dds::Topic&
   self.publisher = inner.participant->create_publisher(PUBLISHER_QOS_DEFAULT);
   expect_made(self.publisher, "no publisher can be made");
   self.writer = self.publisher->create_datawriter(inner.topic(topic), qos);
-  expect_made(self.writer, topic.name + " cannot be written");
+  expect_made(self.writer, topic.name + " cannot be written" + inner.refusal);
 }
 
 Publication::~Publication() {

@@ -118,7 +118,7 @@ std::size_t Subscriptions::add(const diminish::dds::Topic& topic, Delivery deliv
   auto& node = implementation_->node->implementation();
   DataReader* const reader = implementation_->subscriber->create_datareader(
       node.topic(topic), reader_qos(delivery), &implementation_->arrivals);
-  expect_made(reader, topic.name + " cannot be read");
+  expect_made(reader, topic.name + " cannot be read" + node.refusal);
   implementation_->readers.push_back(reader);
   return implementation_->readers.size() - 1;
 }

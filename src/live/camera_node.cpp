@@ -22,7 +22,7 @@ constexpr double last_retry_s = 5;
 struct CameraNode::Implementation {
   explicit Implementation(const CameraNodeOptions& wanted) : options(wanted) {
     const CameraUri uri = parse_camera_uri("ros2:" + options.topic);
-    uri.expect_parameters({"domain", "interface", "transport", "reliable", "mbits"});
+    uri.expect_parameters({"domain", "interface", "transport", "reliable", "keys", "mbits"});
     parse_camera_uri(options.uri);
     const auto name_of = [&](const char* name) { return ros2_topic(uri, uri.target, name); };
     name_of("rgbd");

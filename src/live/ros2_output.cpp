@@ -82,7 +82,7 @@ struct Ros2Output::Implementation {
 
 Ros2Output::Ros2Output(const LiveSession& session, const std::string& target) {
   const CameraUri uri = parse_camera_uri("ros2:" + target);
-  uri.expect_parameters({"domain", "interface", "transport", "reliable", "mbits"});
+  uri.expect_parameters({"domain", "interface", "transport", "reliable", "keys", "mbits"});
   implementation_ = std::make_unique<Implementation>(session, uri);
 }
 
