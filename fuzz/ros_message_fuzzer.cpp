@@ -8,6 +8,7 @@
 #include "ros/frame_tree.h"
 #include "ros/messages.h"
 #include "ros/pixel_encodings.h"
+#include "ros/transform_buffer.h"
 
 using namespace diminish;
 
@@ -41,7 +42,14 @@ void use(std::uint8_t kind, std::span<const std::uint8_t> bytes, ros::Wire wire)
       ros::FrameTree tree;
       const auto message = read<ros::TfMessage>(bytes, wire);
       tree.add(message);
-      for (const auto& transform : message.transforms) tree.find("map", transform.child);
+      ros::TransformBuffer buffer;
+      buffer.add(message, 0);
+      for (const auto& transform : message.transforms) {
+        tree.find("map", transform.child);
+        buffer.find("map", transform.child, transform.header.stamp_s, 1);
+      }
+      buffer.add_static(message);
+      for (const auto& transform : message.transforms) buffer.find("map", transform.child, 1, 1);
       return;
     }
     case 6:

@@ -72,6 +72,14 @@ dds::Network parse_ros2_network(const CameraUri& uri) {
   return network;
 }
 
+Ros2Address::Clock parse_ros2_clock(const CameraUri& uri) {
+  const std::string clock = uri.text_of("clock", "auto");
+  if (clock == "auto") return Ros2Address::Clock::automatic;
+  if (clock == "synchronized") return Ros2Address::Clock::synchronized;
+  if (clock == "arrival") return Ros2Address::Clock::arrival;
+  uri.fail("clock: expected auto, synchronized or arrival, got '" + printable(clock) + "'");
+}
+
 Ros2Address parse_ros2_address(const CameraUri& uri) {
   uri.expect_parameters({"color", "depth", "info", "depth_info", "rgbd", "tf", "clock", "domain",
                          "interface", "transport", "reliable", "keys"});
@@ -97,14 +105,7 @@ Ros2Address parse_ros2_address(const CameraUri& uri) {
   }
   address.uses_tf = uri.has("tf");
   address.is_reliable = uri.has("reliable");
-  const std::string clock = uri.text_of("clock", "auto");
-  if (clock == "synchronized") {
-    address.clock = Ros2Address::Clock::synchronized;
-  } else if (clock == "arrival") {
-    address.clock = Ros2Address::Clock::arrival;
-  } else if (clock != "auto") {
-    uri.fail("clock: expected auto, synchronized or arrival, got '" + printable(clock) + "'");
-  }
+  address.clock = parse_ros2_clock(uri);
   return address;
 }
 

@@ -34,8 +34,12 @@ struct Ros2Address {
 /// Throws Error that names the URI and what was expected.
 Ros2Address parse_ros2_address(const CameraUri& uri);
 
-/// The network that a URI's parameters domain, interface, transport, keys and mbits name. Throws Error.
+/// The network that a URI's parameters domain, interface, transport, keys and mbits name. Throws
+/// Error.
 dds::Network parse_ros2_network(const CameraUri& uri);
+
+/// Its parameter clock. Throws Error.
+Ros2Address::Clock parse_ros2_clock(const CameraUri& uri);
 
 /// A topic by ROS's rules: "/camera/color"; a relative one is below `base`. Throws Error.
 std::string ros2_topic(const CameraUri& uri, const std::string& base, const std::string& name);

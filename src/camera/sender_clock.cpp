@@ -28,7 +28,12 @@ double SenderClock::local_s(double stamp_s, double arrival_s, double utc_from_mo
         kind_ == Ros2Address::Clock::synchronized ||
         (kind_ == Ros2Address::Clock::automatic && age_s >= -most_ahead_s && age_s <= most_age_s);
   }
-  return std::min(arrival_s, *is_trusted_ ? said_s : stamp_s + estimate_.offset_s(stamp_s));
+  return std::min(arrival_s, stamp_s + offset_s());
+}
+
+double SenderClock::offset_s() const {
+  if (!is_trusted_) return 0;
+  return *is_trusted_ ? -utc_from_monotonic_s_ : estimate_.offset_s(last_stamp_s_);
 }
 
 std::optional<CameraClock> SenderClock::state() const {

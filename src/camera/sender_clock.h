@@ -16,6 +16,8 @@ class SenderClock {
   /// utc_from_monotonic_s: this machine's UTC less its monotonic clock. Returns when the message
   /// was stamped, on the monotonic clock; at most its arrival.
   double local_s(double stamp_s, double arrival_s, double utc_from_monotonic_s);
+  /// To be added to the sender's stamps, as they are understood since the last one.
+  double offset_s() const;
   /// Nothing before the first stamp.
   std::optional<CameraClock> state() const;
 

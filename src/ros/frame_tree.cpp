@@ -5,18 +5,17 @@ namespace {
 
 constexpr std::size_t most_frames = 1000;
 
-/// ROS 1's tf wrote "/camera_link".
-std::string plain(const std::string& frame) {
+}  // namespace
+
+std::string plain_frame(const std::string& frame) {
   return frame.starts_with('/') ? frame.substr(1) : frame;
 }
 
-}  // namespace
-
 void FrameTree::add(const TfMessage& message) {
   for (const TransformStamped& transform : message.transforms) {
-    const std::string child = plain(transform.child);
+    const std::string child = plain_frame(transform.child);
     if (parents_.size() >= most_frames && !parents_.contains(child)) continue;
-    parents_[child] = {plain(transform.header.frame_id), transform.parent_from_child};
+    parents_[child] = {plain_frame(transform.header.frame_id), transform.parent_from_child};
   }
 }
 
@@ -24,7 +23,7 @@ std::optional<RigidTransform> FrameTree::find(const std::string& to,
                                               const std::string& from) const {
   // All frames above `from`, each with its transform; then up from `to` until one of them.
   std::map<std::string, RigidTransform> above_from_from;
-  std::string frame = plain(from);
+  std::string frame = plain_frame(from);
   RigidTransform frame_from_from;
   while (
       above_from_from.emplace(frame, frame_from_from).second) {  // else they go round in a circle
@@ -33,7 +32,7 @@ std::optional<RigidTransform> FrameTree::find(const std::string& to,
     frame_from_from = edge->second.parent_from_child * frame_from_from;
     frame = edge->second.parent;
   }
-  frame = plain(to);
+  frame = plain_frame(to);
   RigidTransform frame_from_to;
   for (std::size_t steps = 0; steps <= parents_.size(); ++steps) {
     const auto common = above_from_from.find(frame);

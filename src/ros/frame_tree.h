@@ -9,6 +9,9 @@
 
 namespace diminish::ros {
 
+/// ROS 1's tf wrote "/camera_link" for "camera_link".
+std::string plain_frame(const std::string& frame);
+
 /// The frames of /tf and /tf_static: the newest transform from each frame to its parent.
 class FrameTree {
  public:
