@@ -9,20 +9,6 @@ namespace {
 
 using Kind = Ros2Address::Kind;
 
-bool is_topic(const std::string& name) {
-  if (!name.starts_with('/') || name.ends_with('/') || name.find("//") != std::string::npos ||
-      name.size() > 200) {
-    return false;
-  }
-  for (std::size_t i = 0; i < name.size(); ++i) {
-    const char c = name[i];
-    const bool is_letter = std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '_';
-    const bool is_digit = std::isdigit(static_cast<unsigned char>(c)) != 0;
-    if (c != '/' && !is_letter && !(is_digit && name[i - 1] != '/')) return false;
-  }
-  return true;
-}
-
 /// What stands before the last slash.
 std::string folder_of(const std::string& topic) {
   return topic.substr(0, topic.rfind('/'));
@@ -44,10 +30,24 @@ Ros2Address::Stream stream(const CameraUri& uri, const char* key, const char* in
 
 }  // namespace
 
+bool is_ros2_topic(const std::string& name) {
+  if (!name.starts_with('/') || name.ends_with('/') || name.find("//") != std::string::npos ||
+      name.size() > 200) {
+    return false;
+  }
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const char c = name[i];
+    const bool is_letter = std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '_';
+    const bool is_digit = std::isdigit(static_cast<unsigned char>(c)) != 0;
+    if (c != '/' && !is_letter && !(is_digit && name[i - 1] != '/')) return false;
+  }
+  return true;
+}
+
 std::string ros2_topic(const CameraUri& uri, const std::string& base, const std::string& name) {
   std::string topic = name.starts_with('/') ? name : base + "/" + name;
   if (!topic.starts_with('/')) topic = "/" + topic;
-  if (name.empty() || !is_topic(topic)) {
+  if (name.empty() || !is_ros2_topic(topic)) {
     uri.fail("expected a topic such as /camera/color/image_raw, got '" + printable(topic) + "'");
   }
   return topic;

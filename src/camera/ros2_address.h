@@ -41,6 +41,9 @@ dds::Network parse_ros2_network(const CameraUri& uri);
 /// Its parameter clock. Throws Error.
 Ros2Address::Clock parse_ros2_clock(const CameraUri& uri);
 
+/// Whether a whole name is one of a topic by ROS's rules.
+bool is_ros2_topic(const std::string& name);
+
 /// A topic by ROS's rules: "/camera/color"; a relative one is below `base`. Throws Error.
 std::string ros2_topic(const CameraUri& uri, const std::string& base, const std::string& name);
 

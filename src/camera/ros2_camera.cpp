@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "camera/ros2_address.h"
+#include "camera/ros2_devices.h"
 #include "camera/sender_clock.h"
 #include "dds/dds.h"
 #include "diminish/camera_source.h"
@@ -227,7 +228,7 @@ const bool registered = Registry<CameraSource>::add(
          [](const CameraUri& uri, const CameraRequest& request) {
            return std::make_unique<Ros2Camera>(uri, request);
          },
-     .list = {},
+     .list = list_ros2_devices,
      .help =
          "ros2:/camera?color=color/image_raw&depth=depth/image_rect_raw  a ROS 2 camera; without "
          "topics a `diminish camera-node`"});

@@ -33,6 +33,11 @@ struct Network {
 /// ROS_DOMAIN_ID from the environment, else 0. Throws Error if it is not a number from 0 to 232.
 int default_domain();
 
+/// A topic by ROS's name ("/camera/color/image_raw") and by its type's name on the wire.
+struct Topic {
+  std::string name, type;
+};
+
 /// A participant: what a process is to others. All that name the same network share one.
 class Node {
  public:
@@ -45,14 +50,13 @@ class Node {
   struct Implementation;
   Implementation& implementation() { return *implementation_; }
 
+  /// The topics that other participants send to, as far as they have been met: ROS's names, each
+  /// once. At most a thousand. Names are whatever others say.
+  std::vector<Topic> topics_of_others() const;
+
  private:
   explicit Node(const Network& network);
   std::unique_ptr<Implementation> implementation_;
-};
-
-/// A topic by ROS's name ("/camera/color/image_raw") and by its type's name on the wire.
-struct Topic {
-  std::string name, type;
 };
 
 /// The name on the wire: "rt/camera/color/image_raw".

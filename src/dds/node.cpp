@@ -165,7 +165,8 @@ Node::Implementation::Implementation(const Network& network) {
     doubt = ", or do the permissions in " + network.keys + " not allow it";
   }
   participant = DomainParticipantFactory::get_instance()->create_participant(
-      static_cast<std::uint32_t>(network.domain), qos);
+      static_cast<std::uint32_t>(network.domain), qos, &discovery,
+      eprosima::fastdds::dds::StatusMask::none());
   expect_made(participant, fmt::format("no participant in domain {}: are all of its ports taken{}?",
                                        network.domain, doubt));
 }

@@ -1,14 +1,30 @@
 #pragma once
 
+#include <fastdds/rtps/writer/WriterDiscoveryInfo.h>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
+#include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <fastdds/dds/topic/Topic.hpp>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "dds/dds.h"
 
 namespace diminish::dds {
+
+/// Keeps what is heard of other participants' writers. Called by DDS's threads; it throws nothing.
+class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
+ public:
+  void on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant*,
+                              eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) override;
+  std::vector<Topic> topics() const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::map<eprosima::fastrtps::rtps::GUID_t, Topic> writers_;
+};
 
 /// A participant, and its topics and types: each exists once, whoever uses it.
 struct Node::Implementation {
@@ -23,6 +39,7 @@ struct Node::Implementation {
   /// Why a topic may be refused where there are keys.
   std::string refusal;
   std::mutex mutex;
+  Discovery discovery;
   eprosima::fastdds::dds::DomainParticipant* participant = nullptr;
 };
 
