@@ -45,8 +45,25 @@ Conversion convert_tum(const std::filesystem::path& folder, const std::filesyste
 /// The lens that the benchmark gives for its images where none is calibrated: 525 pixels.
 Intrinsics tum_lens();
 
-/// Makes a ROS 2 bag (SQLite, with metadata.yaml) of a recording: each camera's images with their
-/// camera_info below /NAME, and the cameras' transforms on /tf_static. Throws Error.
+/// Whether a file is a Matroska one, by its first bytes.
+bool is_matroska(const std::filesystem::path& file);
+
+/// Makes a recording of an Azure Kinect's .mkv (k4arecorder): its JPEGs as they are, depth in
+/// millimetres, and the lenses that the device knows. What is infrared or of the motion sensor is
+/// left out. Throws Error that names the file.
+Conversion convert_kinect(const std::filesystem::path& file,
+                          const std::filesystem::path& recording);
+
+/// Makes a TUM RGB-D folder of one of a recording's RGB-D cameras. Images that are registered, and
+/// of a lens without distortion, stay as they are; otherwise both are drawn as the depth sensor
+/// would see them with such a lens. camera.txt has that lens; groundtruth.txt the camera's poses,
+/// where rig.yaml names a list of them. Throws Error.
+Conversion convert_to_tum(const std::filesystem::path& recording,
+                          const std::filesystem::path& folder, const std::string& camera);
+
+/// Makes a ROS 2 bag of a recording: FILE.mcap, or a folder (SQLite, with metadata.yaml). Each
+/// camera's images with their camera_info below /NAME, and the cameras' transforms on /tf_static.
+/// Throws Error.
 Conversion convert_to_bag(const std::filesystem::path& recording, const std::filesystem::path& bag);
 
 }  // namespace diminish

@@ -1,12 +1,13 @@
 #include <algorithm>
+#include <memory>
 
 #include "diminish/error.h"
 #include "diminish/frame_source.h"
 #include "ros/camera_info.h"
 #include "ros/messages.h"
 #include "ros/pixel_encodings.h"
+#include "setup/convert/bag_writer.h"
 #include "setup/convert/convert.h"
-#include "setup/convert/sqlite_bag_writer.h"
 #include "source/image_file.h"
 #include "source/image_header.h"
 #include "source/image_stream.h"
@@ -39,7 +40,8 @@ std::vector<Part> parts_of(const Rig& rig) {
 class Writer {
  public:
   Writer(const std::filesystem::path& recording, const std::filesystem::path& bag)
-      : recording_(recording), bag_(bag) {}
+      : recording_(recording),
+        bag_(bag.extension() == ".mcap" ? make_mcap(bag) : make_sqlite_bag(bag)) {}
 
   void write_transforms(const Rig& rig, double stamp_s) {
     ros::TfMessage tf;
@@ -81,7 +83,7 @@ class Writer {
     }
     return stream.entries().size();
   }
-  void finish() { bag_.finish(); }
+  void finish() { bag_->finish(); }
 
  private:
   void write_image(const Part& part, double stamp_s, ros::ImageMessage message) {
@@ -97,11 +99,11 @@ class Writer {
   template <class Message>
   void write(const std::string& topic, const Message& message, double stamp_s) {
     ros::write_message(message, bytes_);
-    bag_.write(topic, Message::ros_type, stamp_s, bytes_);
+    bag_->write(topic, Message::ros_type, stamp_s, bytes_);
   }
 
   std::filesystem::path recording_;
-  SqliteBagWriter bag_;
+  std::unique_ptr<BagWriter> bag_;
   std::vector<std::uint8_t> bytes_;
 };
 

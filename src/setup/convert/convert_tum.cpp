@@ -4,14 +4,12 @@
 #include "diminish/error.h"
 #include "setup/convert/convert.h"
 #include "setup/convert/converted_recording.h"
+#include "setup/convert/tum_format.h"
 #include "sink/recording_folder.h"
 #include "source/stream_list.h"
 
 namespace diminish {
 namespace {
-
-/// vision.in.tum.de/data/datasets/rgbd-dataset/file_formats
-constexpr double unit_m = 1. / 5000;
 
 /// The color stream's images are the user's view, too.
 Conversion::Stream copy_stream(const std::filesystem::path& folder, const std::string& list,
@@ -57,7 +55,7 @@ Conversion convert_tum(const std::filesystem::path& folder, const std::filesyste
   conversion.streams.insert(conversion.streams.begin(), {"color", "rgb.txt", users_view.images()});
   Rig rig;
   rig.color = lens;
-  rig.rgbd.push_back({.name = "rgbd0", .color = lens, .depth = lens, .depth_unit_m = unit_m});
+  rig.rgbd.push_back({.name = "rgbd0", .color = lens, .depth = lens, .depth_unit_m = tum_unit_m});
   write_set_up(recording, rig, true, "");
   return conversion;
 }

@@ -1,13 +1,13 @@
-#include "setup/convert/sqlite_bag_writer.h"
-
 #include <fmt/format.h>
 #include <sqlite3.h>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <system_error>
 
 #include "diminish/error.h"
+#include "setup/convert/bag_writer.h"
 #include "sink/partial_file.h"
 
 namespace diminish {
@@ -22,7 +22,37 @@ constexpr const char* tables =
     "CREATE INDEX timestamp_idx ON messages (timestamp ASC);"
     "BEGIN";
 
-}  // namespace
+class SqliteBagWriter : public BagWriter {
+ public:
+  /// Throws Error if the folder is there, or cannot be made.
+  explicit SqliteBagWriter(const std::filesystem::path& bag);
+  ~SqliteBagWriter() override;
+  SqliteBagWriter(const SqliteBagWriter&) = delete;
+  SqliteBagWriter& operator=(const SqliteBagWriter&) = delete;
+
+  void write(const std::string& topic, const std::string& type, double stamp_s,
+             const std::vector<std::uint8_t>& message) override;
+  /// Writes metadata.yaml. A bag without it was not finished.
+  void finish() override;
+
+ private:
+  struct Topic {
+    std::int64_t id = 0;
+    std::string type;
+    std::size_t messages = 0;
+  };
+  void run(const char* statement);
+  sqlite3_stmt* prepare(const char* statement);
+  void step(sqlite3_stmt* statement);
+  [[noreturn]] void fail();
+
+  std::filesystem::path folder_;
+  std::string file_;
+  sqlite3* database_ = nullptr;
+  sqlite3_stmt *add_topic_ = nullptr, *add_message_ = nullptr;
+  std::map<std::string, Topic> topics_;
+  std::int64_t first_ns_ = 0, last_ns_ = 0;
+};
 
 SqliteBagWriter::SqliteBagWriter(const std::filesystem::path& bag) : folder_(bag) {
   std::error_code error;
@@ -111,6 +141,12 @@ void SqliteBagWriter::finish() {
                          "      duration:\n        nanoseconds: {0}\n"
                          "      message_count: {2}\n",
                          duration_ns, first_ns_, count, topics, file_));
+}
+
+}  // namespace
+
+std::unique_ptr<BagWriter> make_sqlite_bag(const std::filesystem::path& bag) {
+  return std::make_unique<SqliteBagWriter>(bag);
 }
 
 }  // namespace diminish
