@@ -84,6 +84,16 @@ class DocsTest(unittest.TestCase):
                 checked += 1
         self.assertGreater(checked, 100)
 
+    def test_every_page_is_in_the_site_s_menu(self):
+        menu = (ROOT / "mkdocs.yml").read_text()
+        for page in (ROOT / "docs").glob("*.md"):
+            self.assertRegex(menu, rf"(?m)[ -]{re.escape(page.name)}$", "expected a place in the menu of mkdocs.yml")
+
+    def test_pages_are_short(self):
+        for page in PAGES:
+            if page.name != "CHANGELOG.md":
+                self.assertLessEqual(len(page.read_text().split()), 1530, f"{page.name}: split it by what a reader asks")
+
     def test_make_targets_and_scripts_are_there(self):
         targets = set(re.findall(r"^([\w-]+):", (ROOT / "Makefile").read_text(), re.M))
         for page in PAGES:

@@ -15,13 +15,13 @@
 namespace diminish {
 namespace {
 
-std::string command_line_docs() {
-  return read_text_file(std::filesystem::path(testing::docs_dir()) / "command-line.md", 1 << 20);
+std::string docs_page(const char* name) {
+  return read_text_file(std::filesystem::path(testing::docs_dir()) / name, 1 << 20);
 }
 
 // The options are described once, in options.h; the docs must say the same.
 TEST(CommandLineDocs, DescribeEveryOptionAsTheCodeDoes) {
-  const std::string docs = command_line_docs();
+  const std::string docs = docs_page("command-line.md");
   const Options defaults;
   for_each_option(defaults, [&](const OptionInfo& info, const auto& value) {
     std::string flag = info.name;
@@ -40,7 +40,7 @@ TEST(CommandLineDocs, DescribeEveryOptionAsTheCodeDoes) {
 }
 
 TEST(CommandLineDocs, NameEveryMethod) {
-  const std::string docs = command_line_docs();
+  const std::string docs = docs_page("methods.md");
   for (const std::string& name : Registry<ColorCorrector>::names()) {
     EXPECT_THAT(docs, ::testing::HasSubstr("`" + name + "`"));
   }

@@ -20,7 +20,7 @@ struct ResultWriterOptions {
 };
 
 /// Writes a run's results into a folder: result/, mask/, reconstruction/, provenance/ (or
-/// preview/), frames.csv, summary.json, result.mp4 (docs/command-line.md). Every file is complete
+/// preview/), frames.csv, summary.json, result.mp4 (docs/results.md). Every file is complete
 /// at any moment.
 class DIMINISH_EXPORT ResultWriter : public FrameSink {
  public:

@@ -11,7 +11,7 @@
 namespace diminish {
 
 /// Writes frames.csv, one row per frame; every written row is complete. Columns:
-/// docs/command-line.md.
+/// docs/results.md.
 class FramesCsv {
  public:
   FramesCsv(const std::filesystem::path& file, const Rig& rig);

@@ -13,7 +13,7 @@ namespace {
 // The docs describe every flag of the set-up commands.
 TEST(CommandLineDocs, DescribeTheFlagsOfSettingUp) {
   const std::string docs =
-      read_text_file(std::filesystem::path(testing::docs_dir()) / "command-line.md", 1 << 20);
+      read_text_file(std::filesystem::path(testing::docs_dir()) / "set-up-commands.md", 1 << 20);
   const std::vector<std::vector<std::string>> commands = {{"markers"},
                                                           {"calibrate", "intrinsics"},
                                                           {"calibrate", "factory"},
@@ -39,7 +39,7 @@ TEST(CommandLineDocs, DescribeTheFlagsOfSettingUp) {
 
 TEST(SettingUpDocs, NameEveryFinding) {
   const std::filesystem::path docs(testing::docs_dir());
-  const std::string text = read_text_file(docs / "setting-up.md", 1 << 20);
+  const std::string text = read_text_file(docs / "checking.md", 1 << 20);
   const std::regex finding("setup\\.find\\([^;\"]*\"([a-z-]+)\"");
   std::size_t count = 0;
   for (const auto& file :
