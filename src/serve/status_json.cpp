@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "serve/advice.h"
+
 namespace diminish {
 namespace {
 
@@ -68,6 +70,8 @@ Json to_json(const LiveStatus& status, const Options& options) {
   for (std::size_t i = 0; i < stage_count; ++i) {
     json["stage_ms"][stage_names[i]] = rounded(status.stage_ms[i]);
   }
+  json["to_do"] = Json::array();
+  for (const std::string& problem : status.problems) json["to_do"].push_back(advice_for(problem));
   json["cameras"] = Json::array();
   for (const CameraStatus& camera : status.cameras) json["cameras"].push_back(camera_json(camera));
   json["posed"] = status.posed;

@@ -10,8 +10,10 @@
 #include "diminish/error.h"
 #include "page_files.h"
 #include "serve/access.h"
+#include "serve/json_answers.h"
 #include "serve/settings.h"
 #include "serve/status_json.h"
+#include "serve/webrtc_video.h"
 
 namespace diminish {
 namespace {
@@ -22,19 +24,6 @@ using std::chrono::milliseconds;
 constexpr milliseconds picture_wait{500};
 constexpr milliseconds event_period{200};
 constexpr std::size_t most_request_bytes = 1 << 16;
-
-std::string text_of(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-void answer(httplib::Response& response, const Json& json, int status = 200) {
-  response.status = status;
-  response.set_header("Cache-Control", "no-store");
-  response.set_content(text_of(json), "application/json");
-}
-void refuse(httplib::Response& response, int status, const std::string& why) {
-  answer(response, {{"error", why}}, status);
-}
 
 /// What a browser may do with an answer: show it in this program's own page, with nothing from
 /// elsewhere.
@@ -124,6 +113,8 @@ void WebRoutes::add_to(httplib::Server& server) {
               [this](const auto& request, auto& response) { change_memory(request, response); });
   server.Post("/api/recording",
               [this](const auto& request, auto& response) { change_recording(request, response); });
+  server.Post("/api/webrtc",
+              [this](const auto& request, auto& response) { video(request, response); });
 }
 
 std::string WebRoutes::given_token(const httplib::Request& request) const {
@@ -170,16 +161,17 @@ bool WebRoutes::check_access(const httplib::Request& request, httplib::Response&
 }
 
 std::shared_ptr<WebRoutes::Viewer> WebRoutes::admit(std::atomic<std::size_t>& viewers,
+                                                    std::size_t most,
                                                     httplib::Response& response) const {
-  auto viewer = std::make_shared<Viewer>(viewers, options_.most_viewers);
+  auto viewer = std::make_shared<Viewer>(viewers, most);
   if (viewer->welcome()) return viewer;
-  refuse(response, 503, fmt::format("already {} viewers", options_.most_viewers));
+  refuse(response, 503, fmt::format("already {} viewers", most));
   return nullptr;
 }
 
 void WebRoutes::stream(const httplib::Request& request, httplib::Response& response) {
   const View view = requested_view(request);
-  const auto viewer = admit(picture_viewers_, response);
+  const auto viewer = admit(picture_viewers_, options_.most_viewers, response);
   if (!viewer) return;
   response.set_header("Cache-Control", "no-store");
   response.set_chunked_content_provider(
@@ -216,7 +208,7 @@ void WebRoutes::picture(const httplib::Request& request, httplib::Response& resp
 }
 
 void WebRoutes::events(httplib::Response& response) {
-  const auto viewer = admit(event_viewers_, response);
+  const auto viewer = admit(event_viewers_, options_.most_viewers, response);
   if (!viewer) return;
   response.set_header("Cache-Control", "no-store");
   response.set_chunked_content_provider(
@@ -293,7 +285,9 @@ Json WebRoutes::status_json() {
                        {"frames", status.frames},
                        {"dropped", status.dropped},
                        {"problem", status.problem}};
-  json["viewers"] = picture_viewers_.load();
+  json["viewers"] = picture_viewers_.load() + video_viewers_.load();
+  const std::string why_no_video = why_no_webrtc();
+  json["video"] = {{"available", why_no_video.empty()}, {"problem", why_no_video}};
   return json;
 }
 

@@ -59,11 +59,12 @@ class WebRoutes {
   /// Whether the request may go on; if not, it has been answered.
   bool check_access(const httplib::Request& request, httplib::Response& response) const;
   /// Adds a viewer; answers with a refusal and returns nullptr if there are too many.
-  std::shared_ptr<Viewer> admit(std::atomic<std::size_t>& viewers,
+  std::shared_ptr<Viewer> admit(std::atomic<std::size_t>& viewers, std::size_t most,
                                 httplib::Response& response) const;
   void stream(const httplib::Request& request, httplib::Response& response);
   void picture(const httplib::Request& request, httplib::Response& response, bool is_png);
   void events(httplib::Response& response);
+  void video(const httplib::Request& request, httplib::Response& response);
   void change_settings(const httplib::Request& request, httplib::Response& response);
   void change_recording(const httplib::Request& request, httplib::Response& response);
   void change_memory(const httplib::Request& request, httplib::Response& response);
@@ -76,7 +77,7 @@ class WebRoutes {
   PictureEncoder encoder_;
   int port_ = 0;
   std::atomic<bool> stopped_ = false;
-  std::atomic<std::size_t> picture_viewers_ = 0, event_viewers_ = 0;
+  std::atomic<std::size_t> picture_viewers_ = 0, video_viewers_ = 0, event_viewers_ = 0;
   std::mutex settings_mutex_;  ///< serialises changes
   std::mutex recording_mutex_;
   std::shared_ptr<RecordingWriter> recording_;

@@ -18,8 +18,9 @@ constexpr int write_timeout_s = 5;
 struct WebServer::Implementation {
   Implementation(LiveSession& session, const WebServerOptions& options_)
       : options(options_), routes(session, options_) {
-    // One thread for each viewer's pictures, one for its events, and some for short requests.
-    const std::size_t threads = 2 * options.most_viewers + 8;
+    // One thread for each viewer's pictures, one for its events, and some for videos and short
+    // requests.
+    const std::size_t threads = 2 * options.most_viewers + 12;
     server.new_task_queue = [threads] { return new httplib::ThreadPool(threads); };
     // Not SO_REUSEPORT, which would let two programs share a port without noticing.
     server.set_socket_options([](socket_t socket) {

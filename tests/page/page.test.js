@@ -1,74 +1,17 @@
 // The page of `diminish serve` in a real browser. Run by scripts/test-page.
 import assert from "node:assert/strict";
-import { spawn } from "node:child_process";
 import { cp, mkdtemp, readdir, readFile, rm, writeFile } from "node:fs/promises";
 import { tmpdir } from "node:os";
 import path from "node:path";
 import { after, before, test } from "node:test";
-import { fileURLToPath } from "node:url";
-import { chromium } from "playwright-core";
-
-const root = fileURLToPath(new URL("../..", import.meta.url));
-const program = process.env.DIMINISH_PROGRAM ?? path.join(root, "build/release/diminish");
-const recordings = path.join(root, "demo/recordings");
-const patience = { timeout: 60_000 };
-
-// The program as a user starts it; ends with `stop`.
-async function serve(...parameters) {
-  const process = spawn(program, ["serve", ...parameters, "--port", "0"]);
-  let errors = "";
-  process.stderr.on("data", (text) => { errors += text; });
-  const ended = new Promise((resolve) => process.on("exit", resolve));
-  const url = await new Promise((resolve, reject) => {
-    let text = "";
-    process.stdout.on("data", (data) => {
-      text += data;
-      const found = /Open (\S+)/.exec(text);
-      if (found) resolve(found[1]);
-    });
-    ended.then((code) => reject(new Error(`diminish ended with ${code}: ${errors}`)));
-  });
-  return {
-    url,
-    async stop() {
-      process.kill("SIGINT");
-      assert.equal(await ended, 0, errors);
-    },
-  };
-}
-
-const frameNumber = (page) => page.locator("#picture").getAttribute("data-frame").then(Number);
-
-// The picture's pixels, summed over a part of it: [x, y, width, height] in shares of its size.
-function brightness(page, part) {
-  return page.evaluate(([x, y, width, height]) => {
-    const canvas = document.getElementById("picture");
-    const { data } = canvas.getContext("2d").getImageData(
-      x * canvas.width, y * canvas.height, width * canvas.width, height * canvas.height);
-    let sum = 0;
-    for (let i = 0; i < data.length; i += 4) sum += data[i] + data[i + 1] + data[i + 2];
-    return sum / (data.length / 4) / 3;
-  }, part);
-}
-
-async function eventually(isTrue, what) {
-  const end = Date.now() + patience.timeout;
-  while (Date.now() < end) {
-    if (await isTrue()) return;
-    await new Promise((resume) => setTimeout(resume, 50));
-  }
-  assert.fail(`never: ${what}`);
-}
+import { brightness, calendar, eventually, frameNumber, open as openIn, patience, serve, startBrowser, statusOf, waitForPicture } from "./browser.js";
 
 let browser, server, folder;
 
 before(async () => {
   folder = await mkdtemp(path.join(tmpdir(), "diminish-page-"));
-  server = await serve(path.join(recordings, "calendar"), "--recordings", folder);
-  browser = await chromium.launch({
-    executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
-    args: ["--no-sandbox"],
-  });
+  server = await serve(calendar, "--recordings", folder);
+  browser = await startBrowser();
 });
 
 after(async () => {
@@ -77,15 +20,7 @@ after(async () => {
   if (folder) await rm(folder, { recursive: true });
 });
 
-// A page that has shown a picture, and complains of nothing.
-async function open(url = server.url, options = { viewport: { width: 1280, height: 900 } }) {
-  const page = await browser.newPage(options);
-  page.errors = [];
-  page.on("pageerror", (error) => page.errors.push(error.message));
-  await page.goto(url);
-  await page.waitForSelector("#picture[data-frame]", { ...patience, state: "attached" });
-  return page;
-}
+const open = (url = server.url, options = {}) => openIn(browser, url, options);
 
 test("the picture moves", async () => {
   const page = await open();
@@ -122,15 +57,14 @@ test("modes, sliders and objects change the picture for all who look", async () 
   const [page, other] = [await open(), await open()];
   await page.getByRole("radio", { name: "provenance" }).click();
   await eventually(() => page.getByRole("radio", { name: "provenance", checked: true }).isVisible(), "mode");
-  const status = () => other.evaluate(() => fetch("api/status").then((answer) => answer.json()));
-  await eventually(async () => (await status()).mode === "provenance", "the mode");
+  await eventually(async () => (await statusOf(other)).mode === "provenance", "the mode");
   await page.getByRole("radio", { name: "remove" }).click();
 
   await page.getByRole("checkbox", { name: "calendar" }).uncheck();
-  await eventually(async () => (await status()).mask_share === 0, "nothing is removed");
+  await eventually(async () => (await statusOf(other)).mask_share === 0, "nothing is removed");
   await page.getByText("left in the picture").waitFor(patience);
   await page.getByRole("checkbox", { name: "calendar" }).check();
-  await eventually(async () => (await status()).mask_share > 0, "it is removed again");
+  await eventually(async () => (await statusOf(other)).mask_share > 0, "it is removed again");
 
   await page.locator("input[name=mask_margin_px]").fill("12");
   await page.locator("input[name=mask_margin_px]").dispatchEvent("change");
@@ -190,7 +124,6 @@ test("wrong values are refused in plain words", async () => {
 });
 
 test("a camera that is gone is said in the warning bar", async () => {
-  const calendar = path.join(recordings, "calendar");
   const lame = await serve(calendar, "--color", `recording:${calendar}?loop`, "--rgbd", "recording:/nowhere");
   const page = await open(lame.url);
   await page.locator("#warnings").getByText(/rgbd0: camera lost/).waitFor(patience);
@@ -202,7 +135,6 @@ test("a camera that is gone is said in the warning bar", async () => {
 test("a marker that is hidden is said in the warning bar", async () => {
   // The scene's world marker is one that nobody sees.
   const hidden = await mkdtemp(path.join(tmpdir(), "diminish-hidden-"));
-  const calendar = path.join(recordings, "calendar");
   await cp(calendar, hidden, { recursive: true });
   const scene = await readFile(path.join(hidden, "scene.yaml"), "utf8");
   await writeFile(path.join(hidden, "scene.yaml"), scene.replace(/(world_marker:\s*\{\s*id:\s*)\d+/, "$149"));
@@ -215,13 +147,13 @@ test("a marker that is hidden is said in the warning bar", async () => {
 });
 
 test("the token leaves the address, and the page still works", async () => {
-  const secret = await serve(path.join(recordings, "calendar"), "--token", "sesame");
+  const secret = await serve(calendar, "--token", "sesame");
   const page = await open(secret.url);
   const violations = [];
   page.on("console", (message) => { if (message.type() === "error") violations.push(message.text()); });
   assert.equal(new URL(page.url()).search, "");
   await page.reload();
-  await page.waitForSelector("#picture[data-frame]", { ...patience, state: "attached" });
+  await waitForPicture(page);
   const first = await frameNumber(page);
   await eventually(async () => (await frameNumber(page)) > first + 2, "more frames");
   const [still] = await Promise.all([page.waitForEvent("download"), page.locator("#still").click()]);
@@ -229,15 +161,6 @@ test("the token leaves the address, and the page still works", async () => {
   assert.deepEqual([page.errors, violations], [[], []]);
   await page.close();
   await secret.stop();
-});
-
-test("it fits a phone", async () => {
-  const page = await open(server.url, { viewport: { width: 390, height: 844 }, isMobile: true, hasTouch: true });
-  const width = await page.evaluate(() => document.documentElement.scrollWidth);
-  assert.ok(width <= 390, `the page is ${width} pixels wide`);
-  const button = await page.getByRole("radio", { name: "half" }).boundingBox();
-  assert.ok(button.height >= 40, "buttons are large enough for fingers");
-  await page.close();
 });
 
 test("a screenshot for the docs", { skip: !process.env.DIMINISH_SCREENSHOT }, async () => {
