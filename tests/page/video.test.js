@@ -13,7 +13,7 @@ after(async () => {
   await browser?.close();
   await server?.stop();
 });
-const open = (url = server.url) => openIn(browser, url);
+const open = (url = `${server.url}?video`) => openIn(browser, url);
 const sentAs = (page, name) => eventually(async () => (await page.locator("#sent-as").textContent()) === name, `sent as ${name}`);
 // Built without GStreamer's WebRTC, or packages missing: the page shows JPEGs (page.test.js).
 const withVideo = (name, body) => test(name, async (t) => problem ? t.skip(problem) : body(t));
@@ -63,7 +63,7 @@ withVideo("where the video cannot be had, or ends, JPEGs go on", async () => {
     };
   });
   const page = await context.newPage();
-  await page.goto(server.url);
+  await page.goto(`${server.url}?video`);
   await sentAs(page, "video");
   await context.route("**/api/webrtc", (route) => route.abort());
   await page.evaluate(() => globalThis.peers.at(-1).close());
@@ -76,8 +76,8 @@ withVideo("where the video cannot be had, or ends, JPEGs go on", async () => {
   await context.close();
 });
 
-withVideo("`?jpeg` does without", async () => {
-  const page = await open(`${server.url}?jpeg`);
+withVideo("unasked, the page shows JPEGs", async () => {
+  const page = await open(server.url);
   const first = await frameNumber(page);
   await eventually(async () => (await frameNumber(page)) > first + 10, "it moves");
   assert.equal(await page.locator("#sent-as").textContent(), "JPEG");
@@ -131,7 +131,7 @@ async function measure(page, seconds) {
 
 withVideo("glass to glass, beside JPEGs", async (t) => {
   const seconds = Number(process.env.DIMINISH_LATENCY_SECONDS ?? 2);
-  for (const [name, url] of [["video", server.url], ["JPEG", `${server.url}?jpeg`], ["video", server.url], ["JPEG", `${server.url}?jpeg`]]) {
+  for (const [name, url] of [["video", `${server.url}?video`], ["JPEG", server.url], ["video", `${server.url}?video`], ["JPEG", server.url]]) {
     const page = await open(url);
     await sentAs(page, name);
     let latencies = [];

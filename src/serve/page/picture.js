@@ -97,10 +97,10 @@ function lookAnew() {
   look(looking.signal);
 }
 
-// Called when it is known whether the program can send a video. `?jpeg` in the page's address does
-// without one.
+// Called when it is known whether the program can send a video. It is shown where the page's
+// address has `?video`: without a graphics card it is later than JPEGs (docs/http-api.md).
 export function allowVideo(isAvailable) {
-  const isWanted = isAvailable && canWatch() && !new URLSearchParams(location.search).has("jpeg");
+  const isWanted = isAvailable && canWatch() && new URLSearchParams(location.search).has("video");
   if (isWanted === hasVideo) return;
   hasVideo = isWanted;
   if (view === "after") lookAnew();

@@ -1,4 +1,4 @@
-// The result as a video by WebRTC: less delay and far fewer bytes than JPEGs.
+// The result as a video by WebRTC: far fewer bytes than JPEGs.
 
 async function* lines(response) {
   const reader = response.body.pipeThrough(new TextDecoderStream()).getReader();
