@@ -13,7 +13,6 @@ namespace diminish {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 std::string body(const std::string& sdp, const std::string& type = "offer") {
   return nlohmann::json{{"type", type}, {"sdp", sdp}}.dump();

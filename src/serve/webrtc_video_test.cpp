@@ -38,7 +38,7 @@ class VideoAnswer : public ::testing::Test {
   /// The addresses at which an answer's candidates are.
   static std::vector<std::string> addresses(const std::string& sdp) {
     std::vector<std::string> found;
-    const std::regex line("a=candidate:\\S+ \\d+ \\S+ \\d+ (\\S+) ");
+    const std::regex line(R"(a=candidate:\S+ \d+ \S+ \d+ (\S+) )");
     for (std::sregex_iterator i(sdp.begin(), sdp.end(), line), end; i != end; ++i) {
       found.push_back(i->str(1));
     }
