@@ -75,7 +75,8 @@ bool Backend::try_chosen(const FrameInputs& inputs, DiminishedFrame& result) {
     failure_ = error.what();
     // All begins anew: what was drawn may be in any state.
     chosen_.reset();
-    last_ = Stage::drawing;
+    // What learns beside one that only draws asks what it has done.
+    if (last_ != Stage::drawing) last_ = Stage::drawing;
     result.reconstruction.color.resize(0, 0);
     return false;
   }
