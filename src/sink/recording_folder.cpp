@@ -83,12 +83,11 @@ RecordingFolder::Stream RecordingFolder::make_stream(const std::string& list,
   std::filesystem::create_directories(folder_ / folder, error);
   if (error)
     throw Error(Error::io, (folder_ / folder).string() + ": cannot be made: " + error.message());
-  const std::filesystem::path file = folder_ / (list + ".txt");
   Stream stream;
   stream.folder = folder;
-  stream.list.open(file);
-  stream.list << "# timestamp filename\n" << std::flush;
-  if (!stream.list) throw Error(Error::io, file.string() + ": cannot be written");
+  stream.list_file = folder_ / (list + ".txt");
+  stream.list.open(stream.list_file);
+  append(stream, "# timestamp filename\n");
   return stream;
 }
 
@@ -138,11 +137,21 @@ void RecordingFolder::write_image(Stream& stream, const InputImage<Pixel>& image
   add(stream, stamp_s, file);
 }
 
-void RecordingFolder::add(Stream& stream, double stamp_s, const std::string& file) const {
-  stream.list << fmt::format("{:.6f} {}\n", stamp_s, file) << std::flush;
-  if (!stream.list) {
-    throw Error(Error::io, (folder_ / stream.folder).string() + ": its list cannot be written");
+void RecordingFolder::append(Stream& stream, const std::string& line) {
+  stream.list << line << std::flush;
+  if (stream.list) {
+    stream.list_bytes += line.size();
+    return;
   }
+  // A full disk may have taken a part of it.
+  stream.list.close();
+  std::error_code ignored;
+  std::filesystem::resize_file(stream.list_file, stream.list_bytes, ignored);
+  throw Error(Error::io, stream.list_file.string() + ": cannot be written");
+}
+
+void RecordingFolder::add(Stream& stream, double stamp_s, const std::string& file) {
+  append(stream, fmt::format("{:.6f} {}\n", stamp_s, file));
   stream.last_stamp_s = stamp_s;
 }
 

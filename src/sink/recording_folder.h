@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -40,7 +41,9 @@ class RecordingFolder {
   /// A sensor's folder and list.
   struct Stream {
     std::string folder;  ///< relative: "rgbd0/depth"
+    std::filesystem::path list_file;
     std::ofstream list;
+    std::uintmax_t list_bytes = 0;  ///< of whole lines
     double last_stamp_s = -1;
   };
   Stream make_stream(const std::string& list, const std::string& folder) const;
@@ -53,7 +56,9 @@ class RecordingFolder {
                    const std::string& name);
   /// The timestamps in a list must increase.
   void follow_clock(double stamp_s);
-  void add(Stream& stream, double stamp_s, const std::string& file) const;
+  /// A line is written whole or not at all. Throws Error.
+  static void append(Stream& stream, const std::string& line);
+  static void add(Stream& stream, double stamp_s, const std::string& file);
 
   std::filesystem::path folder_, scene_file_;
   Pictures pictures_;
