@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <exception>
 
+#include "core/set_text.h"
+#include "core/thread_name.h"
+
 namespace diminish {
 namespace {
 
@@ -45,11 +48,16 @@ CameraStatus CameraFeed::status() const {
   return status;
 }
 
-void CameraFeed::set_state(CameraState state, const std::string& problem) {
+std::size_t CameraFeed::images() const {
+  const std::lock_guard lock(mutex_);
+  return status_.images;
+}
+
+void CameraFeed::set_state(CameraState state, const char* problem) {
   {
     const std::lock_guard lock(mutex_);
     status_.state = state;
-    if (!problem.empty()) status_.problem = problem;
+    if (*problem != '\0') set_text(status_.problem, problem);
     if (state == CameraState::lost) {
       ++status_.failures;
       arrivals_s_.clear();
@@ -66,9 +74,10 @@ void CameraFeed::wait_before_reopening(double seconds) const {
 }
 
 void CameraFeed::work() {
+  name_this_thread("camera");
   double retry_s = first_retry_s;
   while (!stopped_) {
-    const std::size_t images_before = status().images;
+    const std::size_t images_before = images();
     try {
       read_until_gone();
       if (!stopped_) set_state(CameraState::ended, "");
@@ -78,7 +87,7 @@ void CameraFeed::work() {
     } catch (...) {
       set_state(CameraState::lost, "the camera's driver failed");
     }
-    if (status().images > images_before) retry_s = first_retry_s;
+    if (images() > images_before) retry_s = first_retry_s;
     wait_before_reopening(retry_s);
     retry_s = std::min(2 * retry_s, last_retry_s);
   }

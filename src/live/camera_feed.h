@@ -32,7 +32,9 @@ class CameraFeed {
   void work();
   void read_until_gone();
   void take(CameraImage& image);
-  void set_state(CameraState state, const std::string& problem);
+  std::size_t images() const;
+  /// problem: empty to leave it as it is. Throws nothing.
+  void set_state(CameraState state, const char* problem);
   void wait_before_reopening(double seconds) const;
 
   LiveCamera camera_;

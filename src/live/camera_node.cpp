@@ -4,8 +4,11 @@
 #include <atomic>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #include "camera/ros2_address.h"
+#include "core/set_text.h"
+#include "core/thread_name.h"
 #include "diminish/error.h"
 #include "live/camera_messages.h"
 #include "source/find_camera.h"
@@ -49,6 +52,7 @@ struct CameraNode::Implementation {
   }
 
   void work() {
+    name_this_thread("camera");
     double retry_s = first_retry_s;
     while (!is_stopped) {
       const std::size_t before = status.images;
@@ -59,13 +63,13 @@ struct CameraNode::Implementation {
         status.has_ended = !is_stopped;
         return;
       } catch (const std::exception& error) {
-        what = error.what();
+        set_text(what, error.what());
       } catch (...) {
-        what = "an unknown error";
+        set_text(what, "an unknown error");
       }
       {
         const std::lock_guard lock(mutex);
-        status.problem = what;
+        status.problem = std::move(what);
         retry_s = status.images > before ? first_retry_s : std::min(2 * retry_s, last_retry_s);
       }
       const double end_s = monotonic_now_s() + retry_s;

@@ -6,6 +6,8 @@
 #include <string>
 #include <thread>
 
+#include "core/set_text.h"
+#include "core/thread_name.h"
 #include "diminish/live.h"
 
 namespace diminish {
@@ -31,6 +33,7 @@ class FrameForwarder {
 
  private:
   void run(const LiveSession& session) {
+    name_this_thread("forwarder");
     try {
       forward(session);
     } catch (const std::exception& error) {
@@ -50,9 +53,9 @@ class FrameForwarder {
       write_(*frame);
     }
   }
-  void fail(const std::string& what) {
+  void fail(const char* what) {
     const std::lock_guard lock(mutex_);
-    problem_ = what;
+    set_text(problem_, what);
   }
 
   std::function<void(const LiveFrame&)> write_;

@@ -7,7 +7,10 @@
 #include <mutex>
 #include <numeric>
 #include <thread>
+#include <utility>
 
+#include "core/set_text.h"
+#include "core/thread_name.h"
 #include "core/turns.h"
 #include "diminish/error.h"
 #include "diminish/live.h"
@@ -56,8 +59,9 @@ struct Lane {
 
   Pipeline pipeline;
   Turn publishing;
-  std::size_t options_version = 0;  ///< of those that the pipeline has
-  std::atomic<double> begun_s = 0;  ///< its frame, on the monotonic clock; 0: none
+  std::size_t options_version = 0;         ///< of those that the pipeline has
+  std::atomic<double> begun_s = 0;         ///< its frame, on the monotonic clock; 0: none
+  std::atomic<std::thread::id> thread_id;  ///< may be read while `thread` is waited for
   std::thread thread;
 };
 
@@ -113,10 +117,19 @@ struct LiveSession::Implementation {
       feeds.push_back(std::make_unique<CameraFeed>(
           camera, CameraRequest{camera.name, &rig, epoch_s}, inbox, arrived));
     }
-    for (const auto& lane : lanes) lane->thread = std::thread([this, &lane] { work(*lane); });
+    begin_threads();
   }
 
   ~Implementation() { stop(); }
+
+  void begin_threads() {
+    try {
+      for (const auto& lane : lanes) lane->thread = std::thread([this, &lane] { work(*lane); });
+    } catch (...) {  // the system has none to give: those that have begun must end
+      stop();
+      throw;
+    }
+  }
 
   CameraInbox& make_inboxes() {
     inboxes.push_back(std::make_unique<CameraInbox>("color", rig.color, std::nullopt));
@@ -143,7 +156,7 @@ struct LiveSession::Implementation {
 
   bool is_own_thread() const {
     return std::any_of(lanes.begin(), lanes.end(), [](const auto& lane) {
-      return lane->thread.get_id() == std::this_thread::get_id();
+      return lane->thread_id == std::this_thread::get_id();
     });
   }
 
@@ -161,16 +174,19 @@ struct LiveSession::Implementation {
   }
 
   void work(Lane& lane) {
-    std::shared_ptr<LiveFrame> frame = pool.take();
+    name_this_thread("frames");
+    lane.thread_id = std::this_thread::get_id();
+    std::shared_ptr<LiveFrame> frame;
     while (!stopped) {
       try {
+        if (!frame) frame = pool.take();
         if (!begin_frame(lane, *frame)) continue;
         const Busy busy(lane);
         apply_options(lane);
         arena.execute([&] { lane.pipeline.process(frame->input, frame->result); });
         lane.publishing.wait(publishing);
-        publish(frame);
-        frame = pool.take();
+        // Whatever fails from here on, what others may hold by then is not used again.
+        publish(std::exchange(frame, nullptr));
       } catch (const std::exception& error) {
         note_failure(error.what());
       } catch (...) {
@@ -267,10 +283,10 @@ struct LiveSession::Implementation {
     published.notify();
   }
 
-  void note_failure(const std::string& what) {
+  void note_failure(const char* what) {
     const std::lock_guard lock(mutex);
     ++failed;
-    failure = what;
+    set_text(failure, what);
   }
 
   LiveStatus status() const;

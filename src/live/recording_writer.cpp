@@ -4,8 +4,11 @@
 
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #include "core/bounded_queue.h"
+#include "core/set_text.h"
+#include "core/thread_name.h"
 #include "diminish/error.h"
 #include "sink/recording_folder.h"
 
@@ -28,6 +31,7 @@ struct RecordingWriter::Implementation {
   BoundedQueue<std::shared_ptr<const LiveFrame>> waiting_{most_waiting};
   std::mutex mutex_;
   RecordingStatus status_;
+  std::mutex ending_;  ///< guards the thread: several may finish
   std::thread thread_;
 };
 
@@ -45,6 +49,7 @@ RecordingWriter::Implementation::Implementation(std::filesystem::path folder,
 
 void RecordingWriter::Implementation::finish() {
   waiting_.close();
+  const std::lock_guard lock(ending_);
   if (thread_.joinable()) thread_.join();
 }
 
@@ -54,6 +59,7 @@ void RecordingWriter::Implementation::offer(std::shared_ptr<const LiveFrame> fra
 }
 
 void RecordingWriter::Implementation::work() {
+  name_this_thread("recorder");
   while (const auto frame = waiting_.take()) {
     std::string problem;
     bool is_new = false;
@@ -61,12 +67,14 @@ void RecordingWriter::Implementation::work() {
       // Only this thread changes the number of frames.
       is_new = folder_.write((*frame)->input, fmt::format("{:06}", status_.frames));
     } catch (const std::exception& error) {
-      problem = error.what();
+      set_text(problem, error.what());
+    } catch (...) {
+      set_text(problem, "an unknown error");
     }
     const std::lock_guard lock(mutex_);
     status_.frames += is_new ? 1 : 0;
-    status_.problem = problem;
-    if (!problem.empty()) break;
+    status_.problem = std::move(problem);
+    if (!status_.problem.empty()) break;
   }
   // After a problem nothing more is written: what waits goes.
   waiting_.close();

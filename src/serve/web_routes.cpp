@@ -270,9 +270,14 @@ void WebRoutes::start_recording() {
 }
 
 void WebRoutes::stop_recording() {
-  const std::lock_guard lock(recording_mutex_);
-  recording_listener_.reset();
-  if (recording_) recording_->finish();
+  std::shared_ptr<RecordingWriter> ending;
+  {
+    const std::lock_guard lock(recording_mutex_);
+    recording_listener_.reset();
+    ending = recording_;
+  }
+  // Without the mutex: whoever asks for the status does not wait for the disk.
+  if (ending) ending->finish();
 }
 
 Json WebRoutes::status_json() {

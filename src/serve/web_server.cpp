@@ -5,6 +5,7 @@
 
 #include <thread>
 
+#include "core/thread_name.h"
 #include "diminish/error.h"
 #include "serve/web_routes.h"
 
@@ -42,7 +43,10 @@ struct WebServer::Implementation {
                               options.address, options.port));
     }
     routes.listens_at(port);
-    listener = std::thread([this] { server.listen_after_bind(); });
+    listener = std::thread([this] {
+      name_this_thread("web");
+      server.listen_after_bind();
+    });
     while (!server.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
 
