@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
+#include <string>
 
 namespace diminish {
 
@@ -32,6 +34,17 @@ struct ProcessState {
     state.handles = count("/proc/self/fd");
     state.threads = count("/proc/self/task");
     return state;
+  }
+
+  /// How many threads of each name there are now: "camera", "llvmpipe-0".
+  static std::map<std::string, long> thread_names() {
+    std::map<std::string, long> names;
+    for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
+      std::string name;
+      std::getline(std::ifstream(task.path() / "comm"), name);
+      if (!name.empty()) ++names[name];
+    }
+    return names;
   }
 
  private:

@@ -23,9 +23,11 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <random>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -33,6 +35,7 @@
 #include "hardships.h"
 #include "process_state.h"
 #include "setup/repair/recording_repair.h"
+#include "sink/partial_file.h"
 #include "web_client.h"
 
 namespace diminish {
@@ -148,11 +151,11 @@ void shorten_memory(LiveSession& session, const Flag& ends, Counts& counts) {
   }
 }
 
-/// Whether all that was recorded can be read. may_be_torn: the folder was lost, perhaps in the
-/// middle of a file, which then has no name yet.
-bool is_whole(const std::filesystem::path& folder, std::size_t frames, bool may_be_torn) {
+/// Whether all that was recorded can be read. was_lost: the folder, perhaps in the middle of a
+/// file, which then has a name that says so.
+bool is_whole(const std::filesystem::path& folder, std::size_t frames, bool was_lost) {
   RecordingRepair repair = repair_recording(folder);
-  if (may_be_torn) repair.deleted.clear();
+  if (was_lost) std::erase_if(repair.deleted, is_partial_file);
   if (repair.was_needed()) return false;
   const auto source = open_recording(load_recording(folder), {});
   std::size_t read = 0;
@@ -314,6 +317,16 @@ ProcessState state_in_use() {
   return ProcessState::now();
 }
 
+/// Those of which there are more than there were.
+void print_new_threads(const std::map<std::string, long>& before) {
+  for (const auto& [name, count] : ProcessState::thread_names()) {
+    const auto found = before.find(name);
+    const long was = found == before.end() ? 0 : found->second;
+    if (count > was)
+      std::printf("threads called %s: %ld before, %ld now\n", name.c_str(), was, count);
+  }
+}
+
 int besiege(const Recording& recording, const std::filesystem::path& folder, int minutes) {
   constexpr double minute_s = 60;
   const LosingDriver driver;
@@ -325,6 +338,7 @@ int besiege(const Recording& recording, const std::filesystem::path& folder, int
     first.check();
   }
   const ProcessState before = state_in_use();
+  const auto threads_before = ProcessState::thread_names();
   Siege siege(recording, folder);
   std::printf("%6s %8s %8s %7s %7s %9s %9s %8s %8s\n", "minute", "frames", "skipped", "failed",
               "faults", "longest s", "MB", "handles", "threads");
@@ -346,6 +360,7 @@ int besiege(const Recording& recording, const std::filesystem::path& folder, int
       "%ld threads\n",
       before.memory_mb, after.memory_mb, before.handles, after.handles, before.threads,
       after.threads);
+  print_new_threads(threads_before);
   constexpr double steady_memory = 1.25;
   const bool held = siege.held() && after.memory_mb <= steady_memory * before.memory_mb &&
                     after.handles <= before.handles && after.threads <= before.threads;
