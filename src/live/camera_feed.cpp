@@ -78,15 +78,17 @@ void CameraFeed::work() {
   double retry_s = first_retry_s;
   while (!stopped_) {
     const std::size_t images_before = images();
+    bool has_ended = false;
     try {
       read_until_gone();
+      has_ended = true;
       if (!stopped_) set_state(CameraState::ended, "");
-      return;
     } catch (const std::exception& error) {
       set_state(CameraState::lost, error.what());
     } catch (...) {
       set_state(CameraState::lost, "the camera's driver failed");
     }
+    if (has_ended) return;
     if (images() > images_before) retry_s = first_retry_s;
     wait_before_reopening(retry_s);
     retry_s = std::min(2 * retry_s, last_retry_s);

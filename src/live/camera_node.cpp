@@ -57,16 +57,18 @@ struct CameraNode::Implementation {
     while (!is_stopped) {
       const std::size_t before = status.images;
       std::string what;
+      bool has_ended = false;
       try {
         publish_until_gone();
+        has_ended = true;
         const std::lock_guard lock(mutex);
         status.has_ended = !is_stopped;
-        return;
       } catch (const std::exception& error) {
         set_text(what, error.what());
       } catch (...) {
         set_text(what, "an unknown error");
       }
+      if (has_ended) return;
       {
         const std::lock_guard lock(mutex);
         status.problem = std::move(what);
