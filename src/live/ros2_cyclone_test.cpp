@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "background_program.h"
+#include "camera_node_arguments.h"
 #include "diminish/camera_source.h"
 #include "diminish/frame_source.h"
 #include "paths.h"
@@ -90,8 +91,7 @@ TEST_F(Ros2Cyclone, ItsCameraIsRead) {
 TEST_F(Ros2Cyclone, ItReadsACameraNode) {
   const Recording recording = load_recording(folder);
   const RgbdCamera& camera = recording.rig.rgbd[0];
-  const BackgroundProgram node({"camera-node", "recording:" + folder.string() + "?loop", "--topic",
-                                "/rgbd0", "--name", "rgbd0", "--rig", folder.string()});
+  const BackgroundProgram node(camera_node_arguments(folder));
   EXPECT_THAT(receive("info", "/rgbd0/depth/camera_info"),
               StartsWith(std::to_string(camera.depth.width) + "x" +
                          std::to_string(camera.depth.height) + " plumb_bob d 5 fx "));

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "background_program.h"
+#include "camera_node_arguments.h"
 #include "diminish/camera_source.h"
 #include "diminish/frame_source.h"
 #include "paths.h"
@@ -25,12 +26,6 @@ class Ros2Keys : public ::testing::Test {
   std::string made(const std::string& store, const std::string& name) const {
     return make_keys(store_.path() / store, {.names = {name}}).folders.at(0).string();
   }
-  static std::vector<std::string> node(const std::string& parameters) {
-    return {"camera-node", "recording:" + folder.string() + "?loop",
-            "--topic",     "/rgbd0" + parameters,
-            "--name",      "rgbd0",
-            "--rig",       folder.string()};
-  }
   static bool has_image(CameraSource& camera, milliseconds timeout) {
     CameraImage image;
     return camera.read(image, timeout) == CameraSource::Status::image && image.fault.empty();
@@ -44,7 +39,7 @@ class Ros2Keys : public ::testing::Test {
 TEST_F(Ros2Keys, ANodeWithKeysIsSeenByThoseWithKeysOnly) {
   const std::string camera_keys = made("store", "camera");
   const std::string user_keys = made("store", "user");
-  const BackgroundProgram node(this->node("?keys=" + camera_keys));
+  const BackgroundProgram node(camera_node_arguments(folder, "?keys=" + camera_keys));
   const CameraRequest request{"rgbd0", &recording_.rig, 0};
   const auto user = open_camera("ros2:/rgbd0?keys=" + user_keys, request);
   const auto keyless = open_camera("ros2:/rgbd0", request);
@@ -65,7 +60,8 @@ TEST_F(Ros2Keys, TheProgramMakesThem) {
   EXPECT_THAT(outcome.out, HasSubstr("keys=" + store + "/enclaves/camera_host\n"));
   const auto user = Program::run({"keys", store, "user_host"});
   ASSERT_EQ(user.exit_code, 0) << user.err;
-  const BackgroundProgram node(this->node("?keys=" + store + "/enclaves/camera_host"));
+  const BackgroundProgram node(
+      camera_node_arguments(folder, "?keys=" + store + "/enclaves/camera_host"));
   const auto camera = open_camera("ros2:/rgbd0?keys=" + store + "/enclaves/user_host",
                                   {"rgbd0", &recording_.rig, 0});
   bool is_seen = false;
@@ -77,8 +73,10 @@ TEST_F(Ros2Keys, WhatIsWrongIsOneLine) {
   std::filesystem::create_directories(store_.path() / "empty");
   const std::string empty = (store_.path() / "empty").string();
   for (const auto& [arguments, what] :
-       {std::pair{node("?keys=" + empty), empty + "/identity_ca.cert.pem: cannot be read"},
-        {node("?keys"), "keys: expected a folder that `diminish keys` made"},
+       {std::pair{camera_node_arguments(folder, "?keys=" + empty),
+                  empty + "/identity_ca.cert.pem: cannot be read"},
+        {camera_node_arguments(folder, "?keys"),
+         "keys: expected a folder that `diminish keys` made"},
         {{"live", folder.string(), "--ros2", "/a?keys=" + empty, "--seconds", "1"},
          "identity_ca.cert.pem: cannot be read"},
         {{"keys", empty + "/x", "a b"}, "expected a name of letters"}}) {

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "background_program.h"
+#include "camera_node_arguments.h"
 #include "dds/dds.h"
 #include "diminish/camera_source.h"
 #include "diminish/frame_source.h"
@@ -23,12 +24,6 @@ const std::filesystem::path folder = std::filesystem::path(testing::recordings_d
 
 class Ros2Program : public ::testing::Test {
  protected:
-  static std::vector<std::string> node() {
-    return {"camera-node", "recording:" + folder.string() + "?loop",
-            "--topic",     "/rgbd0",
-            "--name",      "rgbd0",
-            "--rig",       folder.string()};
-  }
   /// Waits for an image of the sensor.
   static CameraImage next_image(CameraSource& camera, Sensor sensor) {
     CameraImage image;
@@ -59,7 +54,7 @@ TEST_F(Ros2Program, ANodesImagesAreTheLocalCameras) {
   const auto source = open_recording(recording_, {});
   for (FrameSet frame; source->next(frame);) recorded.push_back(frame);
 
-  const BackgroundProgram node(this->node());
+  const BackgroundProgram node(camera_node_arguments(folder));
   const auto camera = open_camera("ros2:/rgbd0", {"rgbd0", &recording_.rig, 0});
   int depths = 0;
   int colors = 0;
@@ -102,7 +97,7 @@ TEST_F(Ros2Program, ANodesImagesAreTheLocalCameras) {
 }
 
 TEST_F(Ros2Program, AKilledNodeIsBackWhenItIsStartedAgain) {
-  auto node = std::make_unique<BackgroundProgram>(this->node());
+  auto node = std::make_unique<BackgroundProgram>(camera_node_arguments(folder));
   const auto camera = open_camera("ros2:/rgbd0", {"rgbd0", &recording_.rig, 0});
   next_image(*camera, Sensor::depth);
   node->kill_now();
@@ -110,13 +105,13 @@ TEST_F(Ros2Program, AKilledNodeIsBackWhenItIsStartedAgain) {
   while (camera->read(image, milliseconds(300)) == CameraSource::Status::image) {
   }
   const double started_s = monotonic_now_s();
-  node = std::make_unique<BackgroundProgram>(this->node());
+  node = std::make_unique<BackgroundProgram>(camera_node_arguments(folder));
   next_image(*camera, Sensor::depth);
   RecordProperty("seconds_until_back", std::to_string(monotonic_now_s() - started_s));
 }
 
 TEST_F(Ros2Program, ALiveSessionRunsOnNodesAndPublishesItsResult) {
-  const BackgroundProgram node(this->node());
+  const BackgroundProgram node(camera_node_arguments(folder));
   const BackgroundProgram session({"live", folder.string(), "--color",
                                    "recording:" + folder.string() + "?loop", "--rgbd",
                                    "ros2:/rgbd0", "--ros2", "/diminish", "--seconds", "60"});
@@ -139,7 +134,7 @@ TEST_F(Ros2Program, ALiveSessionRunsOnNodesAndPublishesItsResult) {
 }
 
 TEST_F(Ros2Program, InitWritesWhatTheNodeTells) {
-  const BackgroundProgram node(this->node());
+  const BackgroundProgram node(camera_node_arguments(folder));
   const BackgroundProgram eye({"camera-node", "recording:" + folder.string() + "?loop", "--topic",
                                "/eye", "--name", "color", "--rig", folder.string()});
   const TemporaryFolder out;

@@ -3,27 +3,20 @@
 #include "core/text.h"
 #include "diminish/error.h"
 #include "ros/bag/bag.h"
+#include "ros/bag/mcap_records.h"
 #include "ros/bag/records.h"
 
 namespace diminish::ros {
 namespace {
 
-constexpr std::string_view magic = "\x89MCAP0\r\n";
-constexpr std::size_t record_head_bytes = 9;
-enum Op : std::uint8_t {
-  footer_op = 2,
-  schema_op = 3,
-  channel_op = 4,
-  message_op = 5,
-  chunk_op = 6,
-  data_end_op = 15
-};
+using enum mcap::Op;
 
-/// Source: mcap.dev/spec, version 0.
+constexpr std::size_t record_head_bytes = 9;
+
 class Mcap : public BagReader {
  public:
   explicit Mcap(std::unique_ptr<std::istream> stream) : stream_(std::move(stream)) {
-    expect_begin(*stream_, magic, "an MCAP file of version 0");
+    expect_begin(*stream_, mcap::magic, "an MCAP file of version 0");
   }
 
   bool next(BagMessage& message) override {

@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "diminish/error.h"
+#include "ros/bag/mcap_records.h"
 #include "setup/convert/bag_writer.h"
 #include "setup/convert/message_definitions.h"
 #include "sink/partial_file.h"
@@ -20,21 +21,11 @@ namespace {
 
 // Source: mcap.dev/spec, version 0; mcap.dev/spec/registry for the profile and encodings of ROS 2.
 
-constexpr std::string_view magic = "\x89MCAP0\r\n";
-constexpr std::size_t chunk_bytes = 4u << 20;
+using enum ros::mcap::Op;
+using ros::mcap::magic;
+using ros::mcap::Op;
 
-enum Op : std::uint8_t {
-  header_op = 1,
-  footer_op = 2,
-  schema_op = 3,
-  channel_op = 4,
-  message_op = 5,
-  chunk_op = 6,
-  message_index_op = 7,
-  chunk_index_op = 8,
-  statistics_op = 11,
-  data_end_op = 15,
-};
+constexpr std::size_t chunk_bytes = 4u << 20;
 
 /// The content of a record, field after field, the least significant byte first.
 class Record {
