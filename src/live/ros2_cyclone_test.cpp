@@ -7,6 +7,7 @@
 
 #include "background_program.h"
 #include "camera_node_arguments.h"
+#include "cyclone_environment.h"
 #include "diminish/camera_source.h"
 #include "diminish/frame_source.h"
 #include "paths.h"
@@ -21,23 +22,8 @@ using ::testing::StartsWith;
 
 const std::filesystem::path folder = std::filesystem::path(testing::recordings_dir()) / "calendar";
 
-std::string beside_the_program(const char* name) {
-  return (std::filesystem::path(testing::program()).parent_path() / name).string();
-}
-
 class Ros2Cyclone : public ::testing::Test {
  protected:
-  Ros2Cyclone() {
-    setenv("CYCLONEDDS_URI",
-           "<CycloneDDS><Domain><General><Interfaces><NetworkInterface address='127.0.0.1'/>"
-           "</Interfaces><AllowMulticast>false</AllowMulticast></General><Discovery>"
-           "<ParticipantIndex>auto</ParticipantIndex>"
-           "<MaxAutoParticipantIndex>31</MaxAutoParticipantIndex>"
-           "<Peers><Peer address='127.0.0.1'/></Peers></Discovery></Domain></CycloneDDS>",
-           1);
-  }
-  ~Ros2Cyclone() override { unsetenv("CYCLONEDDS_URI"); }
-
   std::string receive(const std::string& kind, const std::string& topic) const {
     const auto outcome =
         Program({domain_.text(), kind, topic}, beside_the_program("cyclone_receiver")).wait();
@@ -45,6 +31,7 @@ class Ros2Cyclone : public ::testing::Test {
     return outcome.out;
   }
 
+  const CycloneEnvironment environment_;
   Ros2Domain domain_;
 };
 

@@ -3,12 +3,13 @@
 #include <gmock/gmock.h>
 
 #include <atomic>
-#include <filesystem>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "background_program.h"
+#include "cyclone_environment.h"
 #include "dds/dds.h"
 #include "diminish/camera_source.h"
 #include "paths.h"
@@ -21,10 +22,6 @@ namespace {
 
 using std::chrono::milliseconds;
 using ::testing::HasSubstr;
-
-std::string beside_the_program(const char* name) {
-  return (std::filesystem::path(testing::program()).parent_path() / name).string();
-}
 
 /// A plugin of Cyclone DDS: its element's name, its library's and its functions' ends.
 std::string plugin(const std::string& element, const std::string& library, const std::string& name,
@@ -46,27 +43,21 @@ class Ros2KeysCyclone : public ::testing::Test {
     const auto made = make_keys(store_.path() / "store", {.names = {"camera", "user"}}).folders;
     own_ = made[0].string();
     const std::string its = made[1].string();
-    const std::string configuration =
-        "<CycloneDDS><Domain><General><Interfaces><NetworkInterface address='127.0.0.1'/>"
-        "</Interfaces><AllowMulticast>false</AllowMulticast></General><Discovery>"
-        "<ParticipantIndex>auto</ParticipantIndex>"
-        "<MaxAutoParticipantIndex>31</MaxAutoParticipantIndex>"
-        "<Peers><Peer address='127.0.0.1'/></Peers></Discovery><Security>" +
-        plugin("Authentication", "auth", "authentication",
-               file("IdentityCA", its + "/identity_ca.cert.pem") +
-                   file("IdentityCertificate", its + "/cert.pem") +
-                   file("PrivateKey", its + "/key.pem")) +
-        plugin("AccessControl", "ac", "access_control",
-               file("Governance", its + "/governance.p7s") +
-                   file("PermissionsCA", its + "/permissions_ca.cert.pem") +
-                   file("Permissions", its + "/permissions.p7s")) +
-        plugin("Cryptographic", "crypto", "crypto", "") + "</Security></Domain></CycloneDDS>";
-    setenv("CYCLONEDDS_URI", configuration.c_str(), 1);
+    environment_.emplace("<Security>" +
+                         plugin("Authentication", "auth", "authentication",
+                                file("IdentityCA", its + "/identity_ca.cert.pem") +
+                                    file("IdentityCertificate", its + "/cert.pem") +
+                                    file("PrivateKey", its + "/key.pem")) +
+                         plugin("AccessControl", "ac", "access_control",
+                                file("Governance", its + "/governance.p7s") +
+                                    file("PermissionsCA", its + "/permissions_ca.cert.pem") +
+                                    file("Permissions", its + "/permissions.p7s")) +
+                         plugin("Cryptographic", "crypto", "crypto", "") + "</Security>");
   }
-  ~Ros2KeysCyclone() override { unsetenv("CYCLONEDDS_URI"); }
 
   TemporaryFolder store_;
   Ros2Domain domain_;
+  std::optional<CycloneEnvironment> environment_;
   std::string own_;
 };
 
@@ -92,7 +83,7 @@ TEST_F(Ros2KeysCyclone, ItReadsWhatIsSentWithKeys) {
   const auto node = dds::Node::open({.domain = domain_.number(), .keys = own_});
   dds::Publication publication(node, {"/a/image", ros::ImageMessage::dds_type},
                                dds::Delivery::newest);
-  const std::vector<std::uint8_t> pixels(64 * 48 * 3, 7);
+  const std::vector<std::uint8_t> pixels(std::size_t{64} * 48 * 3, 7);
   ros::ImageMessage message;
   message.header.frame_id = "frame";
   message.width = 64;
