@@ -57,7 +57,9 @@ typedef struct diminish_output {
   diminish_image picture;    /* without the objects: 3 bytes a pixel */
   diminish_image mask;       /* 255 where pixels were replaced */
   diminish_image provenance; /* 0 the camera; 1 to 199 an RGB-D camera; 200 witnessed, 201
-                                remembered; 254 invented; 255 unknown */
+                                remembered, 202 part of a bar without depth; 254 invented; 255
+                                unknown */
+  /* Parts of bars count as invented: their colours are. */
   uint64_t mask_pixels, seen_pixels, remembered_pixels, invented_pixels;
   double milliseconds;
   const char* messages; /* what could not be done, a line each; empty: nothing */

@@ -22,8 +22,10 @@ py::dict report_of(const Frame& frame) {
                             py::arg("message") = object.message));
   }
   return py::dict(py::arg("objects") = objects, py::arg("mask_pixels") = report.mask_pixels,
-                  py::arg("seen_pixels") = report.valid_pixels - report.remembered_pixels,
+                  py::arg("seen_pixels") =
+                      report.valid_pixels - report.remembered_pixels - report.estimated_pixels,
                   py::arg("remembered_pixels") = report.remembered_pixels,
+                  py::arg("estimated_pixels") = report.estimated_pixels,
                   py::arg("invented_pixels") = report.missing_pixels, py::arg("fit") = report.fit,
                   py::arg("in_doubt") = report.in_doubt, py::arg("milliseconds") = stages,
                   py::arg("frame_ms") = report.frame_ms, py::arg("skipped") = report.skipped,
@@ -81,7 +83,7 @@ void add_frame(py::module_& module) {
           "provenance",
           [](const SharedFrame& frame) { return view_of(frame->result->provenance, frame); },
           "Where each pixel comes from: 0 the camera; 1 to 199 an RGB-D camera; 200 witnessed, 201 "
-          "remembered; 254 invented; 255 unknown")
+          "remembered, 202 part of a bar without depth; 254 invented; 255 unknown")
       .def_property_readonly(
           "input",
           [](const SharedFrame& frame) { return view_of(frame->input->color.view(), frame); },

@@ -4,6 +4,7 @@
 
 #include "composite/compositor.h"
 #include "diminish/scene_samples.h"
+#include "inpaint/rim_lines.h"
 #include "pipeline/methods.h"
 #include "scene/color_maps.h"
 
@@ -17,12 +18,13 @@ class Composing {
                const std::vector<SceneSample>& samples, DiminishedFrame& result) {
     ColorCorrector& corrector = correctors_.get(options.color_correct);
     maps_.fit(camera, occlusion, samples, corrector.declaration().maps);
-    const Compositor::Inputs inputs{camera, occlusion, bounding_box(occlusion), options,
-                                    smoothing_share};
+    const Rect objects = bounding_box(occlusion);
+    lines_.find(camera, occlusion, objects);
+    const Compositor::Inputs inputs{camera,  occlusion,       objects,
+                                    options, smoothing_share, lines_.lines()};
     Compositor::sort(inputs, result);
     compositor_.correct_colors(inputs, maps_.by_source(), corrector, result);
     Inpainter& inpainter = inpainters_.get(options.inpaint);
-    inpainter.prepare(camera, occlusion, inputs.objects);
     compositor_.inpaint(inputs, inpainter, result);
     compositor_.finish(inputs, modes_.get(options.mode), result);
   }
@@ -34,6 +36,7 @@ class Composing {
   Methods<Inpainter> inpainters_;
   Methods<ViewMode> modes_;
   ColorMaps maps_;
+  RimLines lines_;
   Compositor compositor_;
 };
 

@@ -10,6 +10,7 @@ inline Options gpu_options() {
   options.memory = "off";
   options.inpaint = "surfaces";
   options.complete_sides = false;
+  options.draw_bars = false;
   return options;
 }
 

@@ -24,6 +24,9 @@ inline constexpr std::uint8_t first_rgbd = 1;
 inline constexpr std::uint8_t witnessed = 200;
 /// Seen by the colour camera earlier. No camera looks there now.
 inline constexpr std::uint8_t remembered = 201;
+/// Part of a bar that depth sensors do not see, such as a steel pipe. An RGB-D camera's picture
+/// shows that it is there; the colours are the colour camera's, from where the bar leaves the mask.
+inline constexpr std::uint8_t estimated = 202;
 inline constexpr std::uint8_t inpainted = 254;
 inline constexpr std::uint8_t unknown = 255;  ///< part of the object, with nothing to show there
 }  // namespace provenance
@@ -50,7 +53,8 @@ struct FrameReport {
   std::size_t valid_pixels = 0;       ///< of these, seen by an RGB-D camera now, or remembered
   std::size_t witnessed_pixels = 0;   ///< of the valid ones (provenance::witnessed)
   std::size_t remembered_pixels = 0;  ///< likewise (provenance::remembered)
-  std::size_t missing_pixels = 0;     ///< of these, neither
+  std::size_t estimated_pixels = 0;   ///< likewise (provenance::estimated)
+  std::size_t missing_pixels = 0;     ///< of the mask's, none of these
   /// For each RGB-D camera, how well what it sees fits the picture: a correlation, -1 to 1. Nothing
   /// where they see too little of the same, or nothing is drawn.
   std::vector<std::optional<double>> fit;

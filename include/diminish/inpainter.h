@@ -2,11 +2,13 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 
 #include "diminish/export.h"
 #include "diminish/image.h"
 #include "diminish/options.h"
 #include "diminish/registry.h"
+#include "diminish/rim_line.h"
 #include "diminish/surfaces.h"
 
 namespace diminish {
@@ -19,6 +21,9 @@ struct Holes {
   /// z of what was drawn, in the colour camera's frame; 0: nothing was. Known in
   /// `surfaces.region`. Empty: not known.
   ImageView<float> depth_m = {};
+  /// The straight edges that run into the mask, the strongest first. Empty unless declared to be
+  /// used.
+  std::span<const RimLine> lines = {};
 };
 
 /// Fills pixels that no camera sees. Registered by name; chosen by the option `inpaint`.
@@ -31,6 +36,8 @@ class DIMINISH_EXPORT Inpainter {
   struct Declaration {
     /// Whether it uses `Holes::surfaces`. If not, they need not be computed.
     bool uses_surfaces = false;
+    /// Whether it uses `Holes::lines`.
+    bool uses_lines = false;
     /// The rule that it follows, if it is one of these. Another implementation (on a GPU) may then
     /// replace it.
     enum class Rule {
@@ -45,11 +52,6 @@ class DIMINISH_EXPORT Inpainter {
   virtual ~Inpainter() = default;
 
   virtual Declaration declaration() const { return {}; }
-
-  /// Looks at what surrounds the objects, before inpaint() and while other stages run: once for
-  /// each frame. camera: the camera's picture. occlusion, objects: the mask and its box.
-  virtual void prepare(ImageView<Bgr> /*camera*/, const Mask& /*occlusion*/,
-                       const Rect& /*objects*/) {}
 
   /// Writes a colour to every pixel of `picture` where `holes.missing` is not 0, using the other
   /// pixels, none of which shows an object to remove. Leaves those unchanged. Returns whether the

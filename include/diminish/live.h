@@ -79,8 +79,10 @@ struct LiveStatus {
   std::vector<std::size_t> markers;  ///< seen by the colour camera and each RGB-D camera
   std::vector<OccluderReport> occluders;
   double mask_share = 0;  ///< of the picture
-  /// Of the mask: seen by an RGB-D camera now (the witnessed ones too), remembered, invented.
-  double seen_share = 0, witnessed_share = 0, remembered_share = 0, invented_share = 0;
+  /// Of the mask: seen by an RGB-D camera now (the witnessed ones too), remembered, seen without
+  /// depth, invented.
+  double seen_share = 0, witnessed_share = 0, remembered_share = 0, estimated_share = 0;
+  double invented_share = 0;
   std::string evidence;               ///< these in plain words
   MemoryReport memory;                ///< of the last frame
   std::vector<std::string> problems;  ///< what is wrong now, in plain words

@@ -24,6 +24,7 @@ struct Options {
   bool snap_edges = true;
   bool smooth_colors = true;
   bool complete_sides = true;
+  bool draw_bars = true;
   bool lift_shadows = true;
   bool remove_shadows = false;
   double discontinuity_threshold_m = 0.05;
@@ -114,6 +115,10 @@ void for_each_option(AnyOptions& options, Visit&& visit) {
       OptionInfo{"complete_sides", "",
                  "Complete the sides, seen by no RGB-D camera, of what stands on a table or floor"},
       options.complete_sides);
+  visit(OptionInfo{"draw_bars", "",
+                   "Draw steel pipes and other bars that depth sensors do not see, where an RGB-D "
+                   "camera's picture shows them"},
+        options.draw_bars);
   visit(
       OptionInfo{"lift_shadows", "", "Remove the shadows that the objects cast on what they hide"},
       options.lift_shadows);

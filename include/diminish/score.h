@@ -49,9 +49,10 @@ struct ViewerFigures {
 };
 
 /// Where the scored pixels come from: from an RGB-D camera now; from the colour camera earlier,
-/// with an RGB-D camera as a witness or without; from nowhere.
-inline constexpr std::array<const char*, 4> score_origins{"seen", "witnessed", "remembered",
-                                                          "invented"};
+/// with an RGB-D camera as a witness or without; from an RGB-D camera's picture without depth; from
+/// nowhere.
+inline constexpr std::array<const char*, 5> score_origins{"seen", "witnessed", "remembered",
+                                                          "estimated", "invented"};
 /// The pixels of one origin.
 struct OriginScore {
   double share = 0;  ///< of the scored pixels

@@ -108,9 +108,9 @@ void fill(diminish_pipeline& pipeline, diminish_output& output) {
   output.mask = view(pipeline.result.mask);
   output.provenance = view(pipeline.result.provenance);
   output.mask_pixels = report.mask_pixels;
-  output.seen_pixels = report.valid_pixels - report.remembered_pixels;
+  output.seen_pixels = report.valid_pixels - report.remembered_pixels - report.estimated_pixels;
   output.remembered_pixels = report.remembered_pixels;
-  output.invented_pixels = report.missing_pixels;
+  output.invented_pixels = report.missing_pixels + report.estimated_pixels;
   output.milliseconds = report.frame_ms;
   output.messages = pipeline.messages.c_str();
 }

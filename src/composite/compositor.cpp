@@ -130,7 +130,8 @@ void Compositor::inpaint(const Inputs& inputs, Inpainter& inpainter, DiminishedF
     std::transform(origin, origin + part.width, missing_.row(y) + part.x,
                    [](std::uint8_t from) { return from == provenance::inpainted ? 255 : 0; });
   }
-  const Holes holes{missing_, occlusion, result.surfaces, result.reconstruction.depth_m};
+  const Holes holes{missing_, occlusion, result.surfaces, result.reconstruction.depth_m,
+                    inputs.lines};
   if (inpainter.inpaint(holes, inputs.options, result.picture)) return;
   for (int y = part.y; y < part.bottom(); ++y) {
     std::uint8_t* const origin = result.provenance.row(y) + part.x;
@@ -139,7 +140,7 @@ void Compositor::inpaint(const Inputs& inputs, Inpainter& inpainter, DiminishedF
 }
 
 void Compositor::finish(const Inputs& inputs, const ViewMode& mode, DiminishedFrame& result) {
-  const auto& [camera, occlusion, objects, options, smoothing_share] = inputs;
+  const auto& [camera, occlusion, objects, options, smoothing_share, lines] = inputs;
   const bool has_shadows = !result.surfaces.light.empty();
   if (options.smooth_colors && result.report.valid_pixels > 0) {
     color_smoothing_.smooth(result.provenance, intersect(objects, result.reconstruction.region),

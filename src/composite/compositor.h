@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "composite/color_smoothing.h"
 #include "composite/shadow_lifting.h"
 #include "composite/soft_rim.h"
@@ -7,6 +9,7 @@
 #include "diminish/diminished_frame.h"
 #include "diminish/inpainter.h"
 #include "diminish/options.h"
+#include "diminish/rim_line.h"
 #include "diminish/view_mode.h"
 
 namespace diminish {
@@ -21,7 +24,8 @@ class Compositor {
     const Mask& occlusion;  ///< of the objects to remove
     Rect objects;           ///< its bounding box
     const Options& options;
-    int smoothing_share;  ///< of ColorSmoothing's change
+    int smoothing_share;                  ///< of ColorSmoothing's change
+    std::span<const RimLine> lines = {};  ///< for an inpainting method that uses them
   };
 
   /// Stage::compositing. Fills picture, mask, provenance and the pixel counts. The picture becomes

@@ -20,6 +20,11 @@ constexpr double longest_s = 0.5;
 /// Pixels of a row.
 constexpr int longest_run = 16;
 
+/// Whether it is made up: the colours of a bar are, too.
+bool is_made(std::uint8_t origin) {
+  return any_of(origin == provenance::inpainted, origin == provenance::estimated);
+}
+
 bool has_depth(std::uint8_t label) {
   return label != surface_label::unknown && label != surface_label::foreground;
 }
@@ -62,28 +67,31 @@ void SteadyInventions::mix(const Inputs& inputs, DiminishedFrame& result) const 
     const Eigen::Vector3f point(z * ray.x(), z * ray.y(), z);
     return project_exactly(lens_, transform(last_from_now, point));
   };
+  const auto mix_row = [&](int y, std::uint8_t kind) {
+    const std::uint8_t* const label = result.surfaces.label.row(y);
+    const std::uint8_t* const origin = result.provenance.row(y);
+    for (int x = part.x; x < part.right(); ++x) {
+      x = find_equal(origin, x, part.right(), kind);
+      if (x == part.right()) break;
+      const int first = x;
+      const int end = std::min(part.right(), first + longest_run);
+      while (x + 1 < end && origin[x + 1] == kind && label[x + 1] == label[x]) ++x;
+      if (!has_depth(label[x])) continue;
+      // Along a short run, places of the last frame lie evenly.
+      const std::optional<Eigen::Vector2f> from = place_before(first, y);
+      const std::optional<Eigen::Vector2f> to = x > first ? place_before(x, y) : from;
+      if (!from || !to) continue;
+      const Eigen::Vector2f step = (*to - *from) / static_cast<float>(std::max(1, x - first));
+      for (int k = first; k <= x; ++k) {
+        mix(*from + static_cast<float>(k - first) * step, share, result.picture(k, y));
+      }
+    }
+  };
   for_rows(part.height, [&](Rows rows) {
     for (int y = part.y + rows.first; y < part.y + rows.last; ++y) {
-      const std::uint8_t* const label = result.surfaces.label.row(y);
-      const std::uint8_t* const origin = result.provenance.row(y);
-      for (int x = part.x; x < part.right(); ++x) {
-        x = find_equal(origin, x, part.right(), provenance::inpainted);
-        if (x == part.right()) break;
-        const int first = x;
-        const int end = std::min(part.right(), first + longest_run);
-        while (x + 1 < end && origin[x + 1] == provenance::inpainted && label[x + 1] == label[x]) {
-          ++x;
-        }
-        if (!has_depth(label[x])) continue;
-        // Along a short run, places of the last frame lie evenly.
-        const std::optional<Eigen::Vector2f> from = place_before(first, y);
-        const std::optional<Eigen::Vector2f> to = x > first ? place_before(x, y) : from;
-        if (!from || !to) continue;
-        const Eigen::Vector2f step = (*to - *from) / static_cast<float>(std::max(1, x - first));
-        for (int k = first; k <= x; ++k) {
-          mix(*from + static_cast<float>(k - first) * step, share, result.picture(k, y));
-        }
-      }
+      mix_row(y, provenance::inpainted);
+      // Bars lie so near their planes that these tell where they were.
+      if (result.report.estimated_pixels > 0) mix_row(y, provenance::estimated);
     }
   });
 }
@@ -98,8 +106,8 @@ void SteadyInventions::mix(const Eigen::Vector2f& at, int share, Bgr& color) con
   if (!last.inner.contains(left, top)) return;
   const std::uint8_t* const upper_origin = last.provenance.row(top) + left;
   const std::uint8_t* const lower_origin = last.provenance.row(top + 1) + left;
-  if (any_of(upper_origin[0] != provenance::inpainted, upper_origin[1] != provenance::inpainted,
-             lower_origin[0] != provenance::inpainted, lower_origin[1] != provenance::inpainted)) {
+  if (!all_of(is_made(upper_origin[0]), is_made(upper_origin[1]), is_made(lower_origin[0]),
+              is_made(lower_origin[1]))) {
     return;
   }
   const Bgr* const upper = last.picture.row(top) + left;

@@ -34,8 +34,8 @@ class SteadyInventions {
     const Rect& objects;                         ///< their box in the picture
     const std::vector<BackgroundPlane>* planes;  ///< null: not looked for
   };
-  /// Changes `result.picture` where `result.provenance` is inpainted. Waits for its turn and ends
-  /// it. Cost: 10 ns an invented pixel.
+  /// Changes `result.picture` where `result.provenance` is inpainted or estimated. Waits for its
+  /// turn and ends it. Cost: 10 ns an invented pixel.
   void steady(const Inputs& inputs, DiminishedFrame& result);
 
  private:

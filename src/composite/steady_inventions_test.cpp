@@ -12,6 +12,7 @@ namespace {
 
 constexpr Rect hidden{100, 80, 90, 70};
 constexpr Rect seen{130, 100, 20, 20};       ///< of it
+constexpr Rect bar{112, 80, 10, 70};         ///< of it
 constexpr Rect depthless{160, 110, 16, 16};  ///< of it
 constexpr int error = 40;                    ///< of the second invention, levels
 constexpr double frame_s = 0.035;            ///< the half-life
@@ -44,6 +45,8 @@ class Inventions : public ::testing::Test {
     const Rect whole = result.picture.bounds();
     result.provenance.resize(whole.width, whole.height, provenance::camera);
     result.provenance.fill(hidden, provenance::inpainted);
+    result.provenance.fill(bar, provenance::estimated);
+    result.report.estimated_pixels = std::size_t{bar.width} * bar.height;
     result.provenance.fill(seen, 1);
     result.surfaces.region = whole;
     result.surfaces.label.resize(whole.width, whole.height, surface_label::first_plane);
@@ -80,6 +83,7 @@ TEST_F(Inventions, AreMixedWithWhatTheLastFrameShowedOfThePlace) {
     }
   }
   EXPECT_GT(mixed, hidden.width * hidden.height * 7 / 10);
+  EXPECT_TRUE(is_changed(bar.x + bar.width / 2, bar.y + bar.height / 2));
 }
 
 TEST_F(Inventions, OnlyAreChanged) {

@@ -22,6 +22,9 @@ inline constexpr Bgr line_color{0, 220, 255};
 namespace diminish::provenance_view {
 inline constexpr float tint = 0.35F;
 inline constexpr Bgr seen_color{0, 200, 0};
+inline constexpr Bgr witnessed_color{190, 220, 120};
+inline constexpr Bgr remembered_color{60, 200, 250};
+inline constexpr Bgr estimated_color{220, 150, 150};
 inline constexpr Bgr invented_color{255, 0, 255};
 /// The period of the hatching, along rows.
 inline constexpr int period_px = 8;

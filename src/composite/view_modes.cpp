@@ -90,10 +90,20 @@ class Provenance : public ViewMode {
     using namespace provenance_view;
     replace_in_mask(result, [&](int x, int y) -> Bgr {
       const Bgr& color = result.picture(x, y);
-      if (result.provenance(x, y) < provenance::inpainted) return blend(color, seen_color, tint);
+      const std::uint8_t origin = result.provenance(x, y);
+      if (origin < provenance::inpainted) return blend(color, color_of(origin), tint);
       const bool is_line = (x + y) % period_px < line_px;
       return is_line ? invented_color : blend(color, invented_color, tint);
     });
+  }
+
+ private:
+  static Bgr color_of(std::uint8_t origin) {
+    using namespace provenance_view;
+    return origin == provenance::witnessed    ? witnessed_color
+           : origin == provenance::remembered ? remembered_color
+           : origin == provenance::estimated  ? estimated_color
+                                              : seen_color;
   }
 };
 

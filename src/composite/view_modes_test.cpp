@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <set>
+#include <tuple>
 
 #include "diminish/view_mode.h"
 
@@ -71,6 +73,18 @@ TEST_F(ViewModes, ProvenanceTellsSeenFromInvented) {
       }
     }
   }
+}
+
+TEST_F(ViewModes, ProvenanceTellsWhatIsSeenNowFromTheRest) {
+  const std::uint8_t origins[] = {provenance::first_rgbd, provenance::witnessed,
+                                  provenance::remembered, provenance::estimated};
+  std::set<std::tuple<int, int, int>> colors;
+  for (const std::uint8_t origin : origins) {
+    result.provenance(30, 20) = origin;
+    const Bgr color = shown("provenance")(30, 20);
+    colors.insert({color.b, color.g, color.r});
+  }
+  EXPECT_EQ(colors.size(), std::size(origins));
 }
 
 }  // namespace

@@ -270,6 +270,7 @@ TEST_P(GlSurfaceFillingOnRecordings, FillsAsTheCpuDoes) {
   const auto source = open_recording(recording, {});
   Options options;
   options.complete_sides = false;  // not on the GPU
+  options.draw_bars = false;       // likewise
   Pipeline pipeline(recording.rig, recording.scene, options);
   Gpu gpu;
   FrameSet frame;

@@ -70,7 +70,7 @@ Eigen::Array4f profile_at(const Profile& profile, float position) {
 
 }  // namespace
 
-void LinePainting::match(const std::vector<RimLine>& lines) {
+void LinePainting::match(std::span<const RimLine> lines) {
   pairs_.clear();
   mates_.assign(lines.size(), -1);
   const int count = static_cast<int>(lines.size());
@@ -150,7 +150,8 @@ float LinePainting::free_length(const RimLine& line, const Holes& holes) const {
   return static_cast<float>(most);
 }
 
-void LinePainting::lay_out(const std::vector<RimLine>& lines, const Holes& holes) {
+void LinePainting::lay_out(const Holes& holes) {
+  const std::span<const RimLine> lines = holes.lines;
   strokes_.clear();
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const RimLine& line = lines[i];
@@ -293,10 +294,9 @@ void LinePainting::color(int column, int row, Bgr& pixel) const {
   pixel = to_color((smooth + weight * (color - smooth)).head<3>());
 }
 
-void LinePainting::paint(const std::vector<RimLine>& lines, const Holes& holes, const Rect& objects,
-                         Image<Bgr>& picture) {
-  match(lines);
-  lay_out(lines, holes);
+void LinePainting::paint(const Holes& holes, const Rect& objects, Image<Bgr>& picture) {
+  match(holes.lines);
+  lay_out(holes);
   if (strokes_.empty()) return;
   objects_ = objects;
   nearest_.resize(objects.width, objects.height, 0);

@@ -3,10 +3,10 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "diminish/inpainter.h"
-#include "inpaint/rim_lines.h"
 
 namespace diminish {
 
@@ -16,10 +16,9 @@ namespace diminish {
 /// have been seen further inside, too.
 class LinePainting {
  public:
-  /// Draws the lines into the missing pixels of `picture`, which are filled smoothly already.
+  /// Draws `holes.lines` into the missing pixels of `picture`, which are filled smoothly already.
   /// Changes no other pixel. Cost: a few operations for each pixel beside a line.
-  void paint(const std::vector<RimLine>& lines, const Holes& holes, const Rect& objects,
-             Image<Bgr>& picture);
+  void paint(const Holes& holes, const Rect& objects, Image<Bgr>& picture);
 
  private:
   /// Colours across a stroke, in four channels for the sake of vector instructions.
@@ -40,8 +39,8 @@ class LinePainting {
   };
 
   static Profile colors_of(const RimLine& line, bool joins);
-  void match(const std::vector<RimLine>& lines);
-  void lay_out(const std::vector<RimLine>& lines, const Holes& holes);
+  void match(std::span<const RimLine> lines);
+  void lay_out(const Holes& holes);
   float free_length(const RimLine& line, const Holes& holes) const;
   static bool are_company(const Stroke& a, const Stroke& b);
   template <class Visit>

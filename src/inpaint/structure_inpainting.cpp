@@ -1,6 +1,5 @@
 #include "diminish/inpainter.h"
 #include "inpaint/line_painting.h"
-#include "inpaint/rim_lines.h"
 #include "inpaint/surface_inpainting.h"
 
 namespace diminish {
@@ -11,24 +10,17 @@ namespace {
 class StructureInpainting : public Inpainter {
  public:
   Declaration declaration() const override {
-    return {.uses_surfaces = true, .simpler = "surfaces"};
-  }
-
-  void prepare(ImageView<Bgr> camera, const Mask& occlusion, const Rect& objects) override {
-    objects_ = objects;
-    lines_.find(camera, occlusion, objects);
+    return {.uses_surfaces = true, .uses_lines = true, .simpler = "surfaces"};
   }
 
   bool inpaint(const Holes& holes, const Options& options, Image<Bgr>& picture) override {
     if (!surfaces_->inpaint(holes, options, picture)) return false;
-    painting_.paint(lines_.lines(), holes, objects_, picture);
+    if (!holes.lines.empty()) painting_.paint(holes, bounding_box(holes.occlusion), picture);
     return true;
   }
 
  private:
   std::unique_ptr<Inpainter> surfaces_ = make_surface_inpainting(FillFrom::far_side);
-  RimLines lines_;
-  Rect objects_;
   LinePainting painting_;
 };
 

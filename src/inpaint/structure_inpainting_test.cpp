@@ -56,8 +56,9 @@ struct Scene {
   Image<Bgr> fill(const char* method = "structure") const {
     Image<Bgr> filled = picture;
     const auto inpainter = Registry<Inpainter>::get(method)();
-    inpainter->prepare(picture, occlusion, bounding_box(occlusion));
-    EXPECT_TRUE(inpainter->inpaint({missing, occlusion, surfaces}, {}, filled));
+    RimLines lines;
+    lines.find(picture, occlusion, bounding_box(occlusion));
+    EXPECT_TRUE(inpainter->inpaint({missing, occlusion, surfaces, {}, lines.lines()}, {}, filled));
     return filled;
   }
   /// Root mean square, in grey levels, where `part` is missing.

@@ -48,6 +48,7 @@ constexpr std::array<Step, QualityLadder::last_level> steps = {{
        o.color_correct = simpler<ColorCorrector>(o.color_correct);
        o.inpaint = simpler<Inpainter>(o.inpaint);
        o.complete_sides = false;
+       o.draw_bars = false;
        o.smooth_colors = false;
        o.merge_cameras = "choose";
      }},

@@ -46,6 +46,7 @@ DiagnosticStatus result_status(const LiveStatus& status) {
                    {"quality level", fmt::format("{}", status.quality_level)},
                    {"seen share", figure(status.seen_share)},
                    {"remembered share", figure(status.remembered_share)},
+                   {"seen without depth, share", figure(status.estimated_share)},
                    {"invented share", figure(status.invented_share)}};
   return result;
 }

@@ -36,10 +36,11 @@ void describe_last_frame(const LiveFrame& frame, LiveStatus& status) {
   const auto pixels = static_cast<double>(frame.result.mask.size());
   if (pixels > 0) status.mask_share = static_cast<double>(report.mask_pixels) / pixels;
   const Shares shares = shares_of(report.mask_pixels, report.valid_pixels, report.witnessed_pixels,
-                                  report.remembered_pixels);
+                                  report.remembered_pixels, report.estimated_pixels);
   status.seen_share = shares.seen;
   status.witnessed_share = shares.witnessed;
   status.remembered_share = shares.remembered;
+  status.estimated_share = shares.estimated;
   status.invented_share = shares.invented;
   status.evidence = to_text(shares);
   status.memory = report.memory;

@@ -18,7 +18,7 @@ void begin(const FrameSet& frame, DiminishedFrame& result) {
   result.surfaces.standing_depth_m.resize(0, 0);
   FrameReport& report = result.report;
   report.mask_pixels = report.valid_pixels = report.missing_pixels = 0;
-  report.witnessed_pixels = report.remembered_pixels = 0;
+  report.witnessed_pixels = report.remembered_pixels = report.estimated_pixels = 0;
   report.fit.clear();
   report.in_doubt = false;
   report.memory = {};
@@ -66,6 +66,7 @@ FrameStages::FrameStages(const Rig& rig_, const Scene& scene_)
       scale(rig, scene),
       agreement(rig, scene),
       background(rig.color),
+      bar_views(rig),
       standing_things(rig),
       backend(rig),
       memory(rig),
@@ -101,6 +102,12 @@ Background::Wanted FrameStages::wanted_background() const {
 
 bool FrameStages::completes_sides() const {
   return options.complete_sides && methods.inpainting.uses_surfaces && background.planes();
+}
+
+/// They are moved in front of the background's planes.
+bool FrameStages::draws_bars() const {
+  return options.draw_bars && methods.inpainting.uses_surfaces && !rig.rgbd.empty() &&
+         !occluders.objects().empty();
 }
 
 void FrameStages::choose_region() {
@@ -234,7 +241,10 @@ void FrameStages::process(const FrameSet& given, DiminishedFrame& result) {
   };
   const auto prepare = [&] {
     stage(Stage::inpainting, [&] {
-      if (!objects.empty()) inpainter->prepare(frame.color, masks.color, objects);
+      rim_lines.clear();
+      if ((methods.inpainting.uses_lines && !objects.empty()) || draws_bars()) {
+        rim_lines.find(frame.color, masks.color, objects);
+      }
     });
   };
   // What is learnt of the scene may be needed only after the drawing: then both are done together.
@@ -272,7 +282,8 @@ void FrameStages::process(const FrameSet& given, DiminishedFrame& result) {
   });
 
   // 3.4 Compositing, colour correction, inpainting; a backend may have done these
-  const Compositor::Inputs inputs{frame.color, masks.color, objects, options, smoothing};
+  const Compositor::Inputs inputs{frame.color, masks.color, objects,
+                                  options,     smoothing,   rim_lines.lines()};
   stage(Stage::compositing, [&] {
     background.label(result.reconstruction, result.surfaces);
     Compositor::sort(inputs, result);
@@ -281,22 +292,34 @@ void FrameStages::process(const FrameSet& given, DiminishedFrame& result) {
     stage(Stage::colors,
           [&] { compositor.correct_colors(inputs, color_maps.by_source(), *corrector, result); });
   };
-  const auto find_sides = [&] {
+  const bool has_sides = completes_sides();
+  const bool has_bars = draws_bars() && background.planes();
+  bar_search.clear();
+  // The scene's structure inside the mask: from it, nothing of the above is changed but the label
+  // of sides.
+  const auto find_structure = [&] {
     stage(Stage::inpainting, [&] {
-      standing_things.find(
-          {frame, report.poses, masks, objects, result.reconstruction, *background.planes()},
-          result.surfaces);
+      if (has_sides) {
+        standing_things.find(
+            {frame, report.poses, masks, objects, result.reconstruction, *background.planes()},
+            result.surfaces);
+      }
+      if (has_bars) {
+        bar_views.begin(frame, report.poses, masks);
+        bar_search.find(
+            {rim_lines.lines(), bar_views, *background.planes(), result.surfaces, masks.color});
+      }
     });
   };
-  const bool has_sides = completes_sides();
-  if (has_sides) {
-    do_all(find_sides, correct_colors);
-  } else {
-    correct_colors();
-  }
+  do_all(find_structure, correct_colors);
   stage(Stage::inpainting, [&] {
     if (has_sides) Compositor::hide_behind_sides(inputs, result);
     compositor.inpaint(inputs, *inpainter, result);
+    if (!bar_search.bars().empty()) {
+      bar_painting.paint(
+          {bar_search.bars(), bar_views, *background.planes(), frame.color, masks.color, objects},
+          result);
+    }
     if (methods.remembers) {
       steady_inventions.steady(
           {frame.stamp_s, report.poses.color_from_world, objects, background.planes()}, result);

@@ -5,12 +5,16 @@
 #include <tuple>
 #include <vector>
 
+#include "bars/bar_painting.h"
+#include "bars/bar_search.h"
+#include "bars/bar_views.h"
 #include "composite/compositor.h"
 #include "composite/steady_inventions.h"
 #include "depth/camera_choice.h"
 #include "depth/depth_stage.h"
 #include "detect/occlusion_masks.h"
 #include "estimate/depth_estimation.h"
+#include "inpaint/rim_lines.h"
 #include "memory/memory_stage.h"
 #include "pipeline/backend.h"
 #include "pipeline/doubt.h"
@@ -41,6 +45,7 @@ struct FrameStages {
   bool looks_at_scene() const;
   Background::Wanted wanted_background() const;
   bool completes_sides() const;
+  bool draws_bars() const;
   void choose_region();
   /// Those that add nothing to what is drawn get no pose.
   void spare_cameras(const FrameSet& frame, FrameReport& report);
@@ -85,6 +90,10 @@ struct FrameStages {
   MarkerAgreement agreement;
   std::vector<std::optional<MarkerShift>> shifts;
   Background background;
+  RimLines rim_lines;
+  BarViews bar_views;
+  BarSearch bar_search;
+  BarPainting bar_painting;
   StandingThings standing_things;
   ColorMaps color_maps;
   int smoothing = 0;   ///< its share

@@ -45,7 +45,7 @@ constexpr Figure figures[] = {
     {"PSNR of seen pixels, dB", psnr_of_origin<0>},
     {"PSNR of witnessed pixels, dB", psnr_of_origin<1>},
     {"PSNR of remembered pixels, dB", psnr_of_origin<2>},
-    {"PSNR of invented pixels, dB", psnr_of_origin<3>},
+    {"PSNR of invented pixels, dB", psnr_of_origin<4>},
     {"invented, share", viewer_figure<&ViewerFigures::invented_share>},
     {"edges, recall", viewer_figure<&ViewerFigures::edge_recall>},
     {"edges, precision", viewer_figure<&ViewerFigures::edge_precision>},

@@ -17,6 +17,7 @@ constexpr std::array<Origin, score_origins.size()> origins{
     {{provenance::first_rgbd, provenance::witnessed - 1},
      {provenance::witnessed, provenance::witnessed},
      {provenance::remembered, provenance::remembered},
+     {provenance::estimated, provenance::estimated},
      {provenance::inpainted, provenance::inpainted}}};
 
 }  // namespace

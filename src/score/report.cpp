@@ -134,8 +134,8 @@ std::string provenance_bar(const nlohmann::json& summary) {
   const auto& pixels = summary.at("pixels");
   const auto count = [&](const char* name) { return pixels.at(name).get<std::size_t>(); };
   if (count("mask") == 0) return {};
-  const Shares shares =
-      shares_of(count("mask"), count("valid"), count("witnessed"), count("remembered"));
+  const Shares shares = shares_of(count("mask"), count("valid"), count("witnessed"),
+                                  count("remembered"), pixels.value("estimated", std::size_t{0}));
   std::string text = "<div class=bar>";
   const auto part = [&](const char* name, const char* color, double share) {
     if (share > 0) {
@@ -146,6 +146,7 @@ std::string provenance_bar(const nlohmann::json& summary) {
   part("seen", "#283", shares.seen - shares.witnessed);
   part("witnessed", "#197", shares.witnessed);
   part("remembered", "#b70", shares.remembered);
+  part("without depth", "#77b", shares.estimated);
   part("invented", "#a2a", shares.invented);
   text += "</div>\n<p>Of the objects' pixels " + to_text(shares, 1);
   if (summary.contains("remembered_age_s")) {

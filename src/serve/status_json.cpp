@@ -59,6 +59,7 @@ Json to_json(const LiveStatus& status, const Options& options) {
                {"seen_share", rounded(status.seen_share)},
                {"witnessed_share", rounded(status.witnessed_share)},
                {"remembered_share", rounded(status.remembered_share)},
+               {"estimated_share", rounded(status.estimated_share)},
                {"invented_share", rounded(status.invented_share)},
                {"evidence", status.evidence},
                {"memory",

@@ -263,7 +263,7 @@ TEST_F(Web, SaysWhatIsRememberedAndForgetsOnRequest) {
   EXPECT_GT(status["memory"]["megabytes"], 3);
   EXPECT_THAT(status["evidence"].get<std::string>(), HasSubstr("truly seen "));
   EXPECT_NEAR(status["seen_share"].get<double>() + status["remembered_share"].get<double>() +
-                  status["invented_share"].get<double>(),
+                  status["estimated_share"].get<double>() + status["invented_share"].get<double>(),
               1, 0.02);
   EXPECT_EQ(post(server, "/api/memory", {{"forget", true}}).count("keyframes"), 1U);
   wait_for_memory([](int keyframes) { return keyframes <= 2; });

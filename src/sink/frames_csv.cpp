@@ -83,6 +83,7 @@ FramesCsv::FramesCsv(const std::filesystem::path& file, const Rig& rig)
   header += ",occluders,mask_pixels,valid_pixels,missing_pixels,witnessed_pixels,remembered_pixels";
   for (const RgbdCamera& camera : rig.rgbd) header += "," + in_quotes(camera.name + "_fit");
   header += ",in_doubt,background_pixels,remembered_median_age_s,remembered_oldest_age_s,keyframes";
+  header += ",estimated_pixels";
   for (const TimeRow& row : time_rows()) header += fmt::format(",{}_ms", row.key);
   header += ",messages,faults\n";
   stream_ << header << std::flush;
@@ -112,7 +113,7 @@ void FramesCsv::append(const DiminishedFrame& frame) {
   }
   row += fmt::format(",{}", report.in_doubt ? 1 : 0);
   row += fmt::format(",{}", report.memory.background_pixels) + ages(report) +
-         fmt::format(",{}", report.memory.keyframes);
+         fmt::format(",{},{}", report.memory.keyframes, report.estimated_pixels);
   for (const double ms : times_of(report)) row += fmt::format(",{:.3f}", ms);
   row += fmt::format(",{},{}\n", joined(report.messages), joined(report.faults));
   // One write per row, so that an interrupted run leaves whole rows.

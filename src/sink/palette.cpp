@@ -1,5 +1,6 @@
 #include "sink/palette.h"
 
+#include "composite/view_mode_rules.h"
 #include "diminish/diminished_frame.h"
 
 namespace diminish {
@@ -13,8 +14,9 @@ const std::vector<Bgr>& provenance_palette() {
       colors[value] = cameras[(value - provenance::first_rgbd) % std::size(cameras)];
     }
     colors[provenance::camera] = {64, 64, 64};
-    colors[provenance::witnessed] = {190, 220, 120};
-    colors[provenance::remembered] = {60, 200, 250};
+    colors[provenance::witnessed] = provenance_view::witnessed_color;
+    colors[provenance::remembered] = provenance_view::remembered_color;
+    colors[provenance::estimated] = provenance_view::estimated_color;
     colors[provenance::inpainted] = {230, 60, 230};
     colors[provenance::unknown] = {0, 0, 0};
     return colors;

@@ -139,6 +139,7 @@ void ResultWriter::Implementation::write_summary(bool interrupted,
                        {"missing", statistics.missing_pixels()},
                        {"witnessed", statistics.witnessed_pixels()},
                        {"remembered", statistics.remembered_pixels()},
+                       {"estimated", statistics.estimated_pixels()},
                        {"background", statistics.background_pixels()}};
   summary["evidence"] = to_text(statistics.shares(), 1);
   if (const auto ages = statistics.remembered_ages()) {

@@ -47,6 +47,7 @@ void RunStatistics::add(const FrameReport& report) {
   missing_pixels_ += report.missing_pixels;
   witnessed_pixels_ += report.witnessed_pixels;
   remembered_pixels_ += report.remembered_pixels;
+  estimated_pixels_ += report.estimated_pixels;
   background_pixels_ += report.memory.background_pixels;
   if (report.remembered_pixels > report.memory.background_pixels) {
     median_ages_s_.push_back(report.memory.median_age_s);
@@ -60,7 +61,8 @@ double RunStatistics::average_ms(std::size_t row) const {
 }
 
 Shares RunStatistics::shares() const {
-  return shares_of(mask_pixels_, valid_pixels_, witnessed_pixels_, remembered_pixels_);
+  return shares_of(mask_pixels_, valid_pixels_, witnessed_pixels_, remembered_pixels_,
+                   estimated_pixels_);
 }
 
 std::optional<RunStatistics::Ages> RunStatistics::remembered_ages() const {

@@ -32,6 +32,7 @@ class RunStatistics {
   std::size_t missing_pixels() const { return missing_pixels_; }
   std::size_t witnessed_pixels() const { return witnessed_pixels_; }
   std::size_t remembered_pixels() const { return remembered_pixels_; }
+  std::size_t estimated_pixels() const { return estimated_pixels_; }
   std::size_t background_pixels() const { return background_pixels_; }
   Shares shares() const;
   /// How long ago the remembered pixels were seen, but for a scan's; nothing if there were none.
@@ -56,6 +57,7 @@ class RunStatistics {
   std::size_t frames_ = 0, skipped_ = 0, faulty_ = 0, in_doubt_ = 0;
   std::size_t mask_pixels_ = 0, valid_pixels_ = 0, missing_pixels_ = 0;
   std::size_t witnessed_pixels_ = 0, remembered_pixels_ = 0, background_pixels_ = 0;
+  std::size_t estimated_pixels_ = 0;
   std::vector<double> median_ages_s_;  ///< of frames with something remembered
   double oldest_age_s_ = 0;
   std::array<Times, time_row_count> times_{};

@@ -1,0 +1,142 @@
+#include "bars/bar_painting.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/channels.h"
+#include "geometry/point_projection.h"
+
+namespace diminish {
+namespace {
+
+/// Colours are those of so many pixels along the bar, and known so far beyond its edges.
+constexpr int colors_px = 20;
+constexpr float margin_px = 2;
+constexpr int reach_px = 60;  ///< the mask may begin so much earlier or later beside the middle
+/// A bar ends where so many places in a row show what would be behind it.
+constexpr int seen_px = 16;
+/// Colours from one end only: a mirror shows something else further along. At its other end a bar
+/// hides so much less of what is invented or seen behind it.
+constexpr float far_fade = 0.4F;
+/// Something this much nearer hides it.
+constexpr float nearer_m = 0.03F;
+constexpr float nearer_side_m = 0.02F;
+
+}  // namespace
+
+/// The mean colours across the bar, from `begin` on along it, in the direction of `sign`.
+bool BarPainting::collect(const Input& input, const Bar& bar, float begin, float sign,
+                          Profile& profile) {
+  const int size = static_cast<int>(std::ceil(bar.width_px + 2 * margin_px)) + 1;
+  profile.assign(static_cast<std::size_t>(size), Eigen::Array3f::Zero());
+  for (int i = 0; i < size; ++i) {
+    const float side = static_cast<float>(i) - bar.width_px / 2 - margin_px;
+    int count = 0;
+    Eigen::Array3f& color = profile[static_cast<std::size_t>(i)];
+    for (int k = 1; k <= reach_px + colors_px && count < colors_px; ++k) {
+      const auto [x, y] = nearest_pixel(bar.at(begin + sign * static_cast<float>(k), side));
+      if (!input.camera.bounds().contains(x, y)) break;
+      if (input.occlusion(x, y) != 0) continue;
+      color += to_channels(input.camera(x, y));
+      ++count;
+    }
+    if (count < colors_px / 4) return false;
+    color /= static_cast<float>(count);
+  }
+  return true;
+}
+
+BarPainting::End BarPainting::find_end(const Input& input, const Bar& bar) {
+  int seen = 0;
+  float along = 1;
+  for (;; ++along) {
+    const Eigen::Vector2f at = bar.at(along, 0);
+    const auto [x, y] = nearest_pixel(at);
+    if (!input.occlusion.bounds().contains(x, y) || input.occlusion(x, y) == 0) {
+      return {along, true};
+    }
+    const Eigen::Vector3f ray = input.views.ray(at);
+    const float inverse = bar.plane.inverse_depth(ray.x(), ray.y());
+    if (!(inverse > 0)) return {along, false};
+    const Eigen::Vector3f point = ray / inverse;
+    const bool is_within =
+        std::any_of(input.planes.begin(), input.planes.end(),
+                    [&](const BackgroundPlane& plane) { return plane.height_m(point) <= 0; });
+    if (is_within) return {along, false};
+    seen = input.views.look_at(point) == BarViews::Place::seen ? seen + 1 : 0;
+    if (seen == seen_px) return {along - seen_px, false};
+  }
+}
+
+void BarPainting::paint(const Input& input, const Bar& bar, DiminishedFrame& result) {
+  const auto [length, leaves_mask] = find_end(input, bar);
+  if (length <= 0 || !collect(input, bar, 0, -1, near_)) return;
+  const bool has_far = bar.goes_on && leaves_mask && collect(input, bar, length, 1, far_);
+  const float end = leaves_mask ? length + reach_px : length;
+
+  const float half = bar.width_px / 2;
+  Eigen::Array2f low = bar.at(-reach_px, -half), high = low;
+  for (const Eigen::Vector2f& corner :
+       {bar.at(-reach_px, half), bar.at(end, -half), bar.at(end, half)}) {
+    low = low.min(corner.array());
+    high = high.max(corner.array());
+  }
+  const auto floor = [](float value) { return static_cast<int>(std::floor(value)) - 1; };
+  const Rect box = intersect({floor(low.x()), floor(low.y()), floor(high.x()) - floor(low.x()) + 3,
+                              floor(high.y()) - floor(low.y()) + 3},
+                             input.objects);
+  const Reconstruction& drawn = result.reconstruction;
+  const auto color_at = [](const Profile& profile, float position) -> Eigen::Array3f {
+    const auto first = std::min(static_cast<std::size_t>(position), profile.size() - 2);
+    const float share = position - static_cast<float>(first);
+    return profile[first] + share * (profile[first + 1] - profile[first]);
+  };
+  for (int y = box.y; y < box.bottom(); ++y) {
+    for (int x = box.x; x < box.right(); ++x) {
+      std::uint8_t& origin = result.provenance(x, y);
+      if (input.occlusion(x, y) == 0 || origin == provenance::witnessed ||
+          origin == provenance::remembered || origin == provenance::estimated) {
+        continue;
+      }
+      const Eigen::Vector2f at(static_cast<float>(x), static_cast<float>(y));
+      const float along = bar.along(at);
+      const float side = bar.side(at);
+      const float weight = std::min(half + 0.5F - std::abs(side), 1.0F);
+      if (weight <= 0 || along < -reach_px || along > end) continue;
+      const Eigen::Vector3f ray = input.views.ray(at);
+      const float inverse = bar.plane.inverse_depth(ray.x(), ray.y());
+      if (!(inverse > 0)) continue;
+      const float z_m = 1 / inverse;
+      const bool has_drawn = drawn.region.contains(x, y) && drawn.depth_m(x, y) > 0;
+      if (has_drawn && drawn.depth_m(x, y) < z_m - nearer_m) continue;
+      const Surfaces& surfaces = result.surfaces;
+      if (!surfaces.standing_depth_m.empty() && surfaces.label(x, y) == surface_label::standing &&
+          surfaces.standing_depth_m(x, y) < z_m - nearer_side_m) {
+        continue;
+      }
+      const float position = side + half + margin_px;
+      Eigen::Array3f color = color_at(near_, position);
+      if (has_far) {
+        const float share = std::clamp(along / length, 0.0F, 1.0F);
+        color += share * (color_at(far_, position) - color);
+      }
+      Bgr& pixel = result.picture(x, y);
+      const Eigen::Array3f below = to_channels(pixel);
+      const float fade = has_far ? 1 : 1 - far_fade * std::clamp(along / length, 0.0F, 1.0F);
+      pixel = to_color(below + fade * weight * (color - below));
+      if (weight < 0.5F) continue;
+      if (origin == provenance::inpainted) {
+        --result.report.missing_pixels;
+        ++result.report.valid_pixels;
+      }
+      ++result.report.estimated_pixels;
+      origin = provenance::estimated;
+    }
+  }
+}
+
+void BarPainting::paint(const Input& input, DiminishedFrame& result) {
+  for (const Bar& bar : input.bars) paint(input, bar, result);
+}
+
+}  // namespace diminish

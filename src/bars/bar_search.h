@@ -1,0 +1,36 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "bars/bar.h"
+#include "bars/bar_views.h"
+#include "diminish/rim_line.h"
+#include "diminish/surfaces.h"
+
+namespace diminish {
+
+/// Finds bars that depth sensors do not see, such as steel pipes. Two parallel edges that run into
+/// the mask are the sides of one if, at some distance in front of the plane behind them, an RGB-D
+/// camera has no depth between them and has depth beside them, and its picture shows both edges.
+class BarSearch {
+ public:
+  struct Input {
+    std::span<const RimLine> lines;
+    const BarViews& views;
+    const std::vector<BackgroundPlane>& planes;
+    const Surfaces& surfaces;
+    const Mask& occlusion;  ///< of the colour camera
+  };
+  /// The surest first. Deterministic. Cost: 20 us for each pair of edges that may be a bar.
+  void find(const Input& input);
+  const std::vector<Bar>& bars() const { return bars_; }
+  void clear() { bars_.clear(); }
+
+ private:
+  void judge(const Input& input, const RimLine& a, const RimLine& b);
+
+  std::vector<Bar> found_, bars_;
+};
+
+}  // namespace diminish

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "diminish/frame_set.h"
+#include "diminish/image.h"
+#include "diminish/occlusion_masks.h"
+#include "diminish/poses.h"
+#include "diminish/rig.h"
+#include "geometry/projection.h"
+#include "geometry/ray_grid.h"
+
+namespace diminish {
+
+/// What the cameras say of places where a bar may be. Points are in the colour camera's frame.
+class BarViews {
+ public:
+  explicit BarViews(const Rig& rig);
+
+  /// Looks at this frame, which must outlive all other calls.
+  void begin(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks);
+
+  enum class Place {
+    bare,     ///< no depth was measured there
+    solid,    ///< just this depth was measured, as steel's few returns have it
+    seen,     ///< a camera measures what is behind it
+    unknown,  ///< no camera sees the place
+  };
+  Place look_at(const Eigen::Vector3f& point_m) const;
+
+  std::size_t size() const { return cameras_.size(); }
+  /// The grey level in camera k's picture, 0 to 255; nothing outside it or on an object.
+  std::optional<float> level(std::size_t k, const Eigen::Vector3f& point_m) const;
+  /// Where camera k is; nothing if it has no pose or no image.
+  std::optional<Eigen::Vector3f> centre(std::size_t k) const;
+
+  /// The ray (x, y, 1) of a place in the user's picture.
+  Eigen::Vector3f ray(const Eigen::Vector2f& at) const;
+  std::optional<Eigen::Vector2f> project(const Eigen::Vector3f& point_m) const;
+  /// Pixels of the user's picture to one of the coarsest depth image's, at any distance that is
+  /// alike for both cameras.
+  float depth_pixel_px() const { return depth_pixel_px_; }
+
+ private:
+  struct Camera {
+    Projection depth_lens, color_lens;
+    float unit_m = 0;
+    bool measures = false;  ///< depth, instead of estimating it
+    RigidTransform color_from_depth;
+    bool is_there = false;
+    ImageView<std::uint16_t> depth;
+    ImageView<Bgr> color;
+    ImageView<std::uint8_t> depth_objects, color_objects;
+    FloatTransform depth_from_user{RigidTransform{}}, color_from_user{RigidTransform{}};
+    Eigen::Vector3f centre = Eigen::Vector3f::Zero();
+  };
+  std::vector<Camera> cameras_;
+  Projection user_;
+  RayGrid rays_;
+  float depth_pixel_px_ = 1;
+};
+
+}  // namespace diminish
