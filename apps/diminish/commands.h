@@ -10,6 +10,7 @@ namespace diminish {
 void add_bench(CLI::App& program, int& exit_code);
 void add_calibrate(CLI::App& program, int& exit_code);
 void add_camera_node(CLI::App& program, int& exit_code);
+void add_render_node(CLI::App& program, int& exit_code);
 void add_check(CLI::App& program, int& exit_code);
 void add_compare(CLI::App& program, int& exit_code);
 void add_convert(CLI::App& program, int& exit_code);

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <thread>
@@ -27,6 +28,16 @@ void print_line(const LiveStatus& status) {
   std::fflush(stdout);
 }
 
+void print_remote(const std::string& name, const RemoteStatus& remote) {
+  const double frames = static_cast<double>(std::max<std::size_t>(remote.frames, 1));
+  fmt::print(
+      "{}: asked about {} frames, {} glances came; {} contributions asked for, {} came, after "
+      "{:.1f} ms, {:.1f} of them on the way; {:.1f} kB a frame came, {:.1f} kB went\n",
+      name, remote.frames, remote.glances, remote.asked_layers, remote.layers, remote.layer_ms,
+      remote.way_ms, static_cast<double>(remote.bytes_received) / 1e3 / frames,
+      static_cast<double>(remote.bytes_sent) / 1e3 / frames);
+}
+
 void print_summary(const LiveStatus& status, const LiveRun& run) {
   fmt::print("\n{} frames, {} colour images skipped for newer ones, {} frames failed\n",
              status.frames, status.skipped, status.failed);
@@ -47,6 +58,9 @@ void print_summary(const LiveStatus& status, const LiveRun& run) {
                camera.clock->offset_s * 1e3, camera.clock->drift * 1e6,
                camera.clock->is_trusted ? "stamps are taken as they are"
                                         : "stamps are brought to this machine's clock");
+  }
+  for (const CameraStatus& camera : status.cameras) {
+    if (camera.remote) print_remote(camera.name, *camera.remote);
   }
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);

@@ -41,6 +41,7 @@ int run_command(int argc, char** argv) {
   diminish::add_latency_test(program, exit_code);
   diminish::add_devices(program, exit_code);
   diminish::add_camera_node(program, exit_code);
+  diminish::add_render_node(program, exit_code);
   diminish::add_keys(program, exit_code);
   diminish::add_train_color(program, exit_code);
   diminish::add_help(program, exit_code);

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,8 @@
 #include "diminish/input_image.h"
 
 namespace diminish {
+
+class RemoteImages;
 
 /// One RGB-D camera's images at one moment.
 struct RgbdFrame {
@@ -18,9 +21,15 @@ struct RgbdFrame {
   double depth_stamp_s = 0;
   /// Why there are no images, in plain words; empty if all that the camera makes are there.
   std::string missing;
+  /// Where the images are on another machine: what that one tells of them. Then `color` is empty,
+  /// and `depth` a view of the glance's.
+  std::shared_ptr<RemoteImages> remote;
 
   bool has_picture() const { return missing.empty() && !color.empty(); }
   bool available() const { return has_picture() && !depth.empty(); }
+  bool is_remote() const { return missing.empty() && remote != nullptr; }
+  /// Whether its depth can be drawn, here or elsewhere.
+  bool takes_part() const { return available() || is_remote(); }
 };
 
 /// Masks of one occluder, made by another program: 255 on the object. An image without a mask is

@@ -25,6 +25,19 @@ enum class CameraState { opening, running, silent, lost, ended };
 inline constexpr std::array<const char*, 5> camera_state_names = {"opening", "running", "silent",
                                                                   "lost", "ended"};
 
+/// How a camera whose images stay on another machine (`diminish render-node`) answers. Counters
+/// cover the whole session, times the last few seconds.
+struct RemoteStatus {
+  std::size_t frames = 0;  ///< that it was asked about
+  /// What came of it in time: first what poses and colours are found from, then its contribution to
+  /// the picture, where one was asked for.
+  std::size_t glances = 0, asked_layers = 0, layers = 0;
+  std::size_t bytes_received = 0, bytes_sent = 0;
+  /// Medians, milliseconds: from the question to the contribution, and how much of that is the way
+  /// there and back.
+  double layer_ms = 0, way_ms = 0;
+};
+
 /// A camera's status. Counters cover the whole session.
 struct CameraStatus {
   std::string name, uri;
@@ -43,6 +56,8 @@ struct CameraStatus {
   std::size_t reconnects = 0;  ///< times that it came back
   /// Of images that another machine stamps (CameraSource::clock).
   std::optional<CameraClock> clock;
+  /// Of one whose images stay on another machine.
+  std::optional<RemoteStatus> remote;
 };
 
 /// A result of a live session, with its input.

@@ -34,6 +34,9 @@ class DIMINISH_EXPORT Pipeline {
   void set_options(const Options& options);
   const Options& options() const;
 
+  /// Whether markers are looked for, in all cameras' images.
+  bool needs_markers() const;
+
   /// Whether the caller needs `result.reconstruction`; by default it does. If not, only those of
   /// its colours are filled that the frame needs; and where a GPU makes the whole frame, its images
   /// stay there and are empty in the result.

@@ -71,6 +71,10 @@ class DIMINISH_EXPORT Reconstructor {
   /// From the next frame on; by default all.
   virtual void want_colors(Colors /*wanted*/) {}
 
+  /// Whether cameras take part whose images are on other machines (RgbdFrame::remote). If not, the
+  /// CPU draws a frame that has any.
+  virtual bool merges_remote() const { return false; }
+
   /// The name of the MaskDrawer that goes with it.
   virtual std::string mask_drawer() const { return "cpu"; }
 

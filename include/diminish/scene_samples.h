@@ -17,6 +17,7 @@ struct SceneSample {
   Bgr color;                    ///< the RGB-D camera's, averaged over the neighbourhood
   std::uint8_t source = 0;      ///< 1 + the RGB-D camera's index
   bool even = false;            ///< the neighbourhood has a single colour
+  std::uint32_t point = 0;      ///< of a remote camera: its place in Glance::points
 };
 
 /// Sparse samples over the whole picture of what the RGB-D cameras see.

@@ -6,6 +6,7 @@
 #include <functional>
 #include <numeric>
 
+#include "blend/cell_resolution.h"
 #include "blend/layers.h"
 #include "core/rows.h"
 #include "core/runs.h"
@@ -128,10 +129,6 @@ void CameraBlender::measure_cells(int cell_row, Scratch& scratch) {
     const std::uint8_t* const seen = seen_.row(y);
     for (std::size_t x = 0; x < scratch.bytes.size(); ++x) scratch.bytes[x] &= seen[x];
   }
-  const auto place = [](const SurfaceRow& row, int x) {
-    const float z = 1 / row.inverse_z[x];
-    return Eigen::Vector2f(row.u_over_z[x] * z, row.v_over_z[x] * z);
-  };
   const int bottom = first.bottom() - 1;
   for (std::size_t k = 0; k < surfaces_->size(); ++k) {
     const Surface& surface = (*surfaces_)[k];
@@ -149,15 +146,9 @@ void CameraBlender::measure_cells(int cell_row, Scratch& scratch) {
         grid_.set(k, column, cell_row, 0, 0);
         continue;
       }
-      const int right = cell.right() - 1;
-      const Eigen::Vector2f origin = place(upper, cell.x);
-      const Eigen::Vector2f along_x = place(upper, right) - origin;
-      const Eigen::Vector2f along_y = place(lower, cell.x) - origin;
-      const float area = along_x.x() * along_y.y() - along_x.y() * along_y.x();
-      const int pixels = std::max(1, right - cell.x) * std::max(1, bottom - cell.y);
-      grid_.set(k, column, cell_row,
-                std::max(area / static_cast<float>(pixels), ConfidenceGrid::least_resolution),
-                1 / upper.inverse_z[cell.x]);
+      const float resolution = surface.resolution ? (*surface.resolution)(column, cell_row)
+                                                  : cell_resolution(upper, lower, cell);
+      grid_.set(k, column, cell_row, resolution, 1 / upper.inverse_z[cell.x]);
     }
   }
 }

@@ -21,6 +21,8 @@ class CameraBlender {
     std::uint8_t source = 0;  ///< the camera's name in Reconstruction::source
     CameraPlace place;
     std::vector<SurfaceBuffer*> rows;  ///< which buffer holds each row of the region
+    /// By cell, of a surface without texture (RemoteLayer); null: found from the texture.
+    const Image<float>* resolution = nullptr;
   };
 
   /// Removes slivers from the surfaces and finds out how far each camera is trusted. `surfaces`, at

@@ -52,6 +52,17 @@ constexpr std::uint64_t flow_period_ms = 5;
 /// that comes back is met within about a second.
 constexpr std::int32_t announcement_s = 1;
 constexpr std::int32_t patience_s = 5;
+/// Where programs say so (OMG, DDSI-RTPS 2.5, 9.6.2.3).
+constexpr const char* discovery_group = "239.255.0.1";
+
+/// With the port that the standard gives it.
+Locator_t udp_locator(const std::string& address) {
+  Locator_t locator;
+  IPLocator::setIPv4(locator, address);
+  locator.kind = LOCATOR_KIND_UDPv4;
+  locator.port = 0;
+  return locator;
+}
 
 DomainParticipantQos participant_qos(const Network& network) {
   DomainParticipantQos qos;
@@ -73,6 +84,13 @@ DomainParticipantQos participant_qos(const Network& network) {
   }
   qos.transport().user_transports.push_back(udp);
   if (network.shared_memory) {
+    // Who is killed leaves a mailbox in shared memory that takes seconds to be found dead, and what
+    // is said of newcomers waits behind it. So discovery goes by UDP alone, like a network's.
+    auto& builtin = qos.wire_protocol().builtin;
+    builtin.metatrafficUnicastLocatorList.push_back(udp_locator(address));
+    if (!network.interface.empty()) {
+      builtin.metatrafficMulticastLocatorList.push_back(udp_locator(discovery_group));
+    }
     const auto memory = std::make_shared<SharedMemTransportDescriptor>();
     memory->segment_size(segment_bytes);
     qos.transport().user_transports.push_back(memory);

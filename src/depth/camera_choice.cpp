@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/tasks.h"
+#include "diminish/remote_images.h"
 
 namespace diminish {
 namespace {
@@ -13,6 +14,8 @@ constexpr int tile_px = 8;
 constexpr int places = 4;
 /// Of a depth image, at which it is looked at, along each row.
 constexpr int columns_of_image = 256;
+/// The most that a remote camera's point stands for, to each side.
+constexpr float most_reach_px = 64;
 /// Images that are older by this are worth half.
 constexpr double half_life_s = 0.1;
 
@@ -36,6 +39,7 @@ CameraChoice::CameraChoice(const Rig& rig)
   for (const RgbdCamera& camera : rig.rgbd) {
     Camera& added = cameras_.emplace_back();
     added.measures_depth = camera.measures_depth;
+    added.fx = static_cast<float>(camera.depth.fx);
     added.depth_unit_m = static_cast<float>(camera.depth_unit_m);
     if (rig.rgbd.size() <= usual_cameras) continue;
     added.rays = RayTable::of(camera.depth);
@@ -67,28 +71,48 @@ void CameraChoice::look(const FrameSet& frame, const Poses& poses, const Occlusi
   const double age_s = std::abs(frame.rgbd[k].depth_stamp_s - frame.stamp_s);
   const auto freshness = static_cast<float>(std::exp2(-age_s / half_life_s));
   std::fill(camera.worth.begin(), camera.worth.end(), 0.F);
+  // step: between pixels that are looked at.
+  const auto look_at = [&](int x, int y, int step) {
+    if (depth(x, y) == 0 || objects(x, y) != 0) return;
+    const float z = static_cast<float>(depth(x, y)) * camera.depth_unit_m;
+    const Eigen::Vector2f ray = (*camera.rays)(x, y);
+    Eigen::Vector3f point;
+    for (int axis = 0; axis < 3; ++axis) {
+      point[axis] = user_from_depth.apply(axis, ray.x() * z, ray.y() * z, z);
+    }
+    float u = 0;
+    float v = 0;
+    if (!(point.z() > 0) || !user_.distort(point.x() / point.z(), point.y() / point.z(), u, v)) {
+      return;
+    }
+    const float worth = freshness * alikeness(point, place);
+    // In the picture, from the point to half of the way to the next.
+    const float reach_px =
+        step == 1 ? 0 : static_cast<float>(step) * user_.fx / camera.fx * z / point.z() / 2;
+    const Rect around =
+        grow({static_cast<int>(std::floor(u)), static_cast<int>(std::floor(v)), 1, 1},
+             static_cast<int>(std::min(reach_px, most_reach_px)));
+    const auto tile_of = [](int pixel) {
+      return static_cast<int>(std::floor(static_cast<float>(pixel) / tile_px));
+    };
+    for (int row = tile_of(around.y); row <= tile_of(around.bottom() - 1); ++row) {
+      for (int column = tile_of(around.x); column <= tile_of(around.right() - 1); ++column) {
+        if (!tiles_.contains(column, row) || !wanted_[tile_at(column, row)]) continue;
+        float& best = camera.worth[tile_at(column, row)];
+        best = std::max(best, worth);
+      }
+    }
+  };
+  if (frame.rgbd[k].is_remote()) {
+    const Glance& glance = frame.rgbd[k].remote->glance();
+    for (const GlancePoint& point : glance.points) {
+      look_at(point.column, point.row, glance.point_step_px);
+    }
+    return;
+  }
   const int step = std::max(1, depth.width() / columns_of_image);
   for (int y = step / 2; y < depth.height(); y += step) {
-    for (int x = step / 2; x < depth.width(); x += step) {
-      if (depth(x, y) == 0 || objects(x, y) != 0) continue;
-      const float z = static_cast<float>(depth(x, y)) * camera.depth_unit_m;
-      const Eigen::Vector2f ray = (*camera.rays)(x, y);
-      Eigen::Vector3f point;
-      for (int axis = 0; axis < 3; ++axis) {
-        point[axis] = user_from_depth.apply(axis, ray.x() * z, ray.y() * z, z);
-      }
-      float u = 0;
-      float v = 0;
-      if (!(point.z() > 0) || !user_.distort(point.x() / point.z(), point.y() / point.z(), u, v)) {
-        continue;
-      }
-      const int column = static_cast<int>(std::floor(u / tile_px));
-      const int row = static_cast<int>(std::floor(v / tile_px));
-      if (!tiles_.contains(column, row)) continue;
-      const std::size_t tile = tile_at(column, row);
-      if (!wanted_[tile]) continue;
-      camera.worth[tile] = std::max(camera.worth[tile], freshness * alikeness(point, place));
-    }
+    for (int x = step / 2; x < depth.width(); x += step) look_at(x, y, 1);
   }
 }
 
@@ -100,7 +124,7 @@ const std::vector<bool>& CameraChoice::find_spared(const FrameSet& frame, const 
   mark_tiles(masks.color, objects);
   for (std::size_t k = 0; k < cameras_.size(); ++k) {
     cameras_[k].is_used =
-        !cameras_[k].measures_depth || !frame.rgbd[k].available() || !poses.color_from_depth[k];
+        !cameras_[k].measures_depth || !frame.rgbd[k].takes_part() || !poses.color_from_depth[k];
   }
   for_tasks(cameras_.size(), [&](std::size_t k) {
     if (!cameras_[k].is_used) look(frame, poses, masks, k);

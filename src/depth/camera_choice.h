@@ -35,6 +35,7 @@ class CameraChoice {
  private:
   struct Camera {
     std::shared_ptr<const RayTable> rays;
+    float fx = 0;
     float depth_unit_m = 0;
     bool measures_depth = true;
     bool is_used = false;

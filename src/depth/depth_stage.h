@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "depth/depth_cleaner.h"
@@ -12,6 +13,28 @@
 #include "diminish/rig.h"
 
 namespace diminish {
+
+/// Prepares one camera's depth images for drawing.
+class CameraDepth {
+ public:
+  CameraDepth(const RgbdCamera& camera, const Intrinsics& color)
+      : cleaner_(camera), visible_(camera, color) {}
+
+  /// The camera's masks.
+  struct Masks {
+    const Mask& color;
+    const Mask& depth;
+  };
+  /// Cleans what may be visible in the colour camera's picture; see DepthStage::clean.
+  void clean(const RgbdFrame& images, const std::optional<RigidTransform>& color_from_depth,
+             const Masks& masks, const Rect& drawn, const Options& options,
+             Image<std::uint16_t>& depth);
+
+ private:
+  // A cleaner keeps the camera's rays; then the blocks need not make them anew.
+  DepthCleaner cleaner_;
+  VisibleBlocks visible_;
+};
 
 /// Prepares all depth images for drawing: cleans what may be visible in the colour camera's
 /// picture.
@@ -26,8 +49,7 @@ class DepthStage {
   const DepthImages& depths() const { return depths_; }
 
  private:
-  std::vector<VisibleBlocks> visible_;
-  std::vector<DepthCleaner> cleaners_;
+  std::vector<CameraDepth> cameras_;
   DepthImages depths_;
 };
 

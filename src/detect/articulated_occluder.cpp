@@ -58,7 +58,7 @@ class ArticulatedOccluder final : public ShapeDetector {
     for (std::size_t k = 0; k < rig_.rgbd.size(); ++k) {
       const RgbdFrame& rgbd = frame.rgbd[k];
       const auto& depth_from_world = poses.depth_from_world[k];
-      if (!rgbd.has_picture() || !depth_from_world) continue;
+      if ((!rgbd.has_picture() && !rgbd.is_remote()) || !depth_from_world) continue;
       // Each sensor sees the arm at its own moment.
       if (!joints_.at(rgbd.color_stamp_s, settings_.tolerance_s, positions_)) continue;
       add(rig_.rgbd[k].color_from_depth * *depth_from_world, in_rgbd_color_[k], object,

@@ -58,7 +58,7 @@ class MarkerOccluder : public ShapeDetector {
     }
     for (std::size_t k = 0; k < rig_.rgbd.size(); ++k) {
       const auto& pose = camera_from_marker_[k + 1];
-      if (!pose || !observation.frame.rgbd[k].available()) continue;
+      if (!pose || !observation.frame.rgbd[k].takes_part()) continue;
       add_shape(*pose, in_rgbd_color_[k], object, outlines.rgbd_color[k]);
       add_shape(rig_.rgbd[k].color_from_depth.inverse() * *pose, in_rgbd_depth_[k], object,
                 outlines.rgbd_depth[k]);

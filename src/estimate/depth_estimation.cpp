@@ -50,6 +50,7 @@ const FrameSet& DepthEstimation::begin(const FrameSet& frame) {
     rgbd.color_stamp_s = given.color_stamp_s;
     rgbd.depth_stamp_s = given.depth_stamp_s;
     rgbd.missing = given.missing;
+    rgbd.remote = given.remote;
     if (rig_.rgbd[k].measures_depth) {
       look_at(given.depth, rgbd.depth);
       continue;

@@ -20,6 +20,7 @@
 #include "live/frame_listeners.h"
 #include "live/pool.h"
 #include "live/quality_ladder.h"
+#include "live/remote_camera.h"
 #include "live/session_status.h"
 #include "sink/distribution.h"
 #include "source/find_camera.h"
@@ -43,6 +44,10 @@ void check_cameras(const Rig& rig, const std::vector<LiveCamera>& cameras) {
     const bool is_known = camera.name == "color" || find_rgbd_camera(rig, camera.name);
     if (!is_known) throw Error(camera.name + ": the rig has no camera of this name");
     const CameraUri uri = parse_camera_uri(camera.uri);
+    if (is_node_uri(camera.uri)) {
+      if (camera.name == "color") uri.fail("the user's view cannot be a node that draws");
+      continue;
+    }
     using Sources = Registry<CameraSource>;
     if (!Sources::contains(uri.scheme)) uri.fail(Sources::unknown(uri.scheme));
   }
@@ -58,6 +63,8 @@ struct Lane {
   }
 
   Pipeline pipeline;
+  /// To the cameras on other machines, about its frame; null: a local one.
+  std::vector<std::unique_ptr<RemoteCamera::Question>> questions;
   Turn publishing;
   std::size_t options_version = 0;         ///< of those that the pipeline has
   std::atomic<double> begun_s = 0;         ///< its frame, on the monotonic clock; 0: none
@@ -110,7 +117,9 @@ struct LiveSession::Implementation {
     }
     arena.initialize(std::max(threads(), lane_count), static_cast<unsigned>(lane_count));
     const double epoch_s = monotonic_now_s();
+    open_remote(cameras);
     for (const LiveCamera& camera : cameras) {
+      if (is_node_uri(camera.uri)) continue;
       CameraInbox& inbox = **std::find_if(inboxes.begin(), inboxes.end(), [&](const auto& box) {
         return box->name() == camera.name;
       });
@@ -128,6 +137,22 @@ struct LiveSession::Implementation {
     } catch (...) {  // the system has none to give: those that have begun must end
       stop();
       throw;
+    }
+  }
+
+  void open_remote(const std::vector<LiveCamera>& cameras) {
+    remotes.resize(rig.rgbd.size());
+    const auto count = std::count_if(cameras.begin(), cameras.end(), [](const LiveCamera& camera) {
+      return is_node_uri(camera.uri);
+    });
+    for (const LiveCamera& camera : cameras) {
+      if (!is_node_uri(camera.uri)) continue;
+      const RgbdCamera& rgbd = *find_rgbd_camera(rig, camera.name);
+      remotes[static_cast<std::size_t>(&rgbd - rig.rgbd.data())] = std::make_unique<RemoteCamera>(
+          camera, RemoteCamera::Setting{
+                      rgbd, rig.color,
+                      lanes.front()->pipeline.needs_markers() ? scene.marker_dictionary : "",
+                      static_cast<std::size_t>(count)});
     }
   }
 
@@ -183,6 +208,9 @@ struct LiveSession::Implementation {
         if (!begin_frame(lane, *frame)) continue;
         const Busy busy(lane);
         apply_options(lane);
+        for (std::size_t k = 0; k < lane.questions.size(); ++k) {
+          if (lane.questions[k]) lane.questions[k]->wait(frame->input.rgbd[k]);
+        }
         arena.execute([&] { lane.pipeline.process(frame->input, frame->result); });
         lane.publishing.wait(publishing);
         // Whatever fails from here on, what others may hold by then is not used again.
@@ -207,6 +235,11 @@ struct LiveSession::Implementation {
       if (!deadline_s) nothing_new_at = seen;
       arrived.wait(seen, waiting_time(deadline_s));
       return false;
+    }
+    const double tolerance_s = assembler.sync_tolerance_s(sync_settings());
+    lane.questions.resize(remotes.size());
+    for (std::size_t k = 0; k < remotes.size(); ++k) {
+      if (remotes[k]) lane.questions[k] = remotes[k]->ask(frame.input.stamp_s, tolerance_s);
     }
     if (forget_wanted.exchange(false)) lane.pipeline.forget();
     lane.pipeline.take_turn();
@@ -317,6 +350,7 @@ struct LiveSession::Implementation {
   std::atomic<std::size_t> nothing_new_at =
       0;  ///< the count of `arrived` up to which everything is shown
   std::vector<std::unique_ptr<CameraFeed>> feeds;
+  std::vector<std::unique_ptr<RemoteCamera>> remotes;  ///< of each RGB-D camera; null: local
   oneapi::tbb::task_arena arena;
   std::mutex ending;
   std::vector<std::unique_ptr<Lane>> lanes;
@@ -327,6 +361,9 @@ LiveStatus LiveSession::Implementation::status() const {
   status.running = !stopped;
   const std::lock_guard lock(mutex);
   for (const auto& feed : feeds) status.cameras.push_back(feed->status());
+  for (const auto& remote : remotes) {
+    if (remote) status.cameras.push_back(remote->status());
+  }
   status.ended = describe_problems_of_cameras(status) && nothing_new_at == arrived.count();
   const double now_s = monotonic_now_s();
   if (!status.ended && (!latest || now_s - latest->published_s > no_picture_after_s)) {

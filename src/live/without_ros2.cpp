@@ -1,6 +1,8 @@
 #include "diminish/error.h"
 #include "diminish/ros2_output.h"
 #include "live/camera_node.h"
+#include "live/remote_camera.h"
+#include "live/render_node.h"
 
 namespace diminish {
 namespace {
@@ -26,6 +28,27 @@ CameraNode::CameraNode(const CameraNodeOptions& options) {
 }
 CameraNode::~CameraNode() = default;
 CameraNodeStatus CameraNode::status() const {
+  return {};
+}
+
+struct RenderNode::Implementation {};
+RenderNode::RenderNode(const RenderNodeOptions& options) {
+  fail(options.topic);
+}
+RenderNode::~RenderNode() = default;
+RenderNodeStatus RenderNode::status() const {
+  return {};
+}
+
+struct RemoteCamera::Implementation {};
+RemoteCamera::RemoteCamera(const LiveCamera& camera, const Setting&) {
+  fail(camera.uri);
+}
+RemoteCamera::~RemoteCamera() = default;
+std::unique_ptr<RemoteCamera::Question> RemoteCamera::ask(double, double) {
+  return nullptr;
+}
+CameraStatus RemoteCamera::status() const {
   return {};
 }
 

@@ -32,6 +32,11 @@ Reconstructor::Colors wanted_colors(const FrameInputs& inputs) {
              : Reconstructor::Colors::sparse;
 }
 
+bool has_remote(const FrameSet& frame) {
+  return std::any_of(frame.rgbd.begin(), frame.rgbd.end(),
+                     [](const RgbdFrame& rgbd) { return rgbd.is_remote(); });
+}
+
 /// The last stage that a backend takes over.
 Stage last_stage(const ComposingReconstructor& backend, const FrameMethods& methods) {
   auto last = static_cast<std::size_t>(Stage::drawing);
@@ -58,8 +63,12 @@ Reconstructor& Backend::chosen() {
 
 void Backend::draw(const FrameInputs& inputs, DiminishedFrame& result) {
   const ScopedTimer timer(result.report.drawing.milliseconds);
-  if (attempts_.is_due() && try_chosen(inputs, result)) return;
-  message_ = failure_ + "; drawn by the CPU instead";
+  if (has_remote(inputs.frame) && !chosen().merges_remote()) {
+    message_ = name_ + ": only the CPU merges what other machines have drawn";
+  } else {
+    if (attempts_.is_due() && try_chosen(inputs, result)) return;
+    message_ = failure_ + "; drawn by the CPU instead";
+  }
   if (!fallback_) fallback_ = Registry<Reconstructor>::get(best_suited(Suited::always))(rig_);
   reconstruct(*fallback_, inputs, result);
 }

@@ -4,6 +4,7 @@
 
 #include "composite/smoothing_share.h"
 #include "core/tasks.h"
+#include "diminish/remote_images.h"
 #include "pipeline/frame_check.h"
 #include "pipeline/stage_timer.h"
 
@@ -329,6 +330,11 @@ void FrameStages::process(const FrameSet& given, DiminishedFrame& result) {
 
   for (const std::string* message : {&occluders.message(), &backend.message()}) {
     if (!message->empty()) report.messages.push_back(*message);
+  }
+  for (const RgbdFrame& rgbd : frame.rgbd) {
+    if (rgbd.is_remote() && !rgbd.remote->problem().empty()) {
+      report.messages.push_back(rgbd.remote->problem());
+    }
   }
   const bool is_replaced = doubt.act(frame, options, result);
   texture.finish_frame(backend.has_done(Stage::finish) && !is_replaced, result);

@@ -26,6 +26,9 @@ Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;
 void Pipeline::set_options(const Options& options) {
   implementation_->set_options(options);
 }
+bool Pipeline::needs_markers() const {
+  return implementation_->markers.are_wanted();
+}
 void Pipeline::want_reconstruction(bool wanted) {
   implementation_->wants_reconstruction = wanted;
 }

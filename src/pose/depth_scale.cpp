@@ -42,7 +42,7 @@ void DepthScale::find(const FrameSet& frame, const Markers& markers,
 
 std::optional<MarkerScale> DepthScale::find(const FrameSet& frame, const std::vector<Marker>& seen,
                                             std::size_t camera) const {
-  if (!rig_.rgbd[camera].measures_depth || !frame.rgbd[camera].available()) return std::nullopt;
+  if (!rig_.rgbd[camera].measures_depth || !frame.rgbd[camera].takes_part()) return std::nullopt;
   std::optional<MarkerScale> worst;
   for (const Marker& marker : seen) {
     const auto size_m = sizes_m_.find(marker.id);

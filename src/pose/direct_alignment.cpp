@@ -6,6 +6,8 @@
 
 #include "core/median_of_magnitudes.h"
 #include "core/tasks.h"
+#include "diminish/remote_images.h"
+#include "pose/neighbourhood_brightness.h"
 
 namespace diminish {
 namespace {
@@ -17,6 +19,19 @@ constexpr float independent_share = 0.1F;
 
 RigidTransform exponential(const Eigen::Matrix<double, 6, 1>& twist) {
   return {rotation_by(twist.tail<3>()), twist.head<3>()};
+}
+
+/// Less than 0 if it is not known.
+float brightness_at(const SceneSample& sample, const RgbdFrame& images, int spacing_px) {
+  if (!images.is_remote()) {
+    return neighbourhood_brightness(images.color, sample.texture.x(), sample.texture.y(),
+                                    spacing_px);
+  }
+  const Glance& glance = images.remote->glance();
+  const auto found = std::find(glance.spacings_px.begin(), glance.spacings_px.end(), spacing_px);
+  if (found == glance.spacings_px.end()) return -1;
+  return glance.points[sample.point]
+      .brightness[static_cast<std::size_t>(found - glance.spacings_px.begin())];
 }
 
 }  // namespace
@@ -34,9 +49,7 @@ bool DirectAlignment::begin(const FrameSet& frame, const Mask& occlusion,
 /// The brightness around each sample that may be in the picture, over about the area of a pixel of
 /// the small one.
 void DirectAlignment::collect(const FrameSet& frame, const std::vector<SceneSample>& samples) {
-  constexpr int reach = 2;
-  const int spacing = level_.shrinkage / 2;
-  const int rim = reach * spacing;
+  const int spacing_px = level_.spacing_px();
   const Rect picture = frame.color.bounds();
   points_.clear();
   const std::size_t step = (samples.size() + level_.most_points - 1) / level_.most_points;
@@ -45,25 +58,8 @@ void DirectAlignment::collect(const FrameSet& frame, const std::vector<SceneSamp
     if (!picture.contains(static_cast<int>(sample.pixel.x()), static_cast<int>(sample.pixel.y()))) {
       continue;
     }
-    const ImageView<Bgr> image = frame.rgbd[sample.source - 1U].color;
-    const int u = static_cast<int>(std::lrint(sample.texture.x()));
-    const int v = static_cast<int>(std::lrint(sample.texture.y()));
-    if (u < rim || v < rim || u >= image.width() - rim || v >= image.height() - rim) continue;
-    int blue = 0;
-    int green = 0;
-    int red = 0;
-    for (int j = -reach; j <= reach; ++j) {
-      const Bgr* const row = image.row(v + j * spacing);
-      for (int k = -reach; k <= reach; ++k) {
-        const int x = u + k * spacing;
-        const Bgr& color = row[x];
-        blue += color.b;
-        green += color.g;
-        red += color.r;
-      }
-    }
-    constexpr float taps = (2 * reach + 1) * (2 * reach + 1);
-    add(sample.point_m, brightness(blue, green, red) / taps, sample.source);
+    const float brightness = brightness_at(sample, frame.rgbd[sample.source - 1U], spacing_px);
+    if (brightness >= 0) add(sample.point_m, brightness, sample.source);
   }
 }
 

@@ -26,6 +26,9 @@ class DirectAlignment {
     std::size_t most_points;
     float last_step;    ///< smaller ones end the iteration, in metres and radians
     bool extrapolates;  ///< gets there in fewer steps, by going further than each says
+
+    /// Between the pixels of an RGB-D camera that are compared with one of the small picture.
+    int spacing_px() const { return shrinkage / 2; }
   };
   struct Estimate {
     RigidTransform correction;

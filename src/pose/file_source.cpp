@@ -39,7 +39,7 @@ class FileSource : public PoseSource {
     };
     poses.color_from_world = find(color_, frame.stamp_s, "color");
     for (std::size_t k = 0; k < depth_.size(); ++k) {
-      if (!frame.rgbd[k].has_picture()) continue;
+      if (!frame.rgbd[k].has_picture() && !frame.rgbd[k].is_remote()) continue;
       const auto posed_from_world = find(depth_[k], frame.rgbd[k].depth_stamp_s, names_[k]);
       if (posed_from_world) poses.depth_from_world[k] = depth_from_posed_[k] * *posed_from_world;
     }

@@ -1,6 +1,7 @@
 #include "pose/frame_markers.h"
 
 #include "core/tasks.h"
+#include "diminish/remote_images.h"
 
 namespace diminish {
 
@@ -20,6 +21,8 @@ void FrameMarkers::find(const FrameSet& frame, Markers& markers) {
     auto& [lens, detector] = cameras_[i];
     if (i == 0) {
       detector.detect(frame.color, lens, markers.color);
+    } else if (frame.rgbd[i - 1].is_remote()) {
+      markers.rgbd[i - 1] = frame.rgbd[i - 1].remote->glance().markers;
     } else if (frame.rgbd[i - 1].has_picture()) {
       detector.detect(frame.rgbd[i - 1].color, lens, markers.rgbd[i - 1]);
     }

@@ -17,7 +17,9 @@ class FrameMarkers {
   /// wanted: if false, none are looked for. Throws Error for an unknown dictionary.
   FrameMarkers(const Rig& rig, const std::string& dictionary, bool wanted);
 
-  /// Cameras without an image have none.
+  bool are_wanted() const { return !cameras_.empty(); }
+
+  /// Cameras without an image have none; a remote one's have been found.
   void find(const FrameSet& frame, Markers& markers);
 
  private:

@@ -23,7 +23,8 @@ void MarkerAgreement::find(const FrameSet& frame, const Markers& markers, const 
                            std::vector<std::optional<MarkerShift>>& by_camera) const {
   by_camera.assign(rig_.rgbd.size(), std::nullopt);
   for (std::size_t k = 0; k < std::min(rig_.rgbd.size(), markers.rgbd.size()); ++k) {
-    if (!poses.color_from_depth[k] || !frame.rgbd[k].has_picture()) continue;
+    if (!poses.color_from_depth[k]) continue;
+    if (!frame.rgbd[k].has_picture() && !frame.rgbd[k].is_remote()) continue;
     const RigidTransform color_from_sensor =
         *poses.color_from_depth[k] * rig_.rgbd[k].color_from_depth.inverse();
     for (const Marker& seen : markers.rgbd[k]) {

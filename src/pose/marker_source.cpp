@@ -31,7 +31,7 @@ class MarkerSource : public PoseSource {
 
   void estimate(const FrameSet& frame, const Markers& markers, Poses& poses) override {
     for (std::size_t k = 0; k < rig_.rgbd.size(); ++k) {
-      if (!frame.rgbd[k].has_picture()) continue;
+      if (!frame.rgbd[k].has_picture() && !frame.rgbd[k].is_remote()) continue;
       if (const auto pose = world_pose(markers.rgbd[k], rgbd_color_lenses_[k], rig_.rgbd[k].name,
                                        poses.messages)) {
         poses.depth_from_world[k] = settle_by_depth(*pose, world_marker_.size_m, frame, k);

@@ -24,16 +24,27 @@ DirectAlignment::Twist deviations() {
   return all;
 }
 
+int shrinkage_of(const Intrinsics& color, int small_width) {
+  return std::max(1, (color.width + small_width / 2) / small_width);
+}
+
 }  // namespace
+
+std::array<int, 1 + PoseRefinement::usual_coarser> PoseRefinement::usual_spacings_px(
+    const Intrinsics& color) {
+  std::array<int, 1 + usual_coarser> spacings{};
+  for (int coarser = 0; coarser <= usual_coarser; ++coarser) {
+    spacings[static_cast<std::size_t>(coarser)] = (shrinkage_of(color, usual_width) << coarser) / 2;
+  }
+  return spacings;
+}
 
 PoseRefinement::PoseRefinement(const Intrinsics& color, int small_width, float last_step,
                                bool extrapolates, int coarser)
-    : fine_(color,
-            {std::max(1, (color.width + small_width / 2) / small_width), most_points, last_step,
-             extrapolates},
+    : fine_(color, {shrinkage_of(color, small_width), most_points, last_step, extrapolates},
             deviations()),
       projection_(Lens(color)) {
-  const int shrinkage = std::max(1, (color.width + small_width / 2) / small_width);
+  const int shrinkage = shrinkage_of(color, small_width);
   for (; coarser > 0; --coarser) {
     coarser_.emplace_back(
         color,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -35,6 +36,9 @@ class PoseRefinement {
   explicit PoseRefinement(const Intrinsics& color, int small_width = usual_width,
                           float last_step = usual_last_step, bool extrapolates = false,
                           int coarser = 0);
+
+  /// The spacings of neighbourhood_brightness that the usual refinement looks at.
+  static std::array<int, 1 + usual_coarser> usual_spacings_px(const Intrinsics& color);
 
   /// Returns how the colour camera's frame moves: color_from_measured_color. Nothing where no
   /// correction is taken: it must explain the picture better, and be small. Cost: about 0.2 us a

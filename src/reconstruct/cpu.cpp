@@ -8,118 +8,17 @@
 #include "core/tasks.h"
 #include "diminish/error.h"
 #include "diminish/reconstructor.h"
+#include "diminish/remote_images.h"
 #include "reconstruct/clear_outside.h"
-#include "render/cell_rasterizer.h"
+#include "render/camera_mesh.h"
 #include "render/sdct.h"
 #include "render/texture_lookup.h"
-#include "render/vertex_row.h"
 
 namespace diminish {
 namespace {
 
 /// Colours are looked up eight bytes at a time.
 constexpr int min_texture_side = 8;
-
-/// One RGB-D camera's mesh, drawn in bands of the region's rows, which different threads may draw
-/// at the same time.
-class CameraMesh {
- public:
-  /// The least height of a band: cells that reach into two bands are set up twice.
-  static constexpr int band_px = 64;
-
-  CameraMesh(const RgbdCamera& camera, const Intrinsics& color)
-      : rows_(camera, color), visible_(camera, color) {}
-
-  /// What is to be drawn.
-  struct Input {
-    const Image<std::uint16_t>& depth;
-    const Mask& depth_mask;
-    const Mask& color_mask;
-    const RigidTransform& color_from_depth;
-    const TiledRegion& region;
-    sdct::Threshold threshold;
-  };
-
-  /// Finds the vertices. Call before drawing the bands.
-  void begin(const Input& input) {
-    region_ = input.region;
-    visible_.find(input.depth, input.color_from_depth, region_);
-    const Rect blocks = visible_.bounds();
-    first_row_ = blocks.y * BlockSet::height;
-    row_count_ = std::min(blocks.bottom() * BlockSet::height, rows_.height()) - first_row_;
-    if (blocks.empty()) row_count_ = 0;
-    if (vertices_.size() < static_cast<std::size_t>(row_count_)) {
-      vertices_.resize(static_cast<std::size_t>(row_count_));
-      row_bounds_.resize(vertices_.size());
-    }
-    const VertexRows::Frame frame{input.depth,       input.depth_mask,
-                                  input.color_mask,  FloatTransform(input.color_from_depth),
-                                  visible_.blocks(), blocks.x,
-                                  blocks.width};
-    for_rows(row_count_, [&](Rows rows) {
-      for (int i = rows.first; i < rows.last; ++i) {
-        VertexRow& row = vertices_[static_cast<std::size_t>(i)];
-        row.resize(blocks.width * VertexRow::block);
-        rows_.project(frame, first_row_ + i, row);
-        VertexBounds& all = row_bounds_[static_cast<std::size_t>(i)];
-        all = {};
-        for (const VertexBounds& bounds : row.bounds) all = join(all, bounds);
-      }
-    });
-  }
-
-  /// rows: counted from the region's first one.
-  void draw(const Input& input, Rows rows) {
-    SurfaceBuffer& surface = surfaces_[rows.band];
-    const Rect part{region_.x, region_.y + rows.first, region_.width, rows.last - rows.first};
-    surface.clear(part, input.region);
-    for (int i = 0; i + 1 < row_count_; ++i) {
-      const auto upper = static_cast<std::size_t>(i);
-      if (join(row_bounds_[upper], row_bounds_[upper + 1]).overlaps(part)) {
-        draw_cells_between(vertices_[upper], vertices_[upper + 1], input, part, surface);
-      }
-    }
-    for (int y = part.y; y < part.bottom(); ++y) {
-      input.region.for_each_gap(y, [&](int from, int to) {
-        float* row = surface.inverse_z.data() + surface.row(y) - part.x;
-        std::fill(row + from, row + to, 0.F);
-      });
-    }
-  }
-
-  /// That holds a row of the picture.
-  SurfaceBuffer& surface(int y) { return surfaces_[band_of(y)]; }
-  const SurfaceBuffer& surface(int y) const { return surfaces_[band_of(y)]; }
-
- private:
-  std::size_t band_of(int y) const {
-    return static_cast<std::size_t>((y - region_.y) / band_height(region_.height, band_px));
-  }
-
-  /// Whole blocks of cells that cannot touch the region are skipped.
-  static void draw_cells_between(const VertexRow& upper, const VertexRow& lower, const Input& input,
-                                 const Rect& part, SurfaceBuffer& surface) {
-    const auto blocks = static_cast<int>(upper.bounds.size()) - 1;
-    // A block's cells reach into the next block.
-    VertexBounds next = join(upper.bounds[0], lower.bounds[0]);
-    for (int block = 0; block < blocks; ++block) {
-      const VertexBounds own = next;
-      const auto beside = static_cast<std::size_t>(block + 1);
-      next = join(upper.bounds[beside], lower.bounds[beside]);
-      const VertexBounds both = join(own, next);
-      if (!both.overlaps(part) || !input.region.touches(intersect(both.rect(), part))) continue;
-      draw_cells(upper, lower, block, input.threshold, surface);
-    }
-  }
-
-  VertexRows rows_;
-  VisibleBlocks visible_;
-  Rect region_;
-  int first_row_ = 0, row_count_ = 0;     ///< of the depth image: those that may be visible
-  std::vector<VertexRow> vertices_;       ///< of these rows
-  std::vector<VertexBounds> row_bounds_;  ///< likewise: where in the picture they lie
-  SurfaceBuffer surfaces_[most_bands];
-};
 
 /// The default: the same rules as ReferenceReconstructor, on vector instructions.
 class VectorizedReconstructor : public Reconstructor {
@@ -134,6 +33,7 @@ class VectorizedReconstructor : public Reconstructor {
   }
 
   void want_colors(Colors wanted) override { wanted_colors_ = wanted; }
+  bool merges_remote() const override { return true; }
 
   void reconstruct(const FrameSet& frame, const DepthImages& depths, const Poses& poses,
                    const OcclusionMasks& masks, const TiledRegion& region, const Options& options,
@@ -141,9 +41,14 @@ class VectorizedReconstructor : public Reconstructor {
     objects_ = &masks.color;
     clear_outside(color_, region, reconstruction);
     drawn_.clear();
+    layers_.assign(meshes_.size(), nullptr);
     for (std::size_t k = 0; k < meshes_.size(); ++k) {
-      if (!frame.rgbd[k].available() || !poses.color_from_depth[k]) continue;
-      drawn_.push_back({k, 0});
+      if (!frame.rgbd[k].takes_part() || !poses.color_from_depth[k]) continue;
+      drawn_.push_back({k, 0, frame.rgbd[k].is_remote()});
+      if (drawn_.back().is_remote) {
+        frame.rgbd[k].remote->draw({*poses.color_from_depth[k], masks.rgbd_color[k],
+                                    masks.rgbd_depth[k], region, options});
+      }
     }
     const auto input_of = [&, threshold =
                                   sdct::Threshold(options.discontinuity_threshold_m,
@@ -154,11 +59,15 @@ class VectorizedReconstructor : public Reconstructor {
     };
     for_tasks(drawn_.size(), [&](std::size_t i) {
       const std::size_t k = drawn_[i].camera;
+      if (drawn_[i].is_remote) return meshes_[k].begin(region);
       meshes_[k].begin(input_of(k));
     });
     const auto draw = [&](const Drawn& drawn, Rows rows) {
-      meshes_[drawn.camera].draw(input_of(drawn.camera), rows);
+      CameraMesh& mesh = meshes_[drawn.camera];
+      if (drawn.is_remote) return mesh.take(*layers_[drawn.camera], region, rows);
+      mesh.draw(input_of(drawn.camera), rows);
     };
+    if (drawn_.size() < 2) wait_for_layers(frame);
     const auto agreement_m = static_cast<float>(options.depth_agreement_m);
     if (drawn_.size() < 2) {
       resize_second(false, color_, reconstruction.second);
@@ -180,10 +89,19 @@ class VectorizedReconstructor : public Reconstructor {
           CameraMesh::band_px);
       return;
     }
-    for_rows(
-        region.height,
-        [&](Rows rows) { for_tasks(drawn_.size(), [&](std::size_t i) { draw(drawn_[i], rows); }); },
-        CameraMesh::band_px);
+    const auto draw_all = [&](bool remote) {
+      for_rows(
+          region.height,
+          [&](Rows rows) {
+            for_tasks(drawn_.size(), [&](std::size_t i) {
+              if (drawn_[i].is_remote == remote) draw(drawn_[i], rows);
+            });
+          },
+          CameraMesh::band_px);
+    };
+    draw_all(false);
+    // The other machines have drawn meanwhile.
+    if (wait_for_layers(frame)) draw_all(true);
     sort_by_coverage(region);
     const bool blended = drawn_.size() > 1 && drawn_.size() <= blending::most_cameras &&
                          options.merge_cameras == "blend";
@@ -201,6 +119,7 @@ class VectorizedReconstructor : public Reconstructor {
   struct Drawn {
     std::size_t camera;
     int pixels;
+    bool is_remote;
   };
 
   static constexpr int parts_of_band = 2;
@@ -210,6 +129,19 @@ class VectorizedReconstructor : public Reconstructor {
     std::vector<float> second_depth_m;
     CameraBlender::Scratch blending;
   };
+
+  /// Those that do not come take no part. Returns whether there are any.
+  bool wait_for_layers(const FrameSet& frame) {
+    bool is_any = false;
+    for (const Drawn& drawn : drawn_) {
+      if (!drawn.is_remote) continue;
+      layers_[drawn.camera] = frame.rgbd[drawn.camera].remote->layer();
+      is_any = is_any || layers_[drawn.camera];
+    }
+    std::erase_if(drawn_,
+                  [&](const Drawn& drawn) { return drawn.is_remote && !layers_[drawn.camera]; });
+    return is_any;
+  }
 
   /// Orders the cameras: the one that sees most of the region first, like merge_layers. Cameras
   /// that see nothing of it are left out.
@@ -236,6 +168,7 @@ class VectorizedReconstructor : public Reconstructor {
       CameraBlender::Surface& surface = blended_[i];
       surface.source = static_cast<std::uint8_t>(1 + k);
       surface.place = CameraPlace(*poses.color_from_depth[k]);
+      surface.resolution = layers_[k] ? &layers_[k]->resolution : nullptr;
       surface.rows.clear();
       for (int y = region.y; y < region.bottom(); ++y) {
         surface.rows.push_back(&meshes_[k].surface(y));
@@ -258,9 +191,8 @@ class VectorizedReconstructor : public Reconstructor {
     std::fill_n(colors, region.width, Bgra{});
     std::fill_n(second_colors, region.width, Bgra{});
     for (const BlendedRow& row : blender_.choose(y, chosen, scratch.blending)) {
-      const ImageView<Bgr> texture = frame.rgbd[row.source - 1U].color;
-      look_up_wanted(row, texture, y, region, chosen.source, chosen.depth_m, colors);
-      look_up_wanted(row, texture, y, region, chosen.second_source, chosen.second_depth_m,
+      look_up_wanted(row, frame, y, region, chosen.source, chosen.depth_m, colors);
+      look_up_wanted(row, frame, y, region, chosen.second_source, chosen.second_depth_m,
                      second_colors);
     }
   }
@@ -287,13 +219,21 @@ class VectorizedReconstructor : public Reconstructor {
     choose_source(surfaces, agreement_m, region.width, source, depth_m);
     std::fill_n(colors, region.width, Bgra{});
     for (const SurfaceRow& row : surfaces) {
-      look_up_wanted(row, frame.rgbd[row.source - 1U].color, y, region, source, depth_m, colors);
+      look_up_wanted(row, frame, y, region, source, depth_m, colors);
     }
   }
 
   /// Looks up a row's colours, as far as they are wanted.
-  void look_up_wanted(const SurfaceRow& row, ImageView<Bgr> texture, int y, const Rect& region,
+  void look_up_wanted(const SurfaceRow& row, const FrameSet& frame, int y, const Rect& region,
                       const std::uint8_t* source, const float* depth_m, Bgra* colors) const {
+    if (const RemoteLayer* const layer = layers_[row.source - 1U]) {
+      const Bgr* const from = layer->color.row(y - region.y);
+      for (int x = 0; x < region.width; ++x) {
+        if (source[x] == row.source) colors[x] = {from[x].b, from[x].g, from[x].r, 255};
+      }
+      return;
+    }
+    const ImageView<Bgr> texture = frame.rgbd[row.source - 1U].color;
     if (wanted_colors_ == Colors::all || (y - region.y) % sparse_step == 0) {
       look_up_colors(row, texture, region.width, source, depth_m, colors);
       return;
@@ -322,6 +262,7 @@ class VectorizedReconstructor : public Reconstructor {
   const Mask* objects_ = nullptr;  ///< of this frame
   std::vector<CameraMesh> meshes_;
   std::vector<Drawn> drawn_;
+  std::vector<const RemoteLayer*> layers_;  ///< of each camera; null: drawn here
   std::vector<CameraBlender::Surface> blended_;
   CameraBlender blender_;
   Scratch scratch_[most_bands];                                   ///< of each band of the region

@@ -28,15 +28,9 @@ MeshVertex DepthMesh::vertex(const Frame& frame, int column, int row) const {
   const float x = rays_->x(row)[column] * z;
   const float y = rays_->y(row)[column] * z;
 
-  const float rgbd_z = to_rgbd_color_.apply(2, x, y, z);
-  if (!(rgbd_z > sdct::near_plane_m)) return {};
-  const auto last_column = static_cast<float>(camera_.color.width - 1);
-  const auto last_row = static_cast<float>(camera_.color.height - 1);
   float u = 0;
   float v = 0;
-  if (!rgbd_color_.distort(to_rgbd_color_.apply(0, x, y, z) / rgbd_z,
-                           to_rgbd_color_.apply(1, x, y, z) / rgbd_z, u, v) ||
-      !(u >= 0 && u <= last_column && v >= 0 && v <= last_row) ||
+  if (!texture(x, y, z, u, v) ||
       frame.color_mask(static_cast<int>(std::lrint(u)), static_cast<int>(std::lrint(v))) != 0) {
     return {};
   }
@@ -51,6 +45,22 @@ MeshVertex DepthMesh::vertex(const Frame& frame, int column, int row) const {
     return {};
   }
   return {to_subpixels(px), to_subpixels(py), 1.F / color_z, u, v, z};
+}
+
+bool DepthMesh::texture(float x, float y, float z, float& u, float& v) const {
+  const float rgbd_z = to_rgbd_color_.apply(2, x, y, z);
+  if (!(rgbd_z > sdct::near_plane_m)) return false;
+  const auto last_column = static_cast<float>(camera_.color.width - 1);
+  const auto last_row = static_cast<float>(camera_.color.height - 1);
+  return rgbd_color_.distort(to_rgbd_color_.apply(0, x, y, z) / rgbd_z,
+                             to_rgbd_color_.apply(1, x, y, z) / rgbd_z, u, v) &&
+         u >= 0 && u <= last_column && v >= 0 && v <= last_row;
+}
+
+bool DepthMesh::texture(ImageView<std::uint16_t> depth, int column, int row, float& u,
+                        float& v) const {
+  const float z = static_cast<float>(depth(column, row)) * static_cast<float>(camera_.depth_unit_m);
+  return texture(rays_->x(row)[column] * z, rays_->y(row)[column] * z, z, u, v);
 }
 
 Eigen::Vector3f DepthMesh::point_m(const Frame& frame, int column, int row) const {

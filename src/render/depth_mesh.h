@@ -39,6 +39,9 @@ class DepthMesh {
   };
   /// The vertex of a depth pixel, by rule 1 of sdct.h.
   MeshVertex vertex(const Frame& frame, int column, int row) const;
+  /// The place in the RGB-D camera's colour image of a depth pixel with a measurement. False if it
+  /// has none.
+  bool texture(ImageView<std::uint16_t> depth, int column, int row, float& u, float& v) const;
   /// The vertices of all depth pixels.
   void compute(const Frame& frame, Image<MeshVertex>& vertices) const;
 
@@ -46,6 +49,9 @@ class DepthMesh {
   Eigen::Vector3f point_m(const Frame& frame, int column, int row) const;
 
  private:
+  /// x, y, z: in the depth sensor's frame.
+  bool texture(float x, float y, float z, float& u, float& v) const;
+
   RgbdCamera camera_;
   std::shared_ptr<const RayTable> rays_;
   FloatTransform to_rgbd_color_;

@@ -1,40 +1,11 @@
 #include "scene/scene_sampler.h"
 
-#include <algorithm>
-#include <cmath>
-
-#include "core/even_color.h"
 #include "core/tasks.h"
+#include "diminish/remote_images.h"
 #include "render/sdct.h"
+#include "scene/sample_grid.h"
 
 namespace diminish {
-namespace {
-
-/// For each camera.
-constexpr double wanted_samples = 4000;
-
-/// A depth pixel that is further than this from its neighbours, relative to its own depth, lies on
-/// an edge or on a surface seen edge-on.
-constexpr float edge = 0.03F;
-
-constexpr int reach = 2;
-
-/// The distance between samples, in depth pixels.
-int step_of(ImageView<std::uint16_t> depth) {
-  const double pixels = static_cast<double>(depth.width()) * depth.height();
-  return std::max(1, static_cast<int>(std::lround(std::sqrt(pixels / wanted_samples))));
-}
-
-bool on_surface(ImageView<std::uint16_t> depth, int column, int row) {
-  const auto own = static_cast<float>(depth(column, row));
-  for (const auto& [dx, dy] : {std::pair{-reach, 0}, {reach, 0}, {0, -reach}, {0, reach}}) {
-    const auto other = static_cast<float>(depth(column + dx, row + dy));
-    if (!(std::abs(other - own) <= edge * own)) return false;
-  }
-  return own > 0;
-}
-
-}  // namespace
 
 SceneSampler::SceneSampler(const Rig& rig) {
   for (const RgbdCamera& camera : rig.rgbd) {
@@ -51,12 +22,13 @@ void SceneSampler::sample(const FrameSet& frame, const Poses& poses, const Occlu
       band.object_points_m.clear();
     }
     const RgbdFrame& rgbd = frame.rgbd[k];
-    if (!rgbd.available() || !poses.color_from_depth[k]) return;
+    if (!rgbd.takes_part() || !poses.color_from_depth[k]) return;
     const View view{rgbd,
                     camera.mesh,
                     {rgbd.depth, masks.rgbd_depth[k], masks.rgbd_color[k],
                      FloatTransform(*poses.color_from_depth[k])},
                     static_cast<std::uint8_t>(k + 1)};
+    if (rgbd.is_remote()) return take_points(view, rgbd.remote->glance(), camera.bands[0]);
     for_rows(rgbd.depth.height(),
              [&](Rows rows) { sample_rows(view, rows, camera.bands[rows.band]); });
   });
@@ -74,39 +46,56 @@ void SceneSampler::sample(const FrameSet& frame, const Poses& poses, const Occlu
 
 void SceneSampler::sample_rows(const View& view, Rows rows, Band& band) {
   const ImageView<std::uint16_t> depth = view.images.depth;
-  const ImageView<Bgr> image = view.images.color;
-  const int step = step_of(depth);
-  constexpr int rim = even_color_reach_px;
-  for (int row = reach + step / 2; row < std::min(depth.height() - reach, rows.last); row += step) {
-    if (row < rows.first) continue;
-    for (int column = reach + step / 2; column < depth.width() - reach; column += step) {
-      if (!on_surface(depth, column, row)) continue;
-      if (view.frame.depth_mask(column, row) != 0) {
-        band.object_points_m.push_back(view.mesh.point_m(view.frame, column, row));
-        continue;
-      }
-      const MeshVertex vertex = view.mesh.vertex(view.frame, column, row);
-      if (!vertex.valid()) continue;
-      SceneSample sample;
-      sample.pixel = Eigen::Vector2f(static_cast<float>(vertex.x), static_cast<float>(vertex.y)) /
-                     sdct::subpixels;
-      const int u = static_cast<int>(std::lrint(vertex.u));
-      const int v = static_cast<int>(std::lrint(vertex.v));
-      if (u < rim || u >= image.width() - rim || v < rim || v >= image.height() - rim) {
-        continue;
-      }
-      const EvenColor color = even_color(image, u, v);
-      const auto level = [&](int c) {
-        return static_cast<std::uint8_t>(std::lrint(color.channels[c]));
-      };
-      sample.point_m = view.mesh.point_m(view.frame, column, row);
-      sample.texture = {vertex.u, vertex.v};
-      sample.color = {level(0), level(1), level(2)};
-      sample.source = view.source;
-      sample.even = color.even;
-      band.samples.push_back(sample);
+  const SampleGrid grid(depth.width(), depth.height());
+  for (int i = grid.row_from(rows.first); i < grid.rows() && grid.row(i) < rows.last; ++i) {
+    for (int j = 0; j < grid.columns(); ++j) {
+      const int column = grid.column(j);
+      const int row = grid.row(i);
+      if (!is_on_surface(depth, column, row)) continue;
+      take(view, column, row, band, [&](SceneSample& sample) {
+        SampleColor found;
+        if (!find_sample_color(view.images.color, sample.texture.x(), sample.texture.y(), found)) {
+          return false;
+        }
+        sample.color = found.color;
+        sample.even = found.even;
+        return true;
+      });
     }
   }
+}
+
+void SceneSampler::take_points(const View& view, const Glance& glance, Band& band) {
+  for (std::size_t i = 0; i < glance.points.size(); ++i) {
+    const GlancePoint& point = glance.points[i];
+    take(view, point.column, point.row, band, [&](SceneSample& sample) {
+      if (!point.has_color) return false;
+      sample.color = point.color;
+      sample.even = point.even;
+      sample.point = static_cast<std::uint32_t>(i);
+      return true;
+    });
+  }
+}
+
+/// A pixel on a surface: of an object, or a sample if it has a colour.
+template <class FindColor>
+void SceneSampler::take(const View& view, int column, int row, Band& band,
+                        const FindColor& find_color) {
+  if (view.frame.depth_mask(column, row) != 0) {
+    band.object_points_m.push_back(view.mesh.point_m(view.frame, column, row));
+    return;
+  }
+  const MeshVertex vertex = view.mesh.vertex(view.frame, column, row);
+  if (!vertex.valid()) return;
+  SceneSample sample;
+  sample.pixel =
+      Eigen::Vector2f(static_cast<float>(vertex.x), static_cast<float>(vertex.y)) / sdct::subpixels;
+  sample.texture = {vertex.u, vertex.v};
+  if (!find_color(sample)) return;
+  sample.point_m = view.mesh.point_m(view.frame, column, row);
+  sample.source = view.source;
+  band.samples.push_back(sample);
 }
 
 }  // namespace diminish

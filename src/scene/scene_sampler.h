@@ -12,8 +12,10 @@
 
 namespace diminish {
 
+struct Glance;
+
 /// Takes samples of the scene from the RGB-D images: those depth pixels of a regular grid that lie
-/// on surfaces.
+/// on surfaces. Where a camera's images are on another machine, that one has read them (Glance).
 class SceneSampler {
  public:
   explicit SceneSampler(const Rig& rig);
@@ -39,6 +41,9 @@ class SceneSampler {
     std::uint8_t source;
   };
   static void sample_rows(const View& view, Rows rows, Band& band);
+  static void take_points(const View& view, const Glance& glance, Band& band);
+  template <class FindColor>
+  static void take(const View& view, int column, int row, Band& band, const FindColor& find_color);
 
   std::vector<Camera> by_camera_;
 };

@@ -1,0 +1,158 @@
+#include "live/render_node.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <mutex>
+#include <thread>
+
+#include "camera/ros2_address.h"
+#include "dds/dds.h"
+#include "diminish/camera_source.h"
+#include "diminish/error.h"
+#include "live/image_pairs.h"
+#include "source/find_camera.h"
+
+namespace diminish {
+namespace {
+
+using std::chrono::milliseconds;
+
+/// As for a session's cameras.
+constexpr double first_retry_s = 0.2;
+constexpr double last_retry_s = 5;
+/// Two sensors' images so far apart are of one moment.
+constexpr double moment_s = 0.02;
+/// How often questions that wait for images are looked at.
+constexpr milliseconds short_wait(1);
+constexpr milliseconds long_wait(5);
+
+}  // namespace
+
+struct RenderNode::Implementation {
+  explicit Implementation(const RenderNodeOptions& wanted) : options(wanted) {
+    const CameraUri uri = parse_camera_uri("node:" + options.topic);
+    uri.expect_parameters({std::begin(node_network_parameters), std::end(node_network_parameters)});
+    parse_camera_uri(options.uri);
+    if (options.rig && !find_rgbd_camera(*options.rig, options.name)) {
+      throw Error("the rig has no RGB-D camera '" + options.name + "'");
+    }
+    const auto delivery = uri.has("reliable") ? dds::Delivery::reliable : dds::Delivery::newest;
+    const auto node = dds::Node::open(parse_ros2_network(uri));
+    questions.emplace(node);
+    questions->add({ros2_topic(uri, uri.target, "question"), node_question_type}, delivery);
+    answers.emplace(node, dds::Topic{ros2_topic(uri, uri.target, "answer"), node_answer_type},
+                    delivery);
+    reading = std::thread([this] { read_camera(); });
+    answering = std::thread([this] { answer(); });
+  }
+  ~Implementation() {
+    is_stopped = true;
+    reading.join();
+    answering.join();
+  }
+
+  void read_camera() {
+    double retry_s = first_retry_s;
+    while (!is_stopped) {
+      const std::size_t before = images;
+      std::string what;
+      try {
+        read_until_gone();
+        has_ended = !is_stopped;
+        return;
+      } catch (const std::exception& error) {
+        what = error.what();
+      } catch (...) {
+        what = "an unknown error";
+      }
+      note_camera(what);
+      retry_s = images > before ? first_retry_s : std::min(2 * retry_s, last_retry_s);
+      const double end_s = monotonic_now_s() + retry_s;
+      while (!is_stopped && monotonic_now_s() < end_s)
+        std::this_thread::sleep_for(milliseconds(20));
+    }
+  }
+
+  void read_until_gone() {
+    CameraRequest request;
+    request.name = options.name;
+    request.rig = options.rig ? &*options.rig : nullptr;
+    request.epoch_s = monotonic_now_s();
+    const auto source = open_camera(options.uri, request);
+    CameraImage image;
+    while (!is_stopped) {
+      const auto got = source->read(image, milliseconds(100));
+      if (got == CameraSource::Status::end) return;
+      if (got != CameraSource::Status::image) continue;
+      if (image.fault.empty()) {
+        pairs.put(image);
+        ++images;
+      } else {
+        ++damaged;
+        note_camera(image.fault);
+      }
+    }
+  }
+
+  void note_camera(const std::string& what) {
+    const std::lock_guard lock(mutex);
+    status.camera_problem = what;
+  }
+
+  void answer() {
+    NodeWorker worker(
+        [this](double stamp_s, double tolerance_s) { return pairs.find(stamp_s, tolerance_s); },
+        [this](const std::vector<std::uint8_t>& answer) { answers->send(answer); });
+    dds::Received received;
+    std::size_t seen = 0;
+    while (!is_stopped) {
+      try {
+        if (questions->take(received, worker.has_waiting() ? short_wait : long_wait)) {
+          worker.take(received.bytes, received.arrival_s);
+        }
+        if (const std::size_t now = images; now != seen) {
+          seen = now;
+          worker.look_again(monotonic_now_s());
+          if (const auto newest = pairs.newest(moment_s)) {
+            worker.prepare(newest, monotonic_now_s());
+          }
+        }
+        worker.look_again(monotonic_now_s());
+        const std::lock_guard lock(mutex);
+        static_cast<NodeCounts&>(status) = worker.counts();
+        status.users = worker.users(monotonic_now_s());
+      } catch (const std::exception& error) {
+        const std::lock_guard lock(mutex);
+        status.camera_problem = error.what();
+      }
+    }
+  }
+
+  RenderNodeOptions options;
+  std::optional<dds::Subscriptions> questions;
+  std::optional<dds::Publication> answers;
+  ImagePairs pairs;
+  std::atomic<bool> is_stopped = false, has_ended = false;
+  std::atomic<std::size_t> images = 0, damaged = 0;
+  mutable std::mutex mutex;  ///< guards the status
+  RenderNodeStatus status;
+  std::thread reading, answering;  ///< last: they use all of the above
+};
+
+RenderNode::RenderNode(const RenderNodeOptions& options)
+    : implementation_(std::make_unique<Implementation>(options)) {}
+
+RenderNode::~RenderNode() = default;
+
+RenderNodeStatus RenderNode::status() const {
+  const Implementation& self = *implementation_;
+  const std::lock_guard lock(self.mutex);
+  RenderNodeStatus status = self.status;
+  status.has_ended = self.has_ended;
+  status.images = self.images;
+  status.damaged = self.damaged;
+  return status;
+}
+
+}  // namespace diminish

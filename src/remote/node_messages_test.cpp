@@ -1,0 +1,257 @@
+#include "remote/node_messages.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "expect_error.h"
+#include "remote/layer_codec.h"
+
+namespace diminish {
+namespace {
+
+constexpr NodeHead head{NodeTopic::layer, 0x123456789abcdef0, 7};
+
+GlanceQuestion question() {
+  GlanceQuestion asked;
+  asked.asked_s = 5;
+  asked.stamp_s = 100.25;
+  asked.tolerance_s = 0.016;
+  asked.patience_s = 0.1;
+  asked.camera.name = "camera";
+  asked.camera.color = {64, 48, 60, 61, 31.5, 24, {0.1, -0.2, 0.001, 0, 0.01}};
+  asked.camera.depth = {40, 32, 40, 40, 20, 16, {}};
+  asked.camera.depth.lens_model = LensModel::fisheye;
+  asked.camera.depth_unit_m = 0.00025;
+  asked.camera.color_from_depth.translation = {0.05, 0, 0.001};
+  asked.user = {96, 64, 80, 80, 48, 32, {}};
+  asked.wishes = {"DICT_4X4_50", {1, 2, 4}, 60};
+  return asked;
+}
+
+Mask random_mask(int width, int height, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_int_distribution<int> length(1, 70);
+  Mask mask(width, height);
+  bool set = seed % 2 != 0;
+  for (std::size_t i = 0; i < mask.size(); set = !set) {
+    for (int n = length(random); n > 0 && i < mask.size(); --n) mask.data()[i++] = set ? 255 : 0;
+  }
+  return mask;
+}
+
+RemoteLayer random_layer(const Rect& region) {
+  std::mt19937 random(3);
+  std::uniform_int_distribution<int> level(0, 255);
+  RemoteLayer layer;
+  layer.region = region;
+  layer.color.resize(region.width, region.height);
+  layer.depth.resize(region.width, region.height);
+  for (Bgr& color : layer.color) {
+    for (std::uint8_t* c : {&color.b, &color.g, &color.r}) {
+      *c = static_cast<std::uint8_t>(level(random));
+    }
+  }
+  for (std::uint16_t& depth : layer.depth) {
+    depth = static_cast<std::uint16_t>(level(random) < 60 ? 0 : 250 * level(random) + 1);
+  }
+  layer.resolution.resize(region.width / 8, region.height / 8);
+  for (float& value : layer.resolution) value = static_cast<float>(level(random)) / 100;
+  return layer;
+}
+
+TEST(NodeMessages, AQuestionForAGlanceIsReadAsItWasWritten) {
+  const GlanceQuestion asked = question();
+  const auto bytes = write_question({NodeTopic::glance, head.user, head.frame}, asked);
+  auto message = open_question(bytes);
+  EXPECT_EQ(message.head.topic, NodeTopic::glance);
+  EXPECT_EQ(message.head.user, head.user);
+  EXPECT_EQ(message.head.frame, head.frame);
+  GlanceQuestion back;
+  read(message.rest, back);
+  EXPECT_EQ(back.asked_s, asked.asked_s);
+  EXPECT_EQ(back.stamp_s, asked.stamp_s);
+  EXPECT_EQ(back.camera.color, asked.camera.color);
+  EXPECT_EQ(back.camera.depth, asked.camera.depth);
+  EXPECT_EQ(back.camera.depth_unit_m, asked.camera.depth_unit_m);
+  EXPECT_EQ(back.camera.color_from_depth.translation, asked.camera.color_from_depth.translation);
+  EXPECT_EQ(back.user, asked.user);
+  EXPECT_EQ(back.wishes, asked.wishes);
+}
+
+TEST(NodeMessages, AQuestionForALayerIsReadAsItWasWritten) {
+  const GlanceQuestion asked = question();
+  RigidTransform pose;
+  pose.rotation = Eigen::AngleAxisd(0.3, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+  pose.translation = {0.1, -0.2, 3};
+  const Mask color = random_mask(64, 48, 1);
+  const Mask depth = random_mask(40, 32, 2);
+  Mask object(96, 64);
+  object.fill({30, 20, 5, 9}, 255);
+  TiledRegion region(Rect{3, 5, 80, 50});
+  region.keep_near(object, 4);
+  ASSERT_FALSE(region.is_whole());
+  Options options;
+  options.smooth_depth = false;
+  options.discontinuity_threshold_m = 0.07;
+  const auto bytes = write_question(head, {pose, color, depth, region, options}, 80, 2e-4);
+  auto message = open_question(bytes);
+  LayerQuestion back;
+  read(message.rest, asked, back);
+  EXPECT_EQ(back.color_from_depth.rotation, pose.rotation);
+  EXPECT_EQ(back.color_from_depth.translation, pose.translation);
+  EXPECT_EQ(back.rgbd_color, color);
+  EXPECT_EQ(back.rgbd_depth, depth);
+  EXPECT_EQ(back.region, region);
+  for (int y = region.y; y < region.bottom(); ++y) {
+    for (int x = region.x; x < region.right(); ++x) {
+      ASSERT_EQ(back.region.keeps(x, y), region.keeps(x, y)) << x << ' ' << y;
+    }
+  }
+  EXPECT_FALSE(back.options.smooth_depth);
+  EXPECT_TRUE(back.options.snap_edges);
+  EXPECT_EQ(back.options.discontinuity_threshold_m, 0.07);
+  EXPECT_EQ(back.jpeg_quality, 80);
+  EXPECT_EQ(back.depth_unit_m, 2e-4);
+}
+
+TEST(NodeMessages, ALayerKeepsItsDepthAndWithoutLossItsColours) {
+  const Rect region{4, 6, 40, 32};
+  const RemoteLayer sent = random_layer(region);
+  for (const int quality : {0, 95}) {
+    RemoteLayer layer = sent;
+    AnswerHead answer;
+    static_cast<NodeHead&>(answer) = head;
+    const auto bytes = write_answer(answer, layer, quality);
+    auto message = open_answer(bytes);
+    RemoteLayer back;
+    back.region = region;
+    read(message.rest, back);
+    EXPECT_EQ(back.depth, sent.depth);
+    for (int y = 0; y < region.height && quality == 0; ++y) {
+      for (int x = 0; x < region.width; ++x) {
+        if (sent.depth(x, y) == 0) continue;
+        ASSERT_EQ(back.color(x, y), sent.color(x, y)) << x << ' ' << y;
+      }
+    }
+    ASSERT_EQ(back.resolution.size(), sent.resolution.size());
+    for (std::size_t i = 0; i < sent.resolution.size(); ++i) {
+      EXPECT_NEAR(back.resolution.data()[i], sent.resolution.data()[i], 1.5e-4);
+      EXPECT_EQ(back.resolution.data()[i] == 0, sent.resolution.data()[i] == 0);
+    }
+  }
+}
+
+TEST(NodeMessages, AGlanceIsReadAsItWasWritten) {
+  const GlanceQuestion asked = question();
+  RgbdFrame images;
+  std::mt19937 random(4);
+  std::uniform_int_distribution<int> any(0, 255);
+  images.color.own().resize(64, 48);
+  for (Bgr& c : images.color.own()) {
+    c = {static_cast<std::uint8_t>(any(random)), static_cast<std::uint8_t>(any(random)),
+         static_cast<std::uint8_t>(any(random))};
+  }
+  images.depth.own().resize(40, 32);
+  for (int y = 0; y < 32; ++y) {
+    for (int x = 0; x < 40; ++x) {
+      images.depth.own()(x, y) = static_cast<std::uint16_t>(any(random) < 20 ? 0 : 4000 + x);
+    }
+  }
+  images.color_stamp_s = 3;
+  images.depth_stamp_s = 3.001;
+  Glance sent;
+  GlanceMaker(asked.camera, asked.wishes).make(images, sent);
+  ASSERT_GT(sent.points.size(), 20U);
+  sent.markers.push_back({5, {{{1.25, 2}, {3, 4}, {5, 6}, {7, 8.5}}}});
+  sent.depth_parts.push_back({2, 3, 9, 7});
+  const auto bytes = write_answer({}, sent, asked);
+  auto message = open_answer(bytes);
+  Glance back;
+  read(message.rest, asked, back);
+  EXPECT_EQ(back.color_stamp_s, 3);
+  EXPECT_EQ(back.depth_stamp_s, 3.001);
+  EXPECT_EQ(back.depth, sent.depth);
+  ASSERT_EQ(back.markers.size(), 1U);
+  EXPECT_EQ(back.markers[0].corners, sent.markers[0].corners);
+  ASSERT_EQ(back.points.size(), sent.points.size());
+  std::size_t colored = 0;
+  for (std::size_t i = 0; i < sent.points.size(); ++i) {
+    const GlancePoint& a = sent.points[i];
+    const GlancePoint& b = back.points[i];
+    ASSERT_EQ(a.column, b.column);
+    ASSERT_EQ(a.row, b.row);
+    ASSERT_EQ(a.has_color, b.has_color);
+    EXPECT_EQ(images.depth(b.column, b.row), back.depth(b.column, b.row));
+    if (!a.has_color) continue;
+    ++colored;
+    EXPECT_EQ(a.color, b.color);
+    EXPECT_EQ(a.even, b.even);
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_EQ(a.brightness[k] < 0, b.brightness[k] < 0);
+      EXPECT_NEAR(a.brightness[k], b.brightness[k], 1. / 32);
+    }
+  }
+  EXPECT_GT(colored, 10U);
+}
+
+// Cut off anywhere, or with any byte changed, a message is refused or read; nothing else happens.
+TEST(NodeMessages, BrokenOnesAreRefused) {
+  const GlanceQuestion asked = question();
+  const RigidTransform pose;
+  const Mask color = random_mask(64, 48, 1);
+  const Mask depth = random_mask(40, 32, 2);
+  const TiledRegion region(Rect{3, 5, 80, 50});
+  const Options options;
+  RemoteLayer layer = random_layer(region);
+  const auto read_question = [&](const std::vector<std::uint8_t>& bytes) {
+    auto message = open_question(bytes);
+    LayerQuestion read_one;
+    read(message.rest, asked, read_one);
+  };
+  const auto read_answer = [&](const std::vector<std::uint8_t>& bytes) {
+    auto message = open_answer(bytes);
+    RemoteLayer read_one;
+    read_one.region = region;
+    read(message.rest, read_one);
+  };
+  const auto try_all = [](const std::vector<std::uint8_t>& whole, const auto& read_one) {
+    ASSERT_NO_THROW(read_one(whole));
+    int refused = 0;
+    for (std::size_t size = 0; size < whole.size(); size += 1 + whole.size() / 300) {
+      EXPECT_THROW(read_one({whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)}),
+                   Error)
+          << size;
+    }
+    std::mt19937 random(1);
+    for (int i = 0; i < 300; ++i) {
+      auto changed = whole;
+      changed[random() % changed.size()] ^= static_cast<std::uint8_t>(1U << random() % 8);
+      try {
+        read_one(changed);
+      } catch (const Error&) {
+        ++refused;
+      }
+    }
+    EXPECT_GT(refused, 0);
+  };
+  try_all(write_question(head, {pose, color, depth, region, options}, 80, 2e-4), read_question);
+  try_all(write_answer({}, layer, 0), read_answer);
+}
+
+TEST(NodeMessages, SizesAreBounded) {
+  GlanceQuestion large = question();
+  large.user.width = 8000;
+  large.user.height = 8000;
+  const auto bytes = write_question(head, large);
+  EXPECT_EQ(error_of([&] {
+              auto message = open_question(bytes);
+              GlanceQuestion back;
+              read(message.rest, back);
+            }),
+            "expected a user's picture of at most 10 million pixels");
+}
+
+}  // namespace
+}  // namespace diminish
