@@ -3,16 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
-#include <optional>
 #include <tuple>
 
+#include "bars/bar_evidence.h"
 #include "geometry/point_projection.h"
 
 namespace diminish {
 namespace {
-
-using Place = BarViews::Place;
 
 // Of a pair of edges, in pixels of the user's picture.
 constexpr float least_parallel = 0.9996F;  ///< cosine
@@ -20,9 +17,9 @@ constexpr float narrowest_px = 5;
 constexpr float widest_px = 40;
 constexpr float farthest_apart_px = 60;  ///< along them, from one's entry to the other's
 /// How far a bar is looked at, outside the mask and inside.
-constexpr float outside_px = 40;
-constexpr float inside_px = 200;
-constexpr float sample_px = 6;
+constexpr int outside_px = 40;
+constexpr int inside_px = 200;
+constexpr int sample_px = 6;  ///< from one label that is looked at to the next
 
 // An edge that leaves the mask on its other side.
 constexpr float mate_cosine = 0.995F;
@@ -34,24 +31,16 @@ constexpr float mate_slope = 0.02F;  ///< ... and so much more for each pixel al
 constexpr float nearest_m = 0.01F;
 constexpr float step_m = 0.005F;
 constexpr int distances = 29;  ///< so many steps
-constexpr float refined_m = 0.012F;
-constexpr float fine_step_m = 0.004F;
+constexpr float refined_step_m = 0.004F;
+constexpr int refined_steps = 3;  ///< to both sides
 
 /// The share of places without depth is this much larger on the bar than beside it.
 constexpr float least_share = 0.5F;
 constexpr float plateau = 0.95F;  ///< of the largest share, where it is as good as that
-constexpr int fewest_known = 8;
-/// Beside the bar: so many pixels of the depth image away.
-constexpr float flank_near = 2.4F;
-constexpr float flank_far = 4.3F;
 
 /// Both edges are seen in the RGB-D camera's picture, as grey levels.
 constexpr float least_contrast = 10;
 constexpr float most_contrast = 30;  ///< more do not make it surer
-constexpr float edge_px = 1.5F;      ///< to both sides
-constexpr float edge_step_px = 5;
-constexpr int run = 5;  ///< of these steps, in which an edge keeps its sign
-constexpr int fewest_runs = 2;
 
 bool is_hidden(const Mask& occlusion, const Eigen::Vector2f& at) {
   const auto [x, y] = nearest_pixel(at);
@@ -67,8 +56,8 @@ float weight(const RimLine& line) {
 /// The plane that shows at most places along the line, as the user would see it.
 const BackgroundPlane* plane_behind(const BarSearch::Input& input, const Bar& bar) {
   std::array<int, BackgroundPlanes::most_planes> counts{};
-  for (float along = -outside_px; along <= inside_px; along += sample_px) {
-    const auto [x, y] = nearest_pixel(bar.at(along, 0));
+  for (int along = -outside_px; along <= inside_px; along += sample_px) {
+    const auto [x, y] = nearest_pixel(bar.at(static_cast<float>(along), 0));
     if (!input.surfaces.region.contains(x, y)) continue;
     const int plane = input.surfaces.label(x, y) - surface_label::first_plane;
     if (plane >= 0 && plane < static_cast<int>(input.planes.size())) {
@@ -87,89 +76,11 @@ BackgroundPlane in_front(const BackgroundPlane& plane, float distance_m) {
   return {plane.normal, plane.distance_m + distance_m};
 }
 
-/// Where the ray meets the plane; behind the camera if it does not.
-Eigen::Vector3f meet(const BackgroundPlane& plane, const Eigen::Vector3f& ray) {
-  const float inverse = plane.inverse_depth(ray.x(), ray.y());
-  return inverse > 1e-3F ? Eigen::Vector3f(ray / inverse) : Eigen::Vector3f(0, 0, -1);
-}
-
-/// Rays along a bar, at some distance from its middle.
-struct Strip {
-  static constexpr int most = 32;
-  std::array<Eigen::Vector3f, most> rays;
-  int count = 0;
-
-  Strip(const BarViews& views, const Bar& bar, float begin, float end, float side) {
-    const float step = std::max(sample_px, (end - begin) / (most - 1));
-    for (float along = begin; along <= end && count < most; along += step) {
-      rays[static_cast<std::size_t>(count++)] = views.ray(bar.at(along, side));
-    }
-  }
-};
-
-/// Of the places where the strip meets the plane, the share where no depth is measured that lies
-/// behind; nothing if few are known. Nothing, too, if most of them have depth: then it is drawn
-/// anyway.
-std::optional<float> bare_share(const BarViews& views, const Strip& strip,
-                                const BackgroundPlane& plane) {
-  int bare = 0;
-  int solid = 0;
-  int seen = 0;
-  for (int i = 0; i < strip.count; ++i) {
-    const Place place = views.look_at(meet(plane, strip.rays[static_cast<std::size_t>(i)]));
-    bare += place == Place::bare ? 1 : 0;
-    solid += place == Place::solid ? 1 : 0;
-    seen += place == Place::seen ? 1 : 0;
-  }
-  const int known = bare + solid + seen;
-  if (known < fewest_known || solid > bare) return std::nullopt;
-  return static_cast<float>(bare + solid) / static_cast<float>(known);
-}
-
-/// How clearly camera k's picture shows an edge, in grey levels: the mean over pieces of the size
-/// of each one's mean step.
-float edge_contrast(const BarViews& views, std::size_t k, const Bar& bar, float begin, float end,
-                    float side) {
-  float sum = 0;
-  int runs = 0;
-  float step = 0;
-  int steps = 0;
-  int i = 0;
-  for (float along = begin; along <= end; along += edge_step_px) {
-    const auto left = views.level(k, meet(bar.plane, views.ray(bar.at(along, side - edge_px))));
-    const auto right = views.level(k, meet(bar.plane, views.ray(bar.at(along, side + edge_px))));
-    if (left && right) {
-      step += *right - *left;
-      ++steps;
-    }
-    if (++i % run != 0) continue;
-    if (steps > run / 2) {
-      sum += std::abs(step) / static_cast<float>(steps);
-      ++runs;
-    }
-    step = 0;
-    steps = 0;
-  }
-  return runs < fewest_runs ? 0 : sum / static_cast<float>(runs);
-}
-
-/// Of the less clear edge, in the camera that shows both best.
-float contrast_of(const BarViews& views, const Bar& bar, float begin, float end) {
-  float best = 0;
-  for (std::size_t k = 0; k < views.size(); ++k) {
-    const float left = edge_contrast(views, k, bar, begin, end, -bar.width_px / 2);
-    if (left <= best) continue;
-    best =
-        std::max(best, std::min(left, edge_contrast(views, k, bar, begin, end, bar.width_px / 2)));
-  }
-  return best;
-}
-
 /// How far the bar can be followed inside the mask, up to `inside_px`.
 float depth_inside(const Mask& occlusion, const Bar& bar) {
-  float along = 1;
-  while (along < inside_px && is_hidden(occlusion, bar.at(along, 0))) ++along;
-  return along;
+  int along = 1;
+  while (along < inside_px && is_hidden(occlusion, bar.at(static_cast<float>(along), 0))) ++along;
+  return static_cast<float>(along);
 }
 
 /// Whether one of the bar's edges leaves the mask again where it would.
@@ -235,27 +146,12 @@ void BarSearch::judge(const Input& input, const RimLine& a, const RimLine& b) {
   const BackgroundPlane* const behind = plane_behind(input, bar);
   if (behind == nullptr) return;
 
-  const float outside = std::min(outside_px, static_cast<float>(std::min(a.length, b.length)));
+  const auto outside = static_cast<float>(std::min({outside_px, a.length, b.length}));
   const float end = std::max(std::abs(apart), depth_inside(input.occlusion, bar));
-  const Strip middle(views, bar, -outside, end, 0);
-  const float pixel = views.depth_pixel_px();
-  const auto flank = [&](float sign, float distance) {
-    return Strip(views, bar, -outside, end, sign * (bar.width_px / 2 + distance * pixel));
-  };
-  const std::array<Strip, 4> flanks = {flank(-1, flank_near), flank(-1, flank_far),
-                                       flank(1, flank_near), flank(1, flank_far)};
+  const BarHole hole(views, bar, -outside, end);
   std::array<float, distances> margins{};
   for (int i = 0; i < distances; ++i) {
-    const BackgroundPlane plane = in_front(*behind, distance_at(i));
-    const auto on = bare_share(views, middle, plane);
-    if (!on || *on < least_share) continue;
-    float beside = 0;
-    for (std::size_t side = 0; side < 2; ++side) {
-      const auto near = bare_share(views, flanks[2 * side], plane);
-      const auto far = bare_share(views, flanks[2 * side + 1], plane);
-      beside = std::max(beside, (near.value_or(1) + far.value_or(1)) / 2);
-    }
-    margins[static_cast<std::size_t>(i)] = *on - beside;
+    margins[static_cast<std::size_t>(i)] = hole.margin(in_front(*behind, distance_at(i)));
   }
   // Every range of distances is a bar that may be there: one that an RGB-D camera sees beside the
   // hole of another seems to be further in front.
@@ -276,10 +172,11 @@ void BarSearch::judge(const Input& input, const RimLine& a, const RimLine& b) {
     // Where exactly: as the RGB-D camera's picture shows its edges.
     float contrast = 0;
     Bar placed = bar;
-    for (float shift_m = -refined_m; shift_m <= refined_m; shift_m += fine_step_m) {
+    for (int i = -refined_steps; i <= refined_steps; ++i) {
+      const float shift_m = static_cast<float>(i) * refined_step_m;
       Bar moved = bar;
       moved.plane = in_front(*behind, sum_m / static_cast<float>(count) + shift_m);
-      const float its = contrast_of(views, moved, -outside, end);
+      const float its = edge_contrast(views, moved, -outside, end);
       if (its <= contrast) continue;
       contrast = its;
       placed.plane = moved.plane;
