@@ -14,11 +14,16 @@ target_link_options(diminish_build_options INTERFACE -Wl,-Bsymbolic-functions)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 sees overlaps in std::string's operator+ that are not there (GCC bug 105651).
   target_compile_options(diminish_build_options INTERFACE -Wno-restrict)
-  if(DIMINISH_PRECOMPILE_HEADERS)
+  if(DIMINISH_PRECOMPILE_HEADERS OR DIMINISH_UNITY_BUILD)
     # Nor does it tell any more that what it warns of is the standard library's own.
     target_compile_options(diminish_build_options INTERFACE -Wno-stringop-overflow -Wno-stringop-overread
       -Wno-array-bounds)
   endif()
+endif()
+if(DIMINISH_UNITY_BUILD)
+  # What stands in another file's unnamed namespace may well be hidden by a local name.
+  target_compile_options(diminish_build_options INTERFACE
+    -Wno-shadow $<$<CXX_COMPILER_ID:GNU>:-Wshadow=local> $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
 endif()
 if(DIMINISH_WARNINGS_AS_ERRORS)
   target_compile_options(diminish_build_options INTERFACE -Werror)
@@ -52,6 +57,37 @@ if(DIMINISH_BUILD_FUZZERS)
   add_compile_options(-fsanitize=fuzzer-no-link
     -fsanitize-coverage-allowlist=${PROJECT_SOURCE_DIR}/fuzz/coverage.txt)
 endif()
+
+# diminish_compile_together(TARGET FILE...): in a unity build up to eight FILEs of this folder are one for the
+# compiler, which reads the headers once for all of them. Names in their unnamed namespaces must differ.
+function(diminish_compile_together target)
+  if(NOT DIMINISH_UNITY_BUILD)
+    return()
+  endif()
+  set(files "")
+  foreach(file IN LISTS ARGN)
+    file(STRINGS ${file} kernels LIMIT_COUNT 1 REGEX "hwy/foreach_target\\.h")
+    if(NOT kernels) # which Highway compiles by their own names, once for each kind of CPU
+      list(APPEND files ${file})
+    endif()
+  endforeach()
+  list(LENGTH files count)
+  if(count EQUAL 0)
+    return()
+  endif()
+  file(RELATIVE_PATH room ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
+  list(GET files 0 first)
+  get_filename_component(first ${first} NAME_WE)
+  math(EXPR groups "(${count} + 7) / 8")
+  set(index 0)
+  foreach(file IN LISTS files)
+    math(EXPR group "${index} * ${groups} / ${count} + 1")
+    string(MAKE_C_IDENTIFIER "${room}_${first}_${group}" name)
+    set_source_files_properties(${file} TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP ${name})
+    math(EXPR index "${index} + 1")
+  endforeach()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+endfunction()
 
 # diminish_sources(FILE...): adds FILEs to the library. diminish_tests(FILE...): adds them to the tests.
 function(diminish_sources)

@@ -20,8 +20,6 @@
 namespace diminish {
 namespace {
 
-constexpr int done_with_warnings = 3;
-
 struct CalibrateIntrinsicsCommand {
   std::vector<std::filesystem::path> images;
   std::filesystem::path recording;

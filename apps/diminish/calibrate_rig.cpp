@@ -18,8 +18,6 @@
 namespace diminish {
 namespace {
 
-constexpr int done_with_warnings = 3;
-
 struct CalibrateRigCommand {
   LiveSetup setup;
   std::filesystem::path out;

@@ -4,7 +4,7 @@
 namespace diminish {
 namespace {
 
-std::string in_quotes(const std::string& plain) {
+std::string fish_string(const std::string& plain) {
   std::string result = "'";
   for (const char letter : plain) {
     if (letter == '\'' || letter == '\\') result += '\\';
@@ -28,13 +28,13 @@ std::string condition(const CommandTree& command) {
   if (!below.empty()) {
     result += (result.empty() ? "" : "; and ") + ("not __fish_seen_subcommand_from" + below);
   }
-  return in_quotes(result);
+  return fish_string(result);
 }
 
 std::string values(const CommandOption& option) {
   switch (option.kind) {
     case ValueKind::choice:
-      return " -a " + in_quotes(join(option.choices, " "));
+      return " -a " + fish_string(join(option.choices, " "));
     case ValueKind::file:
       return " -F";
     case ValueKind::folder:
@@ -56,7 +56,7 @@ std::string line(const std::string& where, const CommandOption& option) {
     names += is_long ? " -l " + name.substr(2) : " -s " + name.substr(1);
   }
   const std::string value = option.is_switch() ? "" : " -r" + values(option);
-  return start + names + value + " -d " + in_quotes(option.help) + "\n";
+  return start + names + value + " -d " + fish_string(option.help) + "\n";
 }
 
 }  // namespace
@@ -69,7 +69,7 @@ std::string fish_completion(const CommandTree& program) {
     const std::string where = condition(command);
     for (const CommandTree& below : command.commands) {
       result += "complete -c diminish -n " + where + " -a " + below.name + " -d " +
-                in_quotes(below.help) + "\n";
+                fish_string(below.help) + "\n";
     }
     for (const CommandOption& option : command.options) result += line(where, option);
   });

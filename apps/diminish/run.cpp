@@ -20,7 +20,7 @@ namespace {
 constexpr int some_frames_faulty = 3;
 constexpr int interrupted = 130;
 
-std::atomic<bool> stop_requested = false;
+std::atomic<bool> stop_run = false;
 
 struct RunCommand {
   std::filesystem::path recording;
@@ -49,21 +49,21 @@ int RunCommand::execute() const {
   ResultWriter writer(out, input.rig, options, source->frames_per_second(),
                       {.preview_only = preview, .force = force});
 
-  std::signal(SIGINT, [](int) { stop_requested = true; });
-  std::signal(SIGTERM, [](int) { stop_requested = true; });
+  std::signal(SIGINT, [](int) { stop_run = true; });
+  std::signal(SIGTERM, [](int) { stop_run = true; });
   runner.threads = threads;
   runner.reconstructions = !preview;
-  runner.stop = &stop_requested;
+  runner.stop = &stop_run;
   runner.progress = [total = source->frame_count()](std::size_t done) {
     show_progress(done, total);
   };
   run(*source, input.rig, input.scene, options, writer, runner);
-  const std::string video_problem = writer.finish(stop_requested);
+  const std::string video_problem = writer.finish(stop_run);
   if (!video_problem.empty()) fmt::print(stderr, "diminish: {}\n", video_problem);
 
   fmt::print("{}\n", writer.table());
   fmt::print("Written to {}\n", out.string());
-  if (stop_requested) return interrupted;
+  if (stop_run) return interrupted;
   return writer.faulty_frames() > 0 ? some_frames_faulty : 0;
 }
 

@@ -21,7 +21,7 @@ std::string escaped(const std::string& plain) {
   return result;
 }
 
-std::string action(const CommandOption& option) {
+std::string zsh_action(const CommandOption& option) {
   switch (option.kind) {
     case ValueKind::choice:
       return "(" + join(option.choices, " ") + ")";
@@ -44,7 +44,7 @@ std::string function_name(const CommandTree& command) {
 
 /// One line of _arguments for each of the option's names.
 std::string specifications(const CommandOption& option, int position) {
-  const std::string value = ":" + escaped(option.value) + ":" + action(option);
+  const std::string value = ":" + escaped(option.value) + ":" + zsh_action(option);
   if (option.is_argument()) {
     const std::string where = option.repeated ? "*" : std::to_string(position);
     return "    '" + where + value + "' \\\n";
