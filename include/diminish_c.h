@@ -65,7 +65,7 @@ typedef struct diminish_output {
   const char* messages; /* what could not be done, a line each; empty: nothing */
 } diminish_output;
 
-/* "0.1.0" */
+/* Such as "0.2.0" */
 DIMINISH_C_API const char* diminish_version(void);
 
 /* Of the calling thread's last call that failed; one line, until its next. */
