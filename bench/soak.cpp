@@ -4,12 +4,14 @@
 //
 // The recording is played forwards and backwards, at 30 frames a second of its own time, as fast
 // as the machine can. It should find its poses by markers: poses from files end with them. Prints
-// twelve stretches of the frames; ends with 1 if memory, handles or threads grow from the third on,
-// or if a frame takes a fifth more CPU time in the last two than in the third and fourth.
+// 24 stretches of the frames; ends with 1 if memory, handles or threads grow from the third on,
+// or if a frame takes a fifth more CPU time in the last two than in the third and fourth. Stopped
+// by ctrl-C or SIGTERM, it judges what ran until then, and ends with 3.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <ctime>
 #include <exception>
@@ -23,10 +25,12 @@
 namespace diminish {
 namespace {
 
-constexpr std::size_t stretches = 12;
+constexpr std::size_t stretches = 24;
 constexpr double frames_per_second = 30;
+volatile std::sig_atomic_t is_stopped = 0;
 
 struct Stretch {
+  std::size_t end = 0;  ///< frames until then
   ProcessState state;
   double cpu_ms = 0;  ///< of all threads, a frame: other programs do not slow it
   double median_ms = 0, p99_ms = 0;
@@ -121,6 +125,40 @@ class Player {
   std::size_t with_object_ = 0;
 };
 
+/// Prints it. A stretch that was stopped as it began tells nothing.
+void add(std::size_t end, double begun_ms, std::vector<double>& times_ms,
+         std::vector<Stretch>& done) {
+  constexpr std::size_t fewest_frames = 40;
+  if (times_ms.size() < fewest_frames) return;
+  const Stretch& stretch = done.emplace_back(Stretch{
+      end, ProcessState::now(), (cpu_ms() - begun_ms) / static_cast<double>(times_ms.size()),
+      quantile(times_ms, 0.5), quantile(times_ms, 0.99)});
+  std::printf("%10zu %10.2f %10.2f %10.2f %10.1f %9ld %9ld\n", end, stretch.cpu_ms,
+              stretch.median_ms, stretch.p99_ms, stretch.state.memory_mb, stretch.state.handles,
+              stretch.state.threads);
+  std::fflush(stdout);
+}
+
+/// Whether it is the same at the end as at the start. Too few stretches are not.
+bool is_steady(const std::vector<Stretch>& done) {
+  constexpr std::size_t fewest = 6;
+  if (done.size() < fewest) {
+    std::printf("too short to judge: %zu of %zu stretches\n", done.size(), stretches);
+    return false;
+  }
+  const Stretch& start = done[2];
+  const Stretch& end = done.back();
+  const double start_ms = done[2].cpu_ms + done[3].cpu_ms;
+  const double end_ms = done[done.size() - 2].cpu_ms + end.cpu_ms;
+  constexpr double steady_memory = 1.01;
+  constexpr double steady_time = 1.2;
+  std::printf("frames %zu to %zu: CPU time x %.3f, memory x %.4f\n", start.end, end.end,
+              end_ms / start_ms, end.state.memory_mb / start.state.memory_mb);
+  return end.state.memory_mb <= steady_memory * start.state.memory_mb &&
+         end.state.handles <= start.state.handles && end.state.threads <= start.state.threads &&
+         end_ms <= steady_time * start_ms;
+}
+
 /// Returns whether it is the same at the end as at the start.
 bool soak(const Recording& recording, std::size_t frames, const Options& options, int shrinkage) {
   Player player(recording, options, shrinkage);
@@ -132,31 +170,17 @@ bool soak(const Recording& recording, std::size_t frames, const Options& options
   std::vector<Stretch> done;
   std::vector<double> times_ms;
   times_ms.reserve(frames / stretches + 1);
-  for (std::size_t k = 0; k < stretches; ++k) {
+  std::size_t played = 0;
+  for (std::size_t k = 0; k < stretches && is_stopped == 0; ++k) {
     times_ms.clear();
     const double begun_ms = cpu_ms();
     const std::size_t end = frames * (k + 1) / stretches;
-    for (std::size_t i = frames * k / stretches; i < end; ++i) times_ms.push_back(player.next_ms());
-    const Stretch& stretch = done.emplace_back(
-        Stretch{ProcessState::now(), (cpu_ms() - begun_ms) / static_cast<double>(times_ms.size()),
-                quantile(times_ms, 0.5), quantile(times_ms, 0.99)});
-    std::printf("%10zu %10.2f %10.2f %10.2f %10.1f %9ld %9ld\n", end, stretch.cpu_ms,
-                stretch.median_ms, stretch.p99_ms, stretch.state.memory_mb, stretch.state.handles,
-                stretch.state.threads);
-    std::fflush(stdout);
+    for (; played < end && is_stopped == 0; ++played) times_ms.push_back(player.next_ms());
+    add(played, begun_ms, times_ms, done);
   }
-  const Stretch& start = done[2];
-  const Stretch& end = done.back();
-  const double start_ms = done[2].cpu_ms + done[3].cpu_ms;
-  const double end_ms = done[stretches - 2].cpu_ms + end.cpu_ms;
-  constexpr double steady_memory = 1.01;
-  constexpr double steady_time = 1.2;
+  if (is_stopped != 0) std::printf("stopped after %zu of %zu frames\n", played, frames);
   std::printf("an object in %zu frames\n", player.with_object());
-  std::printf("last to first: CPU time %.3f, memory %.4f\n", end_ms / start_ms,
-              end.state.memory_mb / start.state.memory_mb);
-  return end.state.memory_mb <= steady_memory * start.state.memory_mb &&
-         end.state.handles <= start.state.handles && end.state.threads <= start.state.threads &&
-         end_ms <= steady_time * start_ms;
+  return is_steady(done);
 }
 
 }  // namespace
@@ -173,9 +197,13 @@ int main(int argc, char** argv) try {
   }
   diminish::Options options;
   if (argc > 3) options.memory = argv[3];
+  for (const int signal : {SIGINT, SIGTERM}) {
+    std::signal(signal, [](int) { diminish::is_stopped = 1; });
+  }
   const bool is_steady =
       diminish::soak(diminish::load_recording(argv[1]), frames, options, shrinkage);
   std::puts(is_steady ? "steady" : "NOT steady");
+  if (diminish::is_stopped != 0) return 3;
   return is_steady ? 0 : 1;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "%s\n", error.what());
