@@ -32,14 +32,18 @@ std::optional<double> number_of(const std::filesystem::path& file) {
   return word ? parse_number(*word) : std::nullopt;
 }
 
-/// The largest image that a camera of the rig sends, bytes.
-double largest_image(const Rig& rig, const std::string& name) {
-  const auto pixels = [](const Intrinsics& sensor) {
-    return static_cast<double>(sensor.width) * sensor.height;
+/// The largest image that a ROS 2 camera of the rig sends as it is, bytes; 0 if it compresses them,
+/// as a `diminish camera-node` does. uri: "ros2:..."
+double largest_raw_image(const Rig& rig, const std::string& name, const CameraUri& uri) {
+  const auto bytes = [&](const char* stream, const Intrinsics& sensor, double bytes_a_pixel) {
+    const std::string topic = "/" + uri.text_of(stream, "");
+    const bool is_raw =
+        topic != "/" && !topic.ends_with("/compressed") && !topic.ends_with("/compressedDepth");
+    return is_raw ? bytes_a_pixel * sensor.width * sensor.height : 0;
   };
   const RgbdCamera* const camera = find_rgbd_camera(rig, name);
-  if (!camera) return 3 * pixels(rig.color);
-  return std::max(3 * pixels(camera->color), 2 * pixels(camera->depth));
+  if (!camera) return bytes("color", rig.color, 3);
+  return std::max(bytes("color", camera->color, 3), bytes("depth", camera->depth, 2));
 }
 
 void check_udp_buffers(const Rig& rig, const std::vector<LiveCamera>& cameras,
@@ -49,10 +53,11 @@ void check_udp_buffers(const Rig& rig, const std::vector<LiveCamera>& cameras,
   double needed = 0;
   std::string names;
   for (const LiveCamera& camera : cameras) {
-    const bool is_remote = camera.uri.find("ros2:") != std::string::npos &&
-                           camera.uri.find("interface=") != std::string::npos;
-    const double image = largest_image(rig, camera.name);
-    if (!is_remote || image <= *most) continue;
+    const std::size_t begin = camera.uri.find("ros2:");  // another scheme may stand before it
+    if (begin == std::string::npos) continue;
+    const CameraUri uri = parse_camera_uri(camera.uri.substr(begin));
+    const double image = largest_raw_image(rig, camera.name, uri);
+    if (!uri.has("interface") || image <= *most) continue;
     needed = std::max(needed, image);
     names += (names.empty() ? "" : ", ") + camera.name;
   }

@@ -44,6 +44,12 @@ TEST_F(HostTraps, UdpBuffersMustHoldAnImage) {
   ASSERT_THAT(found, SizeIs(1));
   EXPECT_EQ(found[0].code, "udp-buffer");
   EXPECT_THAT(found[0].figure, HasSubstr("212992 bytes, an image 921600"));
+  // These are small.
+  EXPECT_THAT(traps({{"rgbd0", "ros2:/a?color=b/compressed&interface=10.0.0.1"},
+                     {"rgbd0", "ros2:/a?color=compressed&interface=10.0.0.1"},
+                     {"rgbd0", "ros2:/a?depth=b/compressedDepth&interface=10.0.0.1"},
+                     {"rgbd0", "ros2:/a?interface=10.0.0.1"}}),
+              IsEmpty());
   machine_.write("proc/sys/net/core/rmem_max", "8388608\n");
   EXPECT_THAT(traps({{"rgbd0", "ros2:/a?color=b&interface=10.0.0.1"}}), IsEmpty());
 }
