@@ -8,14 +8,18 @@
 
 #include "core/bounded_queue.h"
 #include "core/set_text.h"
+#include "core/text.h"
 #include "core/thread_name.h"
 #include "diminish/error.h"
+#include "setup/calibrate/yaml_edit.h"
+#include "sink/partial_file.h"
 #include "sink/recording_folder.h"
 
 namespace diminish {
 namespace {
 
 constexpr std::size_t most_waiting = 8;
+constexpr std::size_t most_rig_bytes = 1 << 20;
 
 }  // namespace
 
@@ -26,8 +30,10 @@ struct RecordingWriter::Implementation {
   void offer(std::shared_ptr<const LiveFrame> frame);
   void finish();
   void work();
+  void write_rig(const std::filesystem::path& rig_file, const Rig& rig);
 
   RecordingFolder folder_;
+  bool keeps_poses_;  ///< they come from where a recording does not reach
   BoundedQueue<std::shared_ptr<const LiveFrame>> waiting_{most_waiting};
   std::mutex mutex_;
   RecordingStatus status_;
@@ -40,11 +46,22 @@ RecordingWriter::Implementation::Implementation(std::filesystem::path folder,
                                                 const Rig& rig,
                                                 const std::filesystem::path& scene_file,
                                                 const Scene& scene)
-    : folder_(std::move(folder), rig, scene_file, scene, RecordingFolder::Pictures::jpeg) {
-  copy_to(rig_file, folder_.path() / "rig.yaml");
+    : folder_(std::move(folder), rig, scene_file, scene, RecordingFolder::Pictures::jpeg),
+      keeps_poses_(rig.pose_source == "tf") {
+  write_rig(rig_file, rig);
   status_.active = true;
   status_.folder = folder_.path().string();
   thread_ = std::thread([this] { work(); });
+}
+
+void RecordingWriter::Implementation::write_rig(const std::filesystem::path& rig_file,
+                                                const Rig& rig) {
+  const std::filesystem::path copy = folder_.path() / "rig.yaml";
+  copy_to(rig_file, copy);
+  if (!keeps_poses_) return;
+  const std::string pose = folder_.keep_poses(rig);
+  const std::string text = read_text_file(copy, most_rig_bytes);
+  write_file(copy, set_yaml(text, {key("pose")}, pose, rig_file));
 }
 
 void RecordingWriter::Implementation::finish() {
@@ -66,6 +83,9 @@ void RecordingWriter::Implementation::work() {
     try {
       // Only this thread changes the number of frames.
       is_new = folder_.write((*frame)->input, fmt::format("{:06}", status_.frames));
+      if (is_new && keeps_poses_) {
+        folder_.add_poses((*frame)->input, (*frame)->result.report.poses);
+      }
     } catch (const std::exception& error) {
       set_text(problem, error.what());
     } catch (...) {

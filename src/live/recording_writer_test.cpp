@@ -6,8 +6,11 @@
 #include <cmath>
 #include <thread>
 
+#include "core/text.h"
 #include "diminish/frame_source.h"
+#include "diminish/pose_source.h"
 #include "expect_error.h"
+#include "geometry/rotation.h"
 #include "paths.h"
 #include "same_pixels.h"
 #include "temporary_folder.h"
@@ -167,6 +170,59 @@ TEST_P(CalendarWriter, AFolderThatGoesAwayEndsItWithAReason) {
   writer->finish();
   EXPECT_FALSE(writer->status().active);
   EXPECT_THAT(writer->status().problem, HasSubstr("cannot be written"));
+}
+
+/// Turned and moved, by another amount for each camera and frame.
+RigidTransform some_pose(std::size_t camera, std::size_t frame) {
+  const double x = 0.1 * static_cast<double>(frame) + static_cast<double>(camera);
+  return {rotation_by({0.3 * x, 0.1, -0.2 * x}), {x, 1 - x, 0.5}};
+}
+
+TEST_P(CalendarWriter, KeepsThePosesThatARobotTold) {
+  std::string rig_yaml = read_text_file(source_ / "rig.yaml", 1 << 20);
+  rig_yaml +=
+      "pose:  # of a robot\n  source: tf\n  world: map\n"
+      "  frames: {color: eye, rgbd0: camera}\n";
+  folder_.write("rig.yaml", rig_yaml);
+  recording_.rig.pose_source = "tf";
+  const RigidTransform depth_from_posed{rotation_by({0, 0.2, 0}), {0.1, 0, 0}};
+  recording_.rig.rgbd[0].depth_from_posed = depth_from_posed;
+  const auto copy = folder_.path() / "copy";
+  std::vector<FrameSet> original = frames_of(source_);
+  {
+    RecordingWriter writer(copy, folder_.path() / "rig.yaml", recording_.rig,
+                           source_ / "scene.yaml", recording_.scene);
+    for (std::size_t i = 0; i < original.size(); ++i) {
+      auto live = std::make_shared<LiveFrame>();
+      live->input = original[i];
+      // In one frame no transform was there.
+      live->result.report.poses.depth_from_world.resize(1);
+      if (i != 1) {
+        live->result.report.poses.color_from_world = some_pose(0, i);
+        live->result.report.poses.depth_from_world[0] = depth_from_posed * some_pose(1, i);
+      }
+      offer_and_wait(writer, live);
+    }
+    EXPECT_EQ(writer.status().problem, "");
+  }
+  const Recording read = load_recording(copy);
+  EXPECT_EQ(read.rig.pose_source, "file");
+  const auto poses = Registry<PoseSource>::get("file")(read.rig, read.scene);
+  const std::vector<FrameSet> frames = frames_of(copy);
+  ASSERT_EQ(frames.size(), original.size());
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    Poses found;
+    found.depth_from_world.resize(1);
+    poses->estimate(frames[i], {}, found);
+    ASSERT_EQ(found.color_from_world.has_value(), i != 1) << i;
+    if (i == 1) continue;
+    const auto expect_near = [&](const RigidTransform& a, const RigidTransform& b) {
+      EXPECT_LT((a.rotation - b.rotation).norm() + (a.translation - b.translation).norm(), 1e-7);
+    };
+    expect_near(*found.color_from_world, some_pose(0, i));
+    // The recording's rig.yaml is the one that was copied: without depth_from_posed.
+    expect_near(*found.depth_from_world[0], some_pose(1, i));
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Recordings, CalendarWriter, ::testing::Values("calendar"));

@@ -11,6 +11,7 @@
 #include "core/mat.h"
 #include "diminish/error.h"
 #include "sink/partial_file.h"
+#include "sink/pose_line.h"
 
 namespace diminish {
 namespace {
@@ -135,6 +136,42 @@ void RecordingFolder::write_image(Stream& stream, const InputImage<Pixel>& image
   }
   write_file(folder_ / file, {reinterpret_cast<const char*>(bytes_.data()), bytes_.size()});
   add(stream, stamp_s, file);
+}
+
+std::string RecordingFolder::keep_poses(const Rig& rig) {
+  std::string files;
+  const auto begin = [&](const std::string& camera) {
+    Stream& list = pose_lists_.emplace_back();
+    const std::string name = camera + "_poses.txt";
+    list.list_file = folder_ / name;
+    list.list.open(list.list_file);
+    append(list, pose_list_head);
+    files += fmt::format("{}{}: {}", files.empty() ? "" : ", ", camera, name);
+  };
+  begin("color");
+  for (const RgbdCamera& camera : rig.rgbd) {
+    begin(camera.name);
+    posed_from_depth_.push_back(camera.depth_from_posed.inverse());
+  }
+  return "{source: file, files: {" + files + "}}";
+}
+
+void RecordingFolder::add_poses(const FrameSet& frame, const Poses& poses) {
+  if (poses.color_from_world) add_pose(pose_lists_[0], frame.stamp_s, *poses.color_from_world);
+  for (std::size_t k = 0; k < poses.depth_from_world.size(); ++k) {
+    const auto& depth_from_world = poses.depth_from_world[k];
+    if (!depth_from_world || frame.rgbd[k].depth.empty()) continue;
+    add_pose(pose_lists_[1 + k], frame.rgbd[k].depth_stamp_s,
+             posed_from_depth_[k] * *depth_from_world);
+  }
+}
+
+void RecordingFolder::add_pose(Stream& list, double stamp_s,
+                               const RigidTransform& camera_from_world) {
+  stamp_s += clock_shift_s_;
+  if (stamp_s <= list.last_stamp_s) return;  // two frames may share an image
+  append(list, pose_line(stamp_s, camera_from_world));
+  list.last_stamp_s = stamp_s;
 }
 
 void RecordingFolder::append(Stream& stream, const std::string& line) {

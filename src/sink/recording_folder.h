@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "diminish/frame_set.h"
+#include "diminish/poses.h"
 #include "diminish/rig.h"
 #include "diminish/scene.h"
 
@@ -37,6 +38,12 @@ class RecordingFolder {
   /// timestamp of the last one it is not, and nothing is written. Throws Error.
   bool write(const FrameSet& frame, const std::string& name);
 
+  /// Begins a list of poses for each camera. Returns what rig.yaml has to say as `pose`. Throws
+  /// Error.
+  std::string keep_poses(const Rig& rig);
+  /// Adds those of the frame that was written last. Throws Error.
+  void add_poses(const FrameSet& frame, const Poses& poses);
+
  private:
   /// A sensor's folder and list.
   struct Stream {
@@ -58,6 +65,7 @@ class RecordingFolder {
   void follow_clock(double stamp_s);
   /// A line is written whole or not at all. Throws Error.
   static void append(Stream& stream, const std::string& line);
+  void add_pose(Stream& list, double stamp_s, const RigidTransform& camera_from_world);
   static void add(Stream& stream, double stamp_s, const std::string& file);
 
   std::filesystem::path folder_, scene_file_;
@@ -65,6 +73,8 @@ class RecordingFolder {
   Stream color_;
   std::vector<Stream> rgbd_color_;
   std::vector<std::optional<Stream>> rgbd_depth_;  ///< of cameras that measure depth
+  std::vector<Stream> pose_lists_;                 ///< of the colour camera, then the others
+  std::vector<RigidTransform> posed_from_depth_;   ///< of these
   double clock_shift_s_ = 0;                       ///< added to all timestamps
   std::vector<std::uint8_t> bytes_;
 };

@@ -7,26 +7,18 @@
 #include "diminish/occluder_settings.h"
 #include "diminish/scan.h"
 #include "sink/partial_file.h"
+#include "sink/pose_line.h"
 #include "sink/recording_folder.h"
 #include "source/rig_yaml.h"
 
 namespace diminish {
 namespace {
 
-/// A line of a TUM list: world_from_camera.
-std::string pose_line(double stamp_s, const RigidTransform& camera_from_world) {
-  const RigidTransform world_from_camera = camera_from_world.inverse();
-  const Eigen::Quaterniond q(world_from_camera.rotation);
-  const Eigen::Vector3d& t = world_from_camera.translation;
-  return fmt::format("{:.6f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f}\n", stamp_s, t.x(),
-                     t.y(), t.z(), q.x(), q.y(), q.z(), q.w());
-}
-
 /// Writes each camera's list. Returns what rig.yaml has to say of them.
 std::string write_poses(const Scan& scan, const std::filesystem::path& folder) {
   std::string files;
   const auto write = [&](const std::string& camera, const auto& pose_of) {
-    std::string list = "# timestamp tx ty tz qx qy qz qw: world_from_camera\n";
+    std::string list = pose_list_head;
     for (const PosedFrame& posed : scan.frames) {
       if (const auto& pose = pose_of(posed)) list += pose_line(posed.frame.stamp_s, *pose);
     }
