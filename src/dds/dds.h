@@ -28,6 +28,9 @@ struct Network {
   /// The folder with this participant's keys (KeyFiles): only those with keys of the same authority
   /// see it, and are seen. Empty: no keys, everybody who has none.
   std::string keys;
+  /// Messages travel in pieces of one packet of Ethernet each, so that one that gets lost is all
+  /// that has to be sent again. Otherwise in pieces of up to 64 kB, which cost less.
+  bool in_packets = false;
 };
 
 /// ROS_DOMAIN_ID from the environment, else 0. Throws Error if it is not a number from 0 to 232.

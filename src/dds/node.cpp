@@ -44,6 +44,8 @@ constexpr std::uint32_t most_processes = 32;
 /// Room for a few pictures of several megabytes.
 constexpr std::uint32_t segment_bytes = 32u << 20;
 constexpr std::uint32_t socket_bytes = 8u << 20;
+/// Of 1500 that Ethernet carries: without the heads of IP and UDP.
+constexpr std::uint32_t packet_bytes = 1472;
 /// How what is sent is spread over time, where there is a limit.
 constexpr const char* flow_controller_name = "limited";
 constexpr std::uint64_t flow_period_ms = 5;
@@ -76,6 +78,7 @@ DomainParticipantQos participant_qos(const Network& network) {
   udp->interfaceWhiteList = {address};
   udp->sendBufferSize = socket_bytes;
   udp->receiveBufferSize = socket_bytes;
+  if (network.in_packets) udp->maxMessageSize = packet_bytes;
   if (network.interface.empty()) {
     udp->maxInitialPeersRange = most_processes;
     Locator_t peer;
@@ -216,11 +219,12 @@ eprosima::fastdds::dds::Topic* Node::Implementation::topic(const Topic& topic) {
 
 std::shared_ptr<Node> Node::open(const Network& network) {
   static std::mutex mutex;
-  static std::map<std::tuple<int, std::string, bool, double, std::string>, std::weak_ptr<Node>>
+  static std::map<std::tuple<int, std::string, bool, double, std::string, bool>,
+                  std::weak_ptr<Node>>
       nodes;
   const std::lock_guard lock(mutex);
   std::weak_ptr<Node>& known = nodes[{network.domain, network.interface, network.shared_memory,
-                                      network.most_mbits, network.keys}];
+                                      network.most_mbits, network.keys, network.in_packets}];
   if (auto node = known.lock()) return node;
   const std::shared_ptr<Node> node(new Node(network));
   known = node;

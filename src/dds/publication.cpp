@@ -10,7 +10,11 @@ namespace {
 using namespace eprosima::fastdds::dds;
 
 constexpr int newest_depth = 2;
+/// Of what may have to be sent again.
+constexpr int reliable_depth = 8;
 constexpr int kept_depth = 16;
+/// While somebody has not received all, it is asked this often what is missing.
+constexpr std::uint32_t repair_ns = 5'000'000;
 
 DataWriterQos writer_qos(Delivery delivery) {
   DataWriterQos qos;
@@ -19,7 +23,13 @@ DataWriterQos writer_qos(Delivery delivery) {
   qos.durability().kind =
       delivery == Delivery::kept ? TRANSIENT_LOCAL_DURABILITY_QOS : VOLATILE_DURABILITY_QOS;
   qos.history().kind = KEEP_LAST_HISTORY_QOS;
-  qos.history().depth = delivery == Delivery::kept ? kept_depth : newest_depth;
+  qos.history().depth = delivery == Delivery::kept       ? kept_depth
+                        : delivery == Delivery::reliable ? reliable_depth
+                                                         : newest_depth;
+  // What is lost is missed, and sent again, within some milliseconds, not seconds.
+  auto& times = qos.reliable_writer_qos().times;
+  times.heartbeatPeriod = {0, repair_ns};
+  times.nackResponseDelay = {0, 0};
   qos.data_sharing().off();
   // Large messages go in pieces, on a thread of their own.
   qos.publish_mode().kind = ASYNCHRONOUS_PUBLISH_MODE;

@@ -58,6 +58,7 @@ DataReaderQos reader_qos(Delivery delivery) {
   qos.history().depth = is_newest                    ? newest_depth
                         : delivery == Delivery::kept ? kept_depth
                                                      : reliable_depth;
+  qos.reliable_reader_qos().times.heartbeatResponseDelay = {0, 0};
   qos.data_sharing().off();
   // What a message claims to be is not allocated: each has the room that the type says, which the
   // machine gives where it is written.
