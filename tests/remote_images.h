@@ -28,7 +28,8 @@ class NodeInProcess {
     question_.camera = recording.rig.rgbd[camera];
     question_.user = recording.rig.color;
     question_.wishes = {recording.scene.marker_dictionary,
-                        PoseRefinement::usual_spacings_px(recording.rig.color), samples};
+                        PoseRefinement::usual_spacings_px(recording.rig.color), samples,
+                        settings.depth_unit_m == 0};
   }
 
   /// Takes the images out of the frame; the node keeps them.

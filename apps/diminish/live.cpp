@@ -32,10 +32,12 @@ void print_remote(const std::string& name, const RemoteStatus& remote) {
   const double frames = static_cast<double>(std::max<std::size_t>(remote.frames, 1));
   fmt::print(
       "{}: asked about {} frames, {} glances came; {} contributions asked for, {} came, after "
-      "{:.1f} ms, {:.1f} of them on the way; {:.1f} kB a frame came, {:.1f} kB went\n",
+      "{:.1f} ms, {:.1f} of them on the way; {:.1f} kB a frame came, {:.1f} kB went, at a cost "
+      "here "
+      "of {:.2f} ms\n",
       name, remote.frames, remote.glances, remote.asked_layers, remote.layers, remote.layer_ms,
       remote.way_ms, static_cast<double>(remote.bytes_received) / 1e3 / frames,
-      static_cast<double>(remote.bytes_sent) / 1e3 / frames);
+      static_cast<double>(remote.bytes_sent) / 1e3 / frames, remote.own_ms);
 }
 
 void print_summary(const LiveStatus& status, const LiveRun& run) {

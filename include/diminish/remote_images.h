@@ -50,10 +50,9 @@ struct RemoteDrawing {
 
 /// What a remote camera sees of the user's view, without the objects.
 struct RemoteLayer {
-  Rect region;                 ///< the images' place in the user's picture
-  Image<Bgr> color;            ///< unspecified where `depth` is 0
-  Image<std::uint16_t> depth;  ///< z in the colour camera's frame, in `depth_unit_m`; 0: nothing
-  double depth_unit_m = 1e-4;
+  Rect region;             ///< the images' place in the user's picture
+  Image<Bgr> color;        ///< unspecified where nothing is seen
+  Image<float> inverse_z;  ///< 1 / z in the colour camera's frame, in 1/m; 0: nothing is seen
   /// Pixels of the camera's colour image for each of the picture, by the cells of ConfidenceGrid; 0
   /// where the cell's corners are not all drawn.
   Image<float> resolution;

@@ -10,11 +10,12 @@
 #include <random>
 #include <thread>
 
-#include "camera/ros2_address.h"
-#include "dds/dds.h"
+#include "core/set_text.h"
+#include "core/thread_name.h"
+#include "core/tracing.h"
 #include "diminish/error.h"
 #include "live/node_clock.h"
-#include "live/render_node.h"
+#include "live/node_network.h"
 #include "live/sliding_window.h"
 #include "pose/pose_refinement.h"
 #include "remote/asked_images.h"
@@ -32,17 +33,20 @@ constexpr double silent_after_s = 1;
 constexpr std::size_t most_asked = 8;
 
 RemoteSettings parse_settings(const CameraUri& uri) {
-  std::vector<std::string> known = {"colors", "quality", "depth_step", "wait"};
+  std::vector<std::string> known = {"lossless", "quality", "depth_step", "wait"};
   known.insert(known.end(), std::begin(node_network_parameters), std::end(node_network_parameters));
   uri.expect_parameters(known);
   RemoteSettings settings;
-  const std::string colors = uri.text_of("colors", "jpeg");
-  if (colors != "jpeg" && colors != "lossless") {
-    uri.fail("colors: expected jpeg or lossless, got '" + colors + "'");
+  if (uri.has("lossless")) {
+    if (uri.has("quality") || uri.has("depth_step")) {
+      uri.fail("expected lossless, or quality and depth_step");
+    }
+    settings.jpeg_quality = 0;
+    settings.depth_unit_m = 0;
+  } else {
+    settings.jpeg_quality = static_cast<int>(uri.number("quality", settings.jpeg_quality, 1, 100));
+    settings.depth_unit_m = 1e-3 * uri.number("depth_step", 1e3 * settings.depth_unit_m, 0.01, 100);
   }
-  const double quality = uri.number("quality", settings.jpeg_quality, 1, 100);
-  settings.jpeg_quality = colors == "jpeg" ? static_cast<int>(quality) : 0;
-  settings.depth_unit_m = 1e-3 * uri.number("depth_step", 1e3 * settings.depth_unit_m, 0.01, 100);
   settings.wait_s = 1e-3 * uri.number("wait", 1e3 * settings.wait_s, 1, 60'000);
   return settings;
 }
@@ -59,6 +63,20 @@ GlanceQuestion question_of(const RemoteCamera::Setting& setting) {
   return question;
 }
 
+/// Adds the time that this thread works.
+class OwnTime {
+ public:
+  explicit OwnTime(std::atomic<std::int64_t>& sum_ns)
+      : sum_ns_(sum_ns), begin_ns_(tracing::thread_now_ns()) {}
+  ~OwnTime() { sum_ns_ += tracing::thread_now_ns() - begin_ns_; }
+  OwnTime(const OwnTime&) = delete;
+  OwnTime& operator=(const OwnTime&) = delete;
+
+ private:
+  std::atomic<std::int64_t>& sum_ns_;
+  std::int64_t begin_ns_;
+};
+
 std::uint64_t random_number() {
   std::random_device device;
   return std::uint64_t{device()} << 32 | device();
@@ -71,11 +89,12 @@ struct RemoteCamera::Implementation {
       : camera(camera_), question(question_of(setting)) {
     const CameraUri uri = parse_camera_uri(camera.uri);
     settings = parse_settings(uri);
+    question.wishes.exact = settings.depth_unit_m == 0;
     if (!setting.camera.measures_depth) {
       uri.fail("expected a camera that measures depth, " + camera.name + " does not");
     }
     const auto delivery = uri.has("reliable") ? dds::Delivery::reliable : dds::Delivery::newest;
-    const auto node = dds::Node::open(parse_ros2_network(uri));
+    const auto node = dds::Node::open(node_network(uri));
     answers.emplace(node);
     answers->add({ros2_topic(uri, uri.target, "answer"), node_answer_type}, delivery);
     questions = std::make_shared<dds::Publication>(
@@ -90,6 +109,7 @@ struct RemoteCamera::Implementation {
   }
 
   std::shared_ptr<AskedImages> ask(double stamp_s, double tolerance_s) {
+    const OwnTime time(own_ns);
     GlanceQuestion asked = question;
     std::shared_ptr<AskedImages> images;
     {
@@ -116,16 +136,24 @@ struct RemoteCamera::Implementation {
   }
 
   void receive() {
+    name_this_thread("node answers");
     dds::Received received;
     while (!is_stopped) {
       try {
+        const OwnTime time(own_ns);
         if (answers->take(received, std::chrono::milliseconds(100))) take(received);
       } catch (const std::exception& error) {
-        const std::lock_guard lock(mutex);
-        ++status.damaged;
-        status.problem = error.what();
+        note_damage(error.what());
+      } catch (...) {
+        note_damage("an unknown error");
       }
     }
+  }
+
+  void note_damage(const char* what) {
+    const std::lock_guard lock(mutex);
+    ++status.damaged;
+    set_text(status.problem, what);
   }
 
   void take(const dds::Received& received) {
@@ -161,6 +189,7 @@ struct RemoteCamera::Implementation {
       ++remote.glances;
       return;
     }
+    own_ns += images->question_ns();
     ++remote.layers;
     const double whole_s = received.arrival_s - images->asked_for_layer_s();
     layers_ms.add(1e3 * whole_s);
@@ -188,6 +217,8 @@ struct RemoteCamera::Implementation {
     now.remote->frames = frames;
     now.remote->asked_layers = sent - frames;
     now.remote->bytes_sent = sent_bytes;
+    now.remote->own_ms = 1e-6 * static_cast<double>(own_ns) /
+                         static_cast<double>(std::max<std::uint64_t>(frames, 1));
     now.remote->layer_ms = distribution_of(layers_ms.values()).p50;
     now.remote->way_ms = distribution_of(ways_ms.values()).p50;
     return now;
@@ -201,6 +232,7 @@ struct RemoteCamera::Implementation {
   std::shared_ptr<dds::Publication> questions;
   std::atomic<bool> is_stopped = false;
   std::atomic<std::size_t> sent = 0, sent_bytes = 0;
+  std::atomic<std::int64_t> own_ns = 0;
   mutable std::mutex mutex;  ///< guards the members up to the next blank line
   std::deque<std::shared_ptr<AskedImages>> open;
   std::uint64_t frames = 0;

@@ -6,11 +6,12 @@
 #include <mutex>
 #include <thread>
 
-#include "camera/ros2_address.h"
-#include "dds/dds.h"
+#include "core/set_text.h"
+#include "core/thread_name.h"
 #include "diminish/camera_source.h"
 #include "diminish/error.h"
 #include "live/image_pairs.h"
+#include "live/node_network.h"
 #include "source/find_camera.h"
 
 namespace diminish {
@@ -38,21 +39,29 @@ struct RenderNode::Implementation {
       throw Error("the rig has no RGB-D camera '" + options.name + "'");
     }
     const auto delivery = uri.has("reliable") ? dds::Delivery::reliable : dds::Delivery::newest;
-    const auto node = dds::Node::open(parse_ros2_network(uri));
+    const auto node = dds::Node::open(node_network(uri));
     questions.emplace(node);
     questions->add({ros2_topic(uri, uri.target, "question"), node_question_type}, delivery);
     answers.emplace(node, dds::Topic{ros2_topic(uri, uri.target, "answer"), node_answer_type},
                     delivery);
-    reading = std::thread([this] { read_camera(); });
-    answering = std::thread([this] { answer(); });
+    try {
+      reading = std::thread([this] { read_camera(); });
+      answering = std::thread([this] { answer(); });
+    } catch (...) {  // the system has none to give
+      stop();
+      throw;
+    }
   }
-  ~Implementation() {
+  ~Implementation() { stop(); }
+
+  void stop() {
     is_stopped = true;
-    reading.join();
-    answering.join();
+    if (reading.joinable()) reading.join();
+    if (answering.joinable()) answering.join();
   }
 
   void read_camera() {
+    name_this_thread("camera");
     double retry_s = first_retry_s;
     while (!is_stopped) {
       const std::size_t before = images;
@@ -62,11 +71,11 @@ struct RenderNode::Implementation {
         has_ended = !is_stopped;
         return;
       } catch (const std::exception& error) {
-        what = error.what();
+        set_text(what, error.what());
       } catch (...) {
-        what = "an unknown error";
+        set_text(what, "an unknown error");
       }
-      note_camera(what);
+      note_failure(what.c_str());
       retry_s = images > before ? first_retry_s : std::min(2 * retry_s, last_retry_s);
       const double end_s = monotonic_now_s() + retry_s;
       while (!is_stopped && monotonic_now_s() < end_s)
@@ -90,17 +99,13 @@ struct RenderNode::Implementation {
         ++images;
       } else {
         ++damaged;
-        note_camera(image.fault);
+        note_failure(image.fault.c_str());
       }
     }
   }
 
-  void note_camera(const std::string& what) {
-    const std::lock_guard lock(mutex);
-    status.camera_problem = what;
-  }
-
   void answer() {
+    name_this_thread("answers");
     NodeWorker worker(
         [this](double stamp_s, double tolerance_s) { return pairs.find(stamp_s, tolerance_s); },
         [this](const std::vector<std::uint8_t>& answer) { answers->send(answer); });
@@ -123,10 +128,16 @@ struct RenderNode::Implementation {
         static_cast<NodeCounts&>(status) = worker.counts();
         status.users = worker.users(monotonic_now_s());
       } catch (const std::exception& error) {
-        const std::lock_guard lock(mutex);
-        status.camera_problem = error.what();
+        note_failure(error.what());
+      } catch (...) {
+        note_failure("an unknown error");
       }
     }
+  }
+
+  void note_failure(const char* what) {
+    const std::lock_guard lock(mutex);
+    set_text(status.camera_problem, what);
   }
 
   RenderNodeOptions options;

@@ -42,9 +42,4 @@ class RenderNode {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// The parameters of a node's topics: of `--topic`, and those that a node: camera has beside its
-/// own.
-inline constexpr const char* node_network_parameters[] = {"domain", "interface", "transport",
-                                                          "reliable", "mbits"};
-
 }  // namespace diminish

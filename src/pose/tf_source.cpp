@@ -42,7 +42,7 @@ class TfSource : public PoseSource {
     if (!problem.empty()) poses.messages.push_back(problem);
     poses.color_from_world = find(color_, frame.stamp_s, "color", poses);
     for (std::size_t k = 0; k < cameras_.size(); ++k) {
-      if (!frame.rgbd[k].has_picture()) continue;
+      if (!frame.rgbd[k].has_picture() && !frame.rgbd[k].is_remote()) continue;
       const auto posed_from_world =
           find(cameras_[k].frame, frame.rgbd[k].depth_stamp_s, cameras_[k].name, poses);
       if (posed_from_world) {

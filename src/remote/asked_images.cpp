@@ -5,6 +5,7 @@
 #include <chrono>
 #include <utility>
 
+#include "core/tracing.h"
 #include "diminish/camera_source.h"
 
 namespace diminish {
@@ -78,7 +79,13 @@ bool AskedImages::wait_for_glance(double until_s) {
   return wait(glance_state_, until_s, "answer");
 }
 
+std::int64_t AskedImages::question_ns() {
+  const std::lock_guard lock(mutex_);
+  return question_ns_;
+}
+
 void AskedImages::draw(const RemoteDrawing& drawing) {
+  const std::int64_t begin_ns = tracing::thread_now_ns();
   {
     const std::lock_guard lock(mutex_);
     layer_state_ = State::asked;
@@ -88,6 +95,8 @@ void AskedImages::draw(const RemoteDrawing& drawing) {
   NodeHead head = head_;
   head.topic = NodeTopic::layer;
   send_(write_question(head, drawing, settings_.jpeg_quality, settings_.depth_unit_m));
+  const std::lock_guard lock(mutex_);
+  question_ns_ = tracing::thread_now_ns() - begin_ns;
 }
 
 const RemoteLayer* AskedImages::layer() {

@@ -14,9 +14,9 @@ namespace diminish {
 
 /// How a node's contributions are to be sent, and how long they are waited for.
 struct RemoteSettings {
-  int jpeg_quality = 92;  ///< 0: colours without loss
-  double depth_unit_m = 2e-4;
-  double wait_s = 0.1;  ///< for each of a frame's two answers
+  int jpeg_quality = 92;       ///< 0: colours without loss
+  double depth_unit_m = 2e-4;  ///< 0: depth without loss
+  double wait_s = 0.1;         ///< for each of a frame's two answers
 };
 
 /// A remote camera's images of one frame, on the user's machine. The pipeline's thread asks and
@@ -42,6 +42,8 @@ class AskedImages : public RemoteImages {
   bool take(NodeMessage<AnswerHead>& answer, double clock_offset_s);
   /// When a layer was asked for last, on the monotonic clock; 0: never.
   double asked_for_layer_s();
+  /// For how long the pipeline's thread worked on that question.
+  std::int64_t question_ns();
 
   const Glance& glance() const override { return glance_; }
   void draw(const RemoteDrawing& drawing) override;
@@ -68,6 +70,7 @@ class AskedImages : public RemoteImages {
   Glance glance_;
   RemoteLayer layer_;
   double drawing_since_s_ = 0;
+  std::int64_t question_ns_ = 0;
   std::string problem_;  ///< the pipeline's thread's
 };
 

@@ -17,6 +17,7 @@ struct GlanceWishes {
   std::string marker_dictionary;     ///< empty: no markers are looked for
   std::array<int, 3> spacings_px{};  ///< PoseRefinement::usual_spacings_px
   int samples = 0;                   ///< about so many points (SampleGrid)
+  bool exact = false;                ///< brightness travels without rounding
 
   friend bool operator==(const GlanceWishes&, const GlanceWishes&) = default;
 };

@@ -1,7 +1,6 @@
 #include "remote/layer_drawer.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "blend/cell_resolution.h"
 #include "blend/confidence_grid.h"
@@ -10,7 +9,6 @@
 namespace diminish {
 namespace {
 
-constexpr float most_value = std::numeric_limits<std::uint16_t>::max();
 /// Any but 0.
 constexpr std::uint8_t own_source = 1;
 
@@ -19,8 +17,7 @@ constexpr std::uint8_t own_source = 1;
 LayerDrawer::LayerDrawer(const RgbdCamera& camera, const Intrinsics& color)
     : depth_(camera, color), mesh_(camera, color), color_(color) {}
 
-void LayerDrawer::draw(const RgbdFrame& images, const RemoteDrawing& drawing, double depth_unit_m,
-                       RemoteLayer& layer) {
+void LayerDrawer::draw(const RgbdFrame& images, const RemoteDrawing& drawing, RemoteLayer& layer) {
   const Rect& region = drawing.region;
   depth_.clean(images, drawing.color_from_depth, {drawing.rgbd_color, drawing.rgbd_depth}, region,
                drawing.options, cleaned_);
@@ -36,15 +33,7 @@ void LayerDrawer::draw(const RgbdFrame& images, const RemoteDrawing& drawing, do
       region.height, [&](Rows rows) { mesh_.draw(input, rows); }, CameraMesh::band_px);
   layer.region = region;
   layer.color.resize(region.width, region.height);
-  layer.depth.resize(region.width, region.height);
-  float farthest_m = 0;
-  for (int y = region.y; y < region.bottom(); ++y) {
-    const SurfaceRow row(mesh_.surface(y), y, own_source);
-    for (int x = 0; x < region.width; ++x) {
-      if (row.inverse_z[x] > 0) farthest_m = std::max(farthest_m, 1 / row.inverse_z[x]);
-    }
-  }
-  layer.depth_unit_m = std::max(depth_unit_m, static_cast<double>(farthest_m / (most_value - 1)));
+  layer.inverse_z.resize(region.width, region.height);
   for_rows(
       region.height, [&](Rows rows) { write_rows(images.color, rows, layer); },
       CameraMesh::band_px);
@@ -58,25 +47,21 @@ void LayerDrawer::write_rows(ImageView<Bgr> texture, Rows rows, RemoteLayer& lay
   scratch.source.resize(size);
   scratch.depth_m.resize(size);
   scratch.colors.resize(size);
-  const auto unit_m = static_cast<float>(layer.depth_unit_m);
   for (int i = rows.first; i < rows.last; ++i) {
     const int y = layer.region.y + i;
     const SurfaceRow row(mesh_.surface(y), y, own_source);
-    std::uint16_t* const depth = layer.depth.row(i);
-    for (int x = 0; x < width; ++x) {
+    std::copy_n(row.inverse_z, size, layer.inverse_z.row(i));
+    for (std::size_t x = 0; x < size; ++x) {
       const bool is_drawn = row.inverse_z[x] > 0;
-      const float z = is_drawn ? 1 / row.inverse_z[x] : 0;
-      scratch.source[static_cast<std::size_t>(x)] = is_drawn ? own_source : 0;
-      scratch.depth_m[static_cast<std::size_t>(x)] = z;
-      depth[x] = static_cast<std::uint16_t>(
-          is_drawn ? std::clamp(z / unit_m + 0.5F, 1.F, most_value) : 0.F);
+      scratch.source[x] = is_drawn ? own_source : 0;
+      scratch.depth_m[x] = is_drawn ? 1 / row.inverse_z[x] : 0;
     }
     look_up_colors(row, texture, width, scratch.source.data(), scratch.depth_m.data(),
                    scratch.colors.data());
     Bgr* const color = layer.color.row(i);
     for (std::size_t x = 0; x < size; ++x) {
       const Bgra& found = scratch.colors[x];
-      if (depth[x] != 0) color[x] = {found.b, found.g, found.r};
+      if (scratch.source[x] != 0) color[x] = {found.b, found.g, found.r};
     }
   }
 }

@@ -18,10 +18,8 @@ class LayerDrawer {
   /// color: the user's colour camera.
   LayerDrawer(const RgbdCamera& camera, const Intrinsics& color);
 
-  /// images: of this camera's size, as the masks are. depth_unit_m: the least step of the layer's
-  /// depth; it is more where 16 bits would not reach far enough. `layer`'s memory is used again.
-  void draw(const RgbdFrame& images, const RemoteDrawing& drawing, double depth_unit_m,
-            RemoteLayer& layer);
+  /// images: of this camera's size, as the masks are. `layer`'s memory is used again.
+  void draw(const RgbdFrame& images, const RemoteDrawing& drawing, RemoteLayer& layer);
 
  private:
   void write_rows(ImageView<Bgr> texture, Rows rows, RemoteLayer& layer);

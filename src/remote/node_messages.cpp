@@ -1,6 +1,7 @@
 #include "remote/node_messages.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -30,6 +31,9 @@ constexpr int most_user_pixels = 10'000'000;
 constexpr int largest_side_px = 16384;
 /// Brightness travels in sixteenths of a level, and 0 is none.
 constexpr float brightness_steps = 16;
+/// 1 / z of what is a millimetre away.
+constexpr float most_inverse_z = 1000;
+constexpr double least_depth_unit_m = 1e-6;
 /// Of the first plane of points.
 constexpr int no_point = 0, no_color = 1, first_color = 2;
 
@@ -206,7 +210,8 @@ std::vector<std::uint8_t> bytes_of(const Write& write) {
 /// Values of points in the places of the grid: one above another.
 struct PointPlanes {
   static constexpr int colors = 3;
-  static constexpr int all = colors + 1 + 3;  ///< depth, and brightness
+  static constexpr int brightness = 3;
+  static constexpr int all = colors + 1 + brightness;  ///< one is depth
 
   explicit PointPlanes(const SampleGrid& grid_)
       : grid(grid_), values(grid.columns(), all * grid.rows()) {}
@@ -218,8 +223,33 @@ struct PointPlanes {
   Image<std::uint16_t> values;
 };
 
-std::vector<std::uint8_t> compress_points(const Glance& glance, const SampleGrid& grid) {
+/// Brightness as it is: the bits of a number, and one more, so that 0 is none.
+struct ExactBrightness {
+  explicit ExactBrightness(const SampleGrid& grid_)
+      : grid(grid_), words(grid.columns(), PointPlanes::brightness * grid.rows()) {}
+
+  void put(std::size_t plane, int column, int row, float brightness) {
+    words(column, place(plane, row)) =
+        brightness < 0 ? 0 : 1 + std::bit_cast<std::uint32_t>(brightness);
+  }
+  float get(std::size_t plane, int column, int row) const {
+    const std::uint32_t word = words(column, place(plane, row));
+    if (word == 0) return -1;
+    const auto brightness = std::bit_cast<float>(word - 1);
+    expect(brightness >= 0 && brightness < 256, "expected brightness of 256 levels");
+    return brightness;
+  }
+  int place(std::size_t plane, int row) const {
+    return static_cast<int>(plane) * grid.rows() + row;
+  }
+
+  SampleGrid grid;
+  Image<std::uint32_t> words;
+};
+
+void write_points(MessageWriter& writer, const Glance& glance, const SampleGrid& grid, bool exact) {
   PointPlanes planes(grid);
+  ExactBrightness words(grid);
   for (const GlancePoint& point : glance.points) {
     const int column = (point.column - grid.column(0)) / grid.step;
     const int row = (point.row - grid.row(0)) / grid.step;
@@ -232,21 +262,22 @@ std::vector<std::uint8_t> compress_points(const Glance& glance, const SampleGrid
     put(2, 256 + point.color.b - point.color.g);
     put(3, 256 + point.color.r - point.color.g);
     for (std::size_t k = 0; k < point.brightness.size(); ++k) {
-      if (point.brightness[k] < 0) continue;
+      if (exact) words.put(k, column, row, point.brightness[k]);
+      if (exact || point.brightness[k] < 0) continue;
       put(4 + static_cast<int>(k),
           1 + static_cast<int>(std::lrint(point.brightness[k] * brightness_steps)));
     }
   }
-  return bytes_of([&](auto& bytes) { ros::compress_depth(planes.values, bytes); });
+  writer.bytes(bytes_of([&](auto& bytes) { ros::compress_depth(planes.values, bytes); }));
+  if (exact) writer.bytes(bytes_of([&](auto& bytes) { compress_words(words.words, bytes); }));
 }
 
-void read_points(MessageReader& reader, const SampleGrid& grid, Glance& glance) {
+void read_points(MessageReader& reader, const SampleGrid& grid, bool exact, Glance& glance) {
   PointPlanes planes(grid);
-  if (planes.values.empty()) {
-    reader.bytes();
-    return;
-  }
-  ros::decompress_depth(reader.bytes(), planes.values);
+  ExactBrightness words(grid);
+  const auto bytes = reader.bytes();
+  if (!planes.values.empty()) ros::decompress_depth(bytes, planes.values);
+  if (exact) decompress_words(reader.bytes(), words.words);
   glance.points.clear();
   glance.point_step_px = grid.step;
   for (int i = 0; i < grid.rows(); ++i) {
@@ -268,7 +299,9 @@ void read_points(MessageReader& reader, const SampleGrid& grid, Glance& glance) 
                        level(planes(3, j, i) - 256 + green)};
         for (std::size_t k = 0; k < point.brightness.size(); ++k) {
           const int value = planes(4 + static_cast<int>(k), j, i);
-          if (value > 0) point.brightness[k] = static_cast<float>(value - 1) / brightness_steps;
+          if (exact) point.brightness[k] = words.get(k, j, i);
+          if (!exact && value > 0)
+            point.brightness[k] = static_cast<float>(value - 1) / brightness_steps;
         }
       }
       glance.points.push_back(point);
@@ -349,6 +382,7 @@ std::vector<std::uint8_t> write_question(const NodeHead& head, const GlanceQuest
   writer.text(question.wishes.marker_dictionary);
   for (const int spacing : question.wishes.spacings_px) writer.number(spacing);
   writer.number(question.wishes.samples);
+  writer.number(std::uint8_t{question.wishes.exact});
   return bytes;
 }
 
@@ -370,6 +404,7 @@ void read(MessageReader& reader, GlanceQuestion& question) {
     spacing = integer(reader, 0, largest_side_px, "expected a spacing of pixels");
   }
   question.wishes.samples = integer(reader, 1, most_samples, "expected at most 100000 samples");
+  question.wishes.exact = reader.number<std::uint8_t>() != 0;
   Rig rig;
   rig.color = question.user;
   rig.rgbd.push_back(question.camera);
@@ -400,7 +435,7 @@ void read(MessageReader& reader, const GlanceQuestion& asked, LayerQuestion& que
   read(reader, asked.user.bounds(), question.region);
   read_options(reader, question.options);
   question.jpeg_quality = integer(reader, 0, 100, "expected a quality up to 100");
-  question.depth_unit_m = within(reader, 1e-6, 1, "expected a unit of depth up to a metre");
+  question.depth_unit_m = within(reader, 0, 1, "expected a step of depth up to a metre");
 }
 
 NodeMessage<NodeHead> open_question(std::span<const std::uint8_t> bytes) {
@@ -421,14 +456,14 @@ NodeMessage<AnswerHead> open_answer(std::span<const std::uint8_t> bytes) {
 
 std::vector<std::uint8_t> write_answer(const AnswerHead& head, const Glance& glance,
                                        const GlanceQuestion& asked) {
-  const auto points = compress_points(
-      glance, {asked.camera.depth.width, asked.camera.depth.height, asked.wishes.samples});
+  const Intrinsics& depth = asked.camera.depth;
   std::vector<std::uint8_t> bytes;
   MessageWriter writer = begin_answer(bytes, head);
   writer.number(glance.color_stamp_s);
   writer.number(glance.depth_stamp_s);
   write_markers(writer, glance);
-  writer.bytes(points);
+  write_points(writer, glance, {depth.width, depth.height, asked.wishes.samples},
+               asked.wishes.exact);
   return bytes;
 }
 
@@ -439,22 +474,30 @@ void read(MessageReader& reader, const GlanceQuestion& asked, Glance& glance) {
   glance.spacings_px = asked.wishes.spacings_px;
   glance.depth.resize(depth.width, depth.height, 0);
   read_markers(reader, glance);
-  read_points(reader, {depth.width, depth.height, asked.wishes.samples}, glance);
+  read_points(reader, {depth.width, depth.height, asked.wishes.samples}, asked.wishes.exact,
+              glance);
 }
 
-std::vector<std::uint8_t> write_answer(const AnswerHead& head, RemoteLayer& layer,
-                                       int jpeg_quality) {
+std::vector<std::uint8_t> write_answer(const AnswerHead& head, RemoteLayer& layer, int jpeg_quality,
+                                       double depth_unit_m) {
   const bool is_jpeg = jpeg_quality > 0;
+  const bool is_exact = depth_unit_m == 0;
   const auto color = bytes_of([&](auto& to) {
-    if (is_jpeg) return compress_jpeg(layer.color, layer.depth, jpeg_quality, to);
-    compress_color(layer.color, layer.depth, to);
+    if (is_jpeg) return compress_jpeg(layer.color, layer.inverse_z, jpeg_quality, to);
+    compress_color(layer.color, layer.inverse_z, to);
   });
-  const auto depth = bytes_of([&](auto& to) { ros::compress_depth(layer.depth, to); });
-  const auto resolution = bytes_of([&](auto& to) { compress_resolution(layer.resolution, to); });
+  const auto depth = bytes_of([&](auto& to) {
+    if (is_exact) return compress_exactly(layer.inverse_z, to);
+    depth_unit_m = compress_inverse_z(layer.inverse_z, depth_unit_m, to);
+  });
+  const auto resolution = bytes_of([&](auto& to) {
+    if (is_exact) return compress_exactly(layer.resolution, to);
+    compress_resolution(layer.resolution, to);
+  });
   std::vector<std::uint8_t> bytes;
   bytes.reserve(color.size() + depth.size() + resolution.size() + 512);
   MessageWriter writer = begin_answer(bytes, head);
-  writer.number(layer.depth_unit_m);
+  writer.number(depth_unit_m);
   writer.bytes(depth);
   writer.number(std::uint8_t{is_jpeg});
   writer.bytes(color);
@@ -464,20 +507,30 @@ std::vector<std::uint8_t> write_answer(const AnswerHead& head, RemoteLayer& laye
 
 void read(MessageReader& reader, RemoteLayer& layer) {
   const Rect& region = layer.region;
-  layer.depth_unit_m = within(reader, 1e-6, 1, "expected a unit of depth up to a metre");
-  layer.depth.resize(region.width, region.height);
-  ros::decompress_depth(reader.bytes(), layer.depth);
+  const double depth_unit_m = within(reader, 0, 1, "expected a step of depth up to a metre");
+  const bool is_exact = depth_unit_m == 0;
+  layer.inverse_z.resize(region.width, region.height);
+  if (is_exact) {
+    decompress_exactly(reader.bytes(), most_inverse_z, layer.inverse_z);
+  } else {
+    decompress_inverse_z(reader.bytes(), std::max(depth_unit_m, least_depth_unit_m),
+                         layer.inverse_z);
+  }
   layer.color.resize(region.width, region.height);
   const bool is_jpeg = reader.number<std::uint8_t>() != 0;
   if (is_jpeg) {
     decompress_jpeg(reader.bytes(), layer.color);
   } else {
-    decompress_color(reader.bytes(), layer.depth, layer.color);
+    decompress_color(reader.bytes(), layer.inverse_z, layer.color);
   }
   ConfidenceGrid grid;
   grid.begin(region, {}, 0);
   layer.resolution.resize(grid.columns(), grid.rows());
-  decompress_resolution(reader.bytes(), layer.resolution);
+  if (is_exact) {
+    decompress_exactly(reader.bytes(), std::numeric_limits<float>::max(), layer.resolution);
+  } else {
+    decompress_resolution(reader.bytes(), layer.resolution);
+  }
 }
 
 std::vector<std::uint8_t> write_answer(const AnswerHead& head) {

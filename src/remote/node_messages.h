@@ -46,9 +46,9 @@ struct LayerQuestion {
   RigidTransform color_from_depth;
   Mask rgbd_color, rgbd_depth;
   TiledRegion region;
-  Options options;       ///< those that the drawing reads
-  int jpeg_quality = 0;  ///< 0: colours without loss
-  double depth_unit_m = 1e-4;
+  Options options;          ///< those that the drawing reads
+  int jpeg_quality = 0;     ///< 0: colours without loss
+  double depth_unit_m = 0;  ///< the least step of the layer's depth; 0: without loss
 
   RemoteDrawing drawing() const {
     return {color_from_depth, rgbd_color, rgbd_depth, region, options};
@@ -85,8 +85,8 @@ void read(ros::MessageReader& reader, const GlanceQuestion& asked, LayerQuestion
 std::vector<std::uint8_t> write_answer(const AnswerHead& head, const Glance& glance,
                                        const GlanceQuestion& asked);
 /// layer: its colours may be changed where it has no depth.
-std::vector<std::uint8_t> write_answer(const AnswerHead& head, RemoteLayer& layer,
-                                       int jpeg_quality);
+std::vector<std::uint8_t> write_answer(const AnswerHead& head, RemoteLayer& layer, int jpeg_quality,
+                                       double depth_unit_m);
 /// With a problem alone.
 std::vector<std::uint8_t> write_answer(const AnswerHead& head);
 

@@ -47,14 +47,14 @@ RemoteLayer random_layer(const Rect& region) {
   RemoteLayer layer;
   layer.region = region;
   layer.color.resize(region.width, region.height);
-  layer.depth.resize(region.width, region.height);
+  layer.inverse_z.resize(region.width, region.height);
   for (Bgr& color : layer.color) {
     for (std::uint8_t* c : {&color.b, &color.g, &color.r}) {
       *c = static_cast<std::uint8_t>(level(random));
     }
   }
-  for (std::uint16_t& depth : layer.depth) {
-    depth = static_cast<std::uint16_t>(level(random) < 60 ? 0 : 250 * level(random) + 1);
+  for (float& inverse_z : layer.inverse_z) {
+    inverse_z = level(random) < 60 ? 0 : 1 / (0.3F + static_cast<float>(level(random)) / 37);
   }
   layer.resolution.resize(region.width / 8, region.height / 8);
   for (float& value : layer.resolution) value = static_cast<float>(level(random)) / 100;
@@ -116,24 +116,39 @@ TEST(NodeMessages, AQuestionForALayerIsReadAsItWasWritten) {
   EXPECT_EQ(back.depth_unit_m, 2e-4);
 }
 
-TEST(NodeMessages, ALayerKeepsItsDepthAndWithoutLossItsColours) {
-  const Rect region{4, 6, 40, 32};
-  const RemoteLayer sent = random_layer(region);
-  for (const int quality : {0, 95}) {
-    RemoteLayer layer = sent;
-    AnswerHead answer;
-    static_cast<NodeHead&>(answer) = head;
-    const auto bytes = write_answer(answer, layer, quality);
-    auto message = open_answer(bytes);
-    RemoteLayer back;
-    back.region = region;
-    read(message.rest, back);
-    EXPECT_EQ(back.depth, sent.depth);
-    for (int y = 0; y < region.height && quality == 0; ++y) {
-      for (int x = 0; x < region.width; ++x) {
-        if (sent.depth(x, y) == 0) continue;
-        ASSERT_EQ(back.color(x, y), sent.color(x, y)) << x << ' ' << y;
-      }
+RemoteLayer sent_and_read(const RemoteLayer& sent, int jpeg_quality, double depth_unit_m) {
+  RemoteLayer layer = sent;
+  const auto bytes = write_answer({}, layer, jpeg_quality, depth_unit_m);
+  auto message = open_answer(bytes);
+  RemoteLayer back;
+  back.region = sent.region;
+  read(message.rest, back);
+  return back;
+}
+
+TEST(NodeMessages, ALayerWithoutLossIsReadBitForBit) {
+  const RemoteLayer sent = random_layer({4, 6, 40, 32});
+  const RemoteLayer back = sent_and_read(sent, 0, 0);
+  EXPECT_EQ(back.inverse_z, sent.inverse_z);
+  EXPECT_EQ(back.resolution, sent.resolution);
+  for (std::size_t i = 0; i < sent.color.size(); ++i) {
+    if (sent.inverse_z.data()[i] == 0) continue;
+    ASSERT_EQ(back.color.data()[i], sent.color.data()[i]) << i;
+  }
+}
+
+TEST(NodeMessages, ALayersDepthIsRoundedToItsSteps) {
+  const RemoteLayer sent = random_layer({4, 6, 40, 32});
+  for (const double step_m : {2e-4, 1e-6}) {
+    const RemoteLayer back = sent_and_read(sent, 95, step_m);
+    // 7.2 m are more than 65534 small steps.
+    const double most_m = step_m > 1e-5 ? step_m / 2 : 6e-5;
+    for (std::size_t i = 0; i < sent.inverse_z.size(); ++i) {
+      const float a = sent.inverse_z.data()[i];
+      const float b = back.inverse_z.data()[i];
+      ASSERT_EQ(a == 0, b == 0) << i;
+      if (a == 0) continue;
+      ASSERT_NEAR(1 / a, 1 / b, 1.05 * most_m) << i;
     }
     ASSERT_EQ(back.resolution.size(), sent.resolution.size());
     for (std::size_t i = 0; i < sent.resolution.size(); ++i) {
@@ -143,8 +158,30 @@ TEST(NodeMessages, ALayerKeepsItsDepthAndWithoutLossItsColours) {
   }
 }
 
-TEST(NodeMessages, AGlanceIsReadAsItWasWritten) {
-  const GlanceQuestion asked = question();
+// 1 / z of a plane is even, but for the rounding of its numbers: a byte a pixel, not four.
+TEST(NodeMessages, SurfacesWithoutLossAreSmall) {
+  Image<float> plane(200, 100);
+  for (int y = 0; y < plane.height(); ++y) {
+    for (int x = 0; x < plane.width(); ++x) {
+      plane(x, y) = 0.7F + 1e-4F * static_cast<float>(x) + 3e-4F * static_cast<float>(y);
+    }
+  }
+  std::vector<std::uint8_t> bytes;
+  compress_exactly(plane, bytes);
+  // But for the first row and column, of which less is known.
+  EXPECT_LT(bytes.size(), plane.size() + 2 * (200 + 100));
+  Image<float> back(plane.width(), plane.height());
+  decompress_exactly(bytes, 1, back);
+  EXPECT_EQ(back, plane);
+  EXPECT_THROW(decompress_exactly(bytes, 0.7F, back), Error);
+}
+
+class NodeGlance : public ::testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(RoundedAndExact, NodeGlance, ::testing::Bool());
+
+TEST_P(NodeGlance, IsReadAsItWasWritten) {
+  GlanceQuestion asked = question();
+  asked.wishes.exact = GetParam();
   RgbdFrame images;
   std::mt19937 random(4);
   std::uniform_int_distribution<int> any(0, 255);
@@ -190,7 +227,7 @@ TEST(NodeMessages, AGlanceIsReadAsItWasWritten) {
     EXPECT_EQ(a.even, b.even);
     for (std::size_t k = 0; k < 3; ++k) {
       EXPECT_EQ(a.brightness[k] < 0, b.brightness[k] < 0);
-      EXPECT_NEAR(a.brightness[k], b.brightness[k], 1. / 32);
+      EXPECT_NEAR(a.brightness[k], b.brightness[k], asked.wishes.exact ? 0 : 1. / 32);
     }
   }
   EXPECT_GT(colored, 10U);
@@ -237,7 +274,8 @@ TEST(NodeMessages, BrokenOnesAreRefused) {
     EXPECT_GT(refused, 0);
   };
   try_all(write_question(head, {pose, color, depth, region, options}, 80, 2e-4), read_question);
-  try_all(write_answer({}, layer, 0), read_answer);
+  try_all(write_answer({}, layer, 0, 1e-4), read_answer);
+  try_all(write_answer({}, layer, 0, 0), read_answer);
 }
 
 TEST(NodeMessages, SizesAreBounded) {

@@ -172,12 +172,11 @@ void NodeWorker::take_layer(NodeMessage<NodeHead>& message, double now_s) {
   }
   read(message.rest, from.made_for, from.question);
   const double start_s = monotonic_now_s();
-  from.drawer->draw(*moment->images, from.question.drawing(), from.question.depth_unit_m,
-                    from.layer);
+  from.drawer->draw(*moment->images, from.question.drawing(), from.layer);
   const double drawn_s = monotonic_now_s();
   counts_.draw_ms += 1e3 * (drawn_s - start_s);
   const auto answer = write_answer(answer_to(message.head, from.asked.asked_s, now_s), from.layer,
-                                   from.question.jpeg_quality);
+                                   from.question.jpeg_quality, from.question.depth_unit_m);
   counts_.compress_ms += since_ms(drawn_s);
   ++counts_.layers;
   send(answer, counts_.layer_bytes);

@@ -74,15 +74,15 @@ TEST_F(NodeWorkerTest, DrawsWhatItIsAskedFor) {
   layer.region = region_;
   read(message.rest, layer);
   std::size_t drawn = 0;
-  for (int y = 0; y < layer.depth.height(); ++y) {
-    for (int x = 0; x < layer.depth.width(); ++x) {
-      if (layer.depth(x, y) == 0) continue;
+  for (int y = 0; y < layer.inverse_z.height(); ++y) {
+    for (int x = 0; x < layer.inverse_z.width(); ++x) {
+      if (layer.inverse_z(x, y) == 0) continue;
       ++drawn;
-      EXPECT_NEAR(layer.depth(x, y) * layer.depth_unit_m, 1, 1e-3);
+      EXPECT_NEAR(layer.inverse_z(x, y), 1, 1e-3);
       EXPECT_EQ(layer.color(x, y), (Bgr{90, 100, 110}));
     }
   }
-  EXPECT_EQ(drawn, layer.depth.size());
+  EXPECT_EQ(drawn, layer.inverse_z.size());
   // The camera's pixels are 4/3 as large as the user's.
   EXPECT_NEAR(layer.resolution(1, 1), 9. / 16, 0.01);
 }

@@ -73,13 +73,9 @@ void CameraMesh::take(const RemoteLayer& layer, const TiledRegion& region, Rows 
   SurfaceBuffer& surface = surfaces_[rows.band];
   const Rect part = part_of(rows);
   surface.clear(part, region);
-  const auto unit_m = static_cast<float>(layer.depth_unit_m);
   for (int y = part.y; y < part.bottom(); ++y) {
-    const std::uint16_t* const depth = layer.depth.row(y - layer.region.y);
-    float* const inverse_z = surface.inverse_z.data() + surface.row(y);
-    for (int x = 0; x < part.width; ++x) {
-      inverse_z[x] = depth[x] == 0 ? 0 : 1 / (static_cast<float>(depth[x]) * unit_m);
-    }
+    std::copy_n(layer.inverse_z.row(y - layer.region.y), part.width,
+                surface.inverse_z.data() + surface.row(y));
   }
 }
 
