@@ -26,7 +26,8 @@ help:
 deps:
 	@scripts/install-deps
 
-build: deps
+build:
+	@scripts/install-deps program
 	scripts/build "" diminish_program
 
 demo: build
@@ -39,7 +40,7 @@ test: deps
 	scripts/build
 	scripts/test
 
-test-page: build
+test-page: deps build
 	scripts/install-deps page
 	scripts/test-page
 
