@@ -93,12 +93,13 @@ struct RemoteCamera::Implementation {
     if (!setting.camera.measures_depth) {
       uri.fail("expected a camera that measures depth, " + camera.name + " does not");
     }
-    const auto delivery = uri.has("reliable") ? dds::Delivery::reliable : dds::Delivery::newest;
-    const auto node = dds::Node::open(node_network(uri));
+    const NodeWire wire = node_wire(uri);
+    const auto node = dds::Node::open(wire.network);
     answers.emplace(node);
-    answers->add({ros2_topic(uri, uri.target, "answer"), node_answer_type}, delivery);
+    answers->add({ros2_topic(uri, uri.target, "answer"), node_answer_type}, wire.delivery);
     questions = std::make_shared<dds::Publication>(
-        node, dds::Topic{ros2_topic(uri, uri.target, "question"), node_question_type}, delivery);
+        node, dds::Topic{ros2_topic(uri, uri.target, "question"), node_question_type},
+        wire.delivery);
     status.name = camera.name;
     status.uri = camera.uri;
     receiving = std::thread([this] { receive(); });

@@ -38,12 +38,12 @@ struct RenderNode::Implementation {
     if (options.rig && !find_rgbd_camera(*options.rig, options.name)) {
       throw Error("the rig has no RGB-D camera '" + options.name + "'");
     }
-    const auto delivery = uri.has("reliable") ? dds::Delivery::reliable : dds::Delivery::newest;
-    const auto node = dds::Node::open(node_network(uri));
+    const NodeWire wire = node_wire(uri);
+    const auto node = dds::Node::open(wire.network);
     questions.emplace(node);
-    questions->add({ros2_topic(uri, uri.target, "question"), node_question_type}, delivery);
+    questions->add({ros2_topic(uri, uri.target, "question"), node_question_type}, wire.delivery);
     answers.emplace(node, dds::Topic{ros2_topic(uri, uri.target, "answer"), node_answer_type},
-                    delivery);
+                    wire.delivery);
     try {
       reading = std::thread([this] { read_camera(); });
       answering = std::thread([this] { answer(); });
