@@ -21,8 +21,10 @@ constexpr double greatest_error = 60;
 constexpr double fewest = 100;
 /// A delay that harms.
 constexpr double least_late_s = 0.05;
-/// The error at the true lag, of that now. With good cameras, now has the least.
+/// The error at the true lag, of that now. With good cameras, now has the least; in a single frame
+/// an earlier moment may by chance have .82 of it.
 constexpr double least_share = 0.93;
+constexpr double least_share_at_once = 0.75;
 
 int level_of(const Bgr& color) {
   return color.b + 2 * color.g + color.r;
@@ -62,16 +64,24 @@ void StreamDelay::find(const Inputs& inputs, std::vector<std::optional<double>>&
   for (std::size_t k = 0; k < late_s.size(); ++k) {
     std::size_t last = begin;
     while (last < samples.size() && samples[last].source <= k + 1) ++last;
-    compare(inputs, begin, last, shared_->errors[k]);
-    late_s[k] = delay_of(shared_->errors[k]);
+    Errors now;
+    compare(inputs, begin, last, now);
+    Errors& errors = shared_->errors[k];
+    for (std::size_t bin = 0; bin < bins; ++bin) {
+      errors.levels[bin] += now.levels[bin];
+      errors.count[bin] += now.count[bin];
+    }
+    // A stream that has just become late has a past without fault.
+    late_s[k] = delay_of(now, least_share_at_once);
+    if (!late_s[k]) late_s[k] = delay_of(errors, least_share);
     begin = last;
   }
 }
 
-std::optional<double> StreamDelay::delay_of(const Errors& errors) {
+std::optional<double> StreamDelay::delay_of(const Errors& errors, double share) {
   if (errors.count[0] < fewest) return std::nullopt;
   const double now = errors.levels[0] / errors.count[0];
-  double least = least_share * now;
+  double least = share * now;
   std::optional<double> delay_s;
   for (std::size_t bin = 1; bin < bins; ++bin) {
     if (errors.count[bin] < fewest) continue;

@@ -77,7 +77,8 @@ class StreamDelay {
   void forget_oldest();
   void choose_moments(const Inputs& inputs);
   void compare(const Inputs& inputs, std::size_t begin, std::size_t end, Errors& errors);
-  static std::optional<double> delay_of(const Errors& errors);
+  /// share: what an earlier moment's error must be of that now, at most.
+  static std::optional<double> delay_of(const Errors& errors, double share);
 
   Projection projection_;  ///< of the user's camera
   int shrinkage_;

@@ -55,15 +55,16 @@ class StreamDelayTest : public ::testing::Test {
     }
     return samples;
   }
-  /// After half a second.
-  std::optional<double> found(double late_s, double speed) const {
+  /// After so many frames in time, and late ones.
+  std::optional<double> found(double late_s, double speed, int good_frames = 0,
+                              int late_frames = 15) const {
     StreamDelay delay(camera);
     const Mask nothing(camera.width, camera.height, 0);
     std::vector<std::optional<double>> late(1);
-    for (int i = 0; i < 15; ++i) {
+    for (int i = 0; i < good_frames + late_frames; ++i) {
       const double stamp_s = i / frames_per_second;
       const Image<Bgr> shown = picture(stamp_s, speed);
-      const SceneSamples seen = samples(stamp_s, late_s, speed);
+      const SceneSamples seen = samples(stamp_s, i < good_frames ? 0 : late_s, speed);
       delay.find({shown, stamp_s, pose(stamp_s), nothing, seen}, late);
     }
     return late[0];
@@ -79,6 +80,13 @@ TEST_F(StreamDelayTest, IsFoundFromWhatMoves) {
     ASSERT_TRUE(delay_s) << late_s;
     EXPECT_NEAR(*delay_s, late_s, 0.04);
   }
+}
+
+TEST_F(StreamDelayTest, IsFoundInTheFirstFrameThatIsLate) {
+  EXPECT_FALSE(found(0.15, 1, 15, 0));
+  const auto delay_s = found(0.15, 1, 15, 1);
+  ASSERT_TRUE(delay_s);
+  EXPECT_NEAR(*delay_s, 0.15, 0.04);
 }
 
 TEST_F(StreamDelayTest, IsNoneOfAGoodCamera) {
