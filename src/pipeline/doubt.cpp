@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -42,6 +43,22 @@ std::string wrong_place(const RgbdCamera& camera, const MarkerShift& shift) {
       shift.marker, shift.shift * 180 / std::numbers::pi, camera.name, camera.name);
 }
 
+std::string not_there(const RgbdCamera& camera, const PlaceOfObject& place) {
+  return fmt::format(
+      "color: the object with marker {} is not where it locates it, by what {} measures there: is "
+      "size_m right (measure the black square), the colour camera's calibration its own, {} late? "
+      "diminish check",
+      place.marker, camera.name, camera.name);
+}
+
+std::string wrong_lens(double factor) {
+  return fmt::format(
+      "color: a focal length that is {:.0f} % {} explains the picture better. Is its calibration "
+      "its "
+      "own, with this zoom and focus? diminish calibrate intrinsics",
+      100 * std::abs(factor - 1), factor > 1 ? "larger" : "smaller");
+}
+
 std::string late(const RgbdCamera& camera, double late_s) {
   return fmt::format(
       "{}: what moves is seen where it was {:.2f} s before: its images are late, or their "
@@ -66,14 +83,22 @@ void show_camera(const FrameSet& frame, DiminishedFrame& result) {
 void Doubt::judge(const Rig& rig, const Options& options, const Evidence& evidence,
                   FrameReport& report) {
   if (options.least_fit <= -1) return;
+  // A wrong scale looks like a wrong lens, too.
+  const bool is_scale_wrong =
+      std::any_of(evidence.scales.begin(), evidence.scales.end(),
+                  [](const auto& scale) { return scale && is_wrong(*scale); });
+  if (evidence.focal_factor && !is_scale_wrong) doubt(wrong_lens(*evidence.focal_factor), report);
   for (std::size_t k = 0; k < rig.rgbd.size(); ++k) {
     const auto& scale = evidence.scales[k];
     const auto& shift = evidence.shifts[k];
+    const auto& place = evidence.places[k];
     // What explains more comes first: a wrong scale spoils the fit, too.
     if (scale && is_wrong(*scale)) {
       doubt(wrong_scale(rig.rgbd[k], *scale), report);
     } else if (shift && is_wrong(*shift)) {
       doubt(wrong_place(rig.rgbd[k], *shift), report);
+    } else if (place && place->is_wrong()) {
+      doubt(not_there(rig.rgbd[k], *place), report);
     } else if (evidence.late_s[k]) {
       doubt(late(rig.rgbd[k], *evidence.late_s[k]), report);
     } else if (k < report.fit.size() && report.fit[k] && *report.fit[k] < options.least_fit) {

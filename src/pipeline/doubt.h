@@ -11,6 +11,7 @@
 #include "diminish/rig.h"
 #include "pose/depth_scale.h"
 #include "pose/marker_agreement.h"
+#include "pose/object_place.h"
 
 namespace diminish {
 
@@ -28,11 +29,13 @@ class Doubt {
   void end_turn() { turn_.end(); }
   void forget();
 
-  /// What a frame shows of its set-up, for each RGB-D camera.
+  /// What a frame shows of its set-up; in lists, for each RGB-D camera.
   struct Evidence {
     const std::vector<std::optional<MarkerScale>>& scales;
     const std::vector<std::optional<MarkerShift>>& shifts;
+    const std::vector<std::optional<PlaceOfObject>>& places;
     const std::vector<std::optional<double>>& late_s;  ///< (StreamDelay)
+    std::optional<double> focal_factor;  ///< the colour camera's is better so (LensTrial)
   };
   /// From `report.fit` and the evidence: sets `report.in_doubt`, and says in `report.messages` why,
   /// and what to do.

@@ -62,10 +62,12 @@ FrameStages::FrameStages(const Rig& rig_, const Scene& scene_)
       sampler(rig),
       refinement(rig.color, PoseRefinement::usual_width, PoseRefinement::usual_last_step, false,
                  PoseRefinement::usual_coarser),
+      lens_trial(rig, scene),
       fit(rig.color),
       delay(rig.color),
       scale(rig, scene),
       agreement(rig, scene),
+      object_place(rig, scene),
       background(rig.color),
       bar_views(rig),
       standing_things(rig),
@@ -217,8 +219,13 @@ void FrameStages::process(const FrameSet& given, DiminishedFrame& result) {
       fit.find(frame.color, masks.color, samples, report.fit);
       scale.find(frame, report.markers, scales);
       agreement.find(frame, report.markers, report.poses, shifts);
+      object_place.find(frame, report.markers, report.poses, places);
       find_delays(frame, report.poses);
-      Doubt::judge(rig, options, {scales, shifts, late_s}, report);
+      std::optional<double> focal_factor;
+      if (options.refine_poses) {
+        focal_factor = lens_trial.find(report.markers, measured_poses, refinement);
+      }
+      Doubt::judge(rig, options, {scales, shifts, places, late_s, focal_factor}, report);
     });
   };
   const auto estimate = [&](const Rect& part) {

@@ -23,6 +23,8 @@
 #include "pose/camera_poses.h"
 #include "pose/depth_scale.h"
 #include "pose/frame_markers.h"
+#include "pose/lens_trial.h"
+#include "pose/object_place.h"
 #include "pose/pose_refinement.h"
 #include "scene/background.h"
 #include "scene/color_maps.h"
@@ -82,6 +84,7 @@ struct FrameStages {
   SceneSampler sampler;
   SceneSamples samples;
   PoseRefinement refinement;
+  LensTrial lens_trial;
   SceneFit fit;
   StreamDelay delay;
   std::vector<std::optional<double>> late_s;
@@ -89,6 +92,8 @@ struct FrameStages {
   std::vector<std::optional<MarkerScale>> scales;
   MarkerAgreement agreement;
   std::vector<std::optional<MarkerShift>> shifts;
+  ObjectPlace object_place;
+  std::vector<std::optional<PlaceOfObject>> places;
   Background background;
   RimLines rim_lines;
   BarViews bar_views;

@@ -43,6 +43,8 @@ class DirectAlignment {
   /// Shrinks the picture and collects points. False if the picture is too small. Picture and
   /// occlusion must outlive the iterations.
   bool begin(const FrameSet& frame, const Mask& occlusion, const SceneSamples& scene);
+  /// What follows is by another lens. The points stay those of `begin`.
+  void change_lens(const Projection& color) { projection_ = color; }
   /// Betters the estimate, and finds its cost. False if the colour camera sees too few points.
   bool iterate(int iterations, Estimate& estimate);
 

@@ -55,6 +55,7 @@ PoseRefinement::PoseRefinement(const Intrinsics& color, int small_width, float l
 
 std::optional<RigidTransform> PoseRefinement::refine(const FrameSet& frame, const Mask& occlusion,
                                                      const SceneSamples& scene) {
+  costs_.reset();
   if (scene.surfaces.size() < fewest_samples) return std::nullopt;
   // The pose as it was measured is to be bettered.
   DirectAlignment::Estimate measured;
@@ -70,12 +71,44 @@ std::optional<RigidTransform> PoseRefinement::refine(const FrameSet& frame, cons
         }
       });
   if (!is_seen || !fine_.iterate(most_iterations, estimate)) return std::nullopt;
+  estimate_ = estimate;
+  costs_ = {measured.cost, estimate.cost};
   if (!(estimate.cost < measured.cost) ||
       estimate.twist.head<3>().norm() > largest_deviations * translation_deviation_m ||
       estimate.twist.tail<3>().norm() > largest_deviations * rotation_deviation) {
     return std::nullopt;
   }
   return estimate.correction;
+}
+
+std::optional<float> PoseRefinement::measured_cost_with(const Projection& other,
+                                                        const RigidTransform& moved) {
+  if (!costs_) return std::nullopt;
+  DirectAlignment::Estimate measured;
+  measured.correction = moved;
+  fine_.change_lens(other);
+  const bool is_seen = fine_.iterate(0, measured);
+  fine_.change_lens(projection_);
+  if (!is_seen) return std::nullopt;
+  return measured.cost;
+}
+
+std::optional<float> PoseRefinement::refined_cost_with(const Projection& other,
+                                                       const RigidTransform& moved) {
+  if (!costs_) return std::nullopt;
+  // From one of the two it is not far: as measured, or as found with the own lens.
+  constexpr int iterations = 4;
+  DirectAlignment::Estimate measured;
+  measured.correction = moved;
+  DirectAlignment::Estimate refined = estimate_;
+  refined.correction = estimate_.correction * moved;
+  fine_.change_lens(other);
+  bool is_seen = fine_.iterate(0, measured) && fine_.iterate(0, refined);
+  if (is_seen && measured.cost < refined.cost) refined = measured;
+  is_seen = is_seen && fine_.iterate(iterations, refined);
+  fine_.change_lens(projection_);
+  if (!is_seen) return std::nullopt;
+  return refined.cost;
 }
 
 void PoseRefinement::apply(const RigidTransform& correction, Poses& poses,

@@ -46,11 +46,26 @@ class PoseRefinement {
   std::optional<RigidTransform> refine(const FrameSet& frame, const Mask& occlusion,
                                        const SceneSamples& scene);
 
+  /// How badly the picture is explained by the pose as it was measured, and by the best one near
+  /// it.
+  struct Costs {
+    float measured = 0, refined = 0;
+  };
+  /// Of the last `refine`; nothing if it saw too little.
+  const std::optional<Costs>& costs() const { return costs_; }
+  /// What they would be if the colour camera had this lens, with which its pose would be measured
+  /// elsewhere: other_from_measured_color. The frame and the mask that were refined must still be
+  /// there. Cost: a fifteenth of refine's; refined, a third.
+  std::optional<float> measured_cost_with(const Projection& other, const RigidTransform& moved);
+  std::optional<float> refined_cost_with(const Projection& other, const RigidTransform& moved);
+
   /// Takes poses and samples to the corrected frame.
   void apply(const RigidTransform& correction, Poses& poses, SceneSamples& samples) const;
 
  private:
   DirectAlignment fine_;
+  DirectAlignment::Estimate estimate_;  ///< of the last `refine`
+  std::optional<Costs> costs_;
   std::vector<DirectAlignment> coarser_;  ///< the smallest picture first
   Projection projection_;
 };
