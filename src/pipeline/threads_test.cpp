@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <future>
 #include <thread>
 
 #include "diminish/frame_source.h"
@@ -26,13 +27,19 @@ int threads_started_in_arena_of(int size) {
   FrameSet frame;
   // Reading starts none either: images are decoded by the caller's arena, too.
   oneapi::tbb::task_arena(1).execute([&] { open_recording(recording, options)->next(frame); });
+  // The thread sanitizer starts a thread of its own together with the first.
+  std::promise<void> end;
+  std::thread first([&] { end.get_future().wait(); });
   const int before = threads_of_this_process();
   oneapi::tbb::task_arena(size).execute([&] {
     Pipeline pipeline(recording.rig, recording.scene, options);
     DiminishedFrame result;
     pipeline.process(frame, result);
   });
-  return threads_of_this_process() - before;
+  const int started = threads_of_this_process() - before;
+  end.set_value();
+  first.join();
+  return started;
 }
 
 // In processes of their own: threads that other tests left would be used again.
