@@ -187,7 +187,7 @@ bool soak(const Recording& recording, std::size_t frames, const Options& options
 }  // namespace diminish
 
 int main(int argc, char** argv) try {
-  constexpr std::size_t hour = 30 * 3600;
+  constexpr std::size_t hour = std::size_t{30} * 3600;
   const std::size_t frames = argc > 2 ? std::stoul(argv[2]) : hour;
   const int shrinkage = argc > 4 ? std::stoi(argv[4]) : 1;
   if (argc < 2 || argc > 5 || frames < 1000 || shrinkage < 1 || shrinkage > 16) {
