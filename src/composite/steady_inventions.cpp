@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/conditions.h"
+#include "composite/mix_inventions.h"
 #include "core/rows.h"
 #include "core/runs.h"
 #include "geometry/point_projection.h"
@@ -16,14 +16,6 @@ namespace {
 constexpr double half_life_s = 0.035;
 /// Between frames that follow one another.
 constexpr double longest_s = 0.5;
-
-/// Pixels of a row.
-constexpr int longest_run = 16;
-
-/// Whether it is made up: the colours of a bar are, too.
-bool is_made(std::uint8_t origin) {
-  return any_of(origin == provenance::inpainted, origin == provenance::estimated);
-}
 
 bool has_depth(std::uint8_t label) {
   return label != surface_label::unknown && label != surface_label::foreground;
@@ -55,12 +47,13 @@ void SteadyInventions::mix(const Inputs& inputs, DiminishedFrame& result) const 
   const Shared& last = *shared_;
   const double since_s = inputs.stamp_s - last.stamp_s;
   if (!last.color_from_world || !inputs.color_from_world || inputs.planes == nullptr ||
-      !(since_s > 0 && since_s < longest_s) || result.surfaces.label.empty()) {
+      !(since_s > 0 && since_s < longest_s) || last.part.empty() || result.surfaces.label.empty()) {
     return;
   }
   const auto share = static_cast<int>(std::lrint(256 * std::exp2(-since_s / half_life_s)));
   const FloatTransform last_from_now(*last.color_from_world * inputs.color_from_world->inverse());
   const Rect part = intersect(inputs.objects, result.surfaces.region);
+  const EarlierInventions earlier{last.picture, last.part};
   const auto place_before = [&](int x, int y) {
     const Eigen::Vector2f ray = (*rays_)(x, y);
     const float z = depth_at(result.surfaces, *inputs.planes, ray, x, y);
@@ -74,17 +67,17 @@ void SteadyInventions::mix(const Inputs& inputs, DiminishedFrame& result) const 
       x = find_equal(origin, x, part.right(), kind);
       if (x == part.right()) break;
       const int first = x;
-      const int end = std::min(part.right(), first + longest_run);
-      while (x + 1 < end && origin[x + 1] == kind && label[x + 1] == label[x]) ++x;
+      const int end = std::min(part.right(), first + InventionRun::most);
+      x = std::min(find_other(origin, first, end, kind),
+                   find_other(label, first, end, label[first])) -
+          1;
       if (!has_depth(label[x])) continue;
       // Along a short run, places of the last frame lie evenly.
       const std::optional<Eigen::Vector2f> from = place_before(first, y);
       const std::optional<Eigen::Vector2f> to = x > first ? place_before(x, y) : from;
       if (!from || !to) continue;
       const Eigen::Vector2f step = (*to - *from) / static_cast<float>(std::max(1, x - first));
-      for (int k = first; k <= x; ++k) {
-        mix(*from + static_cast<float>(k - first) * step, share, result.picture(k, y));
-      }
+      mix_inventions(earlier, {*from, step, x - first + 1}, share, result.picture.row(y) + first);
     }
   };
   for_rows(part.height, [&](Rows rows) {
@@ -96,51 +89,18 @@ void SteadyInventions::mix(const Inputs& inputs, DiminishedFrame& result) const 
   });
 }
 
-void SteadyInventions::mix(const Eigen::Vector2f& at, int share, Bgr& color) const {
-  const Shared& last = *shared_;
-  constexpr int one = 256;
-  const auto x = static_cast<int>(std::lrint(at.x() * one));
-  const auto y = static_cast<int>(std::lrint(at.y() * one));
-  const int left = x >> 8;
-  const int top = y >> 8;
-  if (!last.inner.contains(left, top)) return;
-  const std::uint8_t* const upper_origin = last.provenance.row(top) + left;
-  const std::uint8_t* const lower_origin = last.provenance.row(top + 1) + left;
-  if (!all_of(is_made(upper_origin[0]), is_made(upper_origin[1]), is_made(lower_origin[0]),
-              is_made(lower_origin[1]))) {
-    return;
-  }
-  const Bgr* const upper = last.picture.row(top) + left;
-  const Bgr* const lower = last.picture.row(top + 1) + left;
-  const int right = x & (one - 1);
-  const int down = y & (one - 1);
-  const auto mixed = [&](std::uint8_t Bgr::*channel) {
-    const int above = (one - right) * (upper[0].*channel) + right * (upper[1].*channel);
-    const int below = (one - right) * (lower[0].*channel) + right * (lower[1].*channel);
-    const int before = ((one - down) * above + down * below) >> 8;
-    const int now = one * (color.*channel);
-    const int both = share * before + (one - share) * now;
-    return static_cast<std::uint8_t>((both + one * one / 2) / (one * one));
-  };
-  color = {mixed(&Bgr::b), mixed(&Bgr::g), mixed(&Bgr::r)};
-}
-
 void SteadyInventions::keep(const Inputs& inputs, const DiminishedFrame& result) {
   Shared& last = *shared_;
   last.stamp_s = inputs.stamp_s;
   last.color_from_world = inputs.color_from_world;
   last.part = intersect(inputs.objects, result.picture.bounds());
-  last.inner = last.part;
-  last.inner.width -= 1;
-  last.inner.height -= 1;
   last.picture.resize(result.picture.width(), result.picture.height());
-  last.provenance.resize(result.picture.width(), result.picture.height());
-  for (int y = last.part.y; y < last.part.bottom(); ++y) {
-    std::copy_n(result.picture.row(y) + last.part.x, last.part.width,
-                last.picture.row(y) + last.part.x);
-    std::copy_n(result.provenance.row(y) + last.part.x, last.part.width,
-                last.provenance.row(y) + last.part.x);
-  }
+  for_rows(last.part.height, [&](Rows rows) {
+    for (int y = last.part.y + rows.first; y < last.part.y + rows.last; ++y) {
+      keep_inventions(result.picture.row(y) + last.part.x, result.provenance.row(y) + last.part.x,
+                      last.part.width, last.picture.row(y) + last.part.x);
+    }
+  });
 }
 
 }  // namespace diminish
