@@ -114,6 +114,47 @@ void ShrinkGreenRow(const std::uint8_t* upper, const std::uint8_t* lower, int co
   }
 }
 
+/// A row of `shrink_outside`. upper, lower: those of its squares' rows that count; mask: that in
+/// their middle.
+void ShrinkOutsideRow(const Bgr* upper, const Bgr* lower, const std::uint8_t* mask, int scale,
+                      int count, std::uint8_t* levels) {
+  const hn::CappedTag<std::int32_t, 16> d;
+  const hn::Rebind<std::uint8_t, decltype(d)> bytes;
+  const auto lanes = static_cast<int>(hn::Lanes(d));
+  const int left = scale / 4;
+  const int right = scale - 1 - left;
+  int x = 0;
+  // Four bytes are read for three, which the last pixel does not have.
+  for (; x + lanes < count; x += lanes) {
+    const auto column = hn::Mul(hn::Iota(d, x), hn::Set(d, scale));
+    const auto offset = hn::Mul(column, hn::Set(d, 3));
+    auto blue_red = hn::Zero(d);  // in 16 bits each
+    auto green = hn::Zero(d);
+    for (const Bgr* pixels : {upper + left, upper + right, lower + left, lower + right}) {
+      const auto color = hn::GatherOffset(d, reinterpret_cast<const std::int32_t*>(pixels), offset);
+      blue_red = hn::Add(blue_red, hn::And(color, hn::Set(d, 0xFF00FF)));
+      green = hn::Add(green, hn::And(hn::ShiftRight<8>(color), hn::Set(d, 0xFF)));
+    }
+    const auto sum =
+        hn::Add(hn::Add(hn::And(blue_red, hn::Set(d, 0xFFFF)), hn::ShiftRight<16>(blue_red)),
+                hn::Add(green, green));
+    const auto level = hn::Max(hn::Set(d, 1), hn::ShiftRight<4>(sum));
+    const auto masked =
+        hn::GatherOffset(d, reinterpret_cast<const std::int32_t*>(mask + scale / 2), column);
+    const auto is_clear = hn::Eq(hn::And(masked, hn::Set(d, 0xFF)), hn::Zero(d));
+    hn::StoreU(hn::DemoteTo(bytes, hn::IfThenElseZero(is_clear, level)), bytes, levels + x);
+  }
+  for (; x < count; ++x) {
+    int sum = 0;
+    for (const Bgr* pixels : {upper + left, upper + right, lower + left, lower + right}) {
+      const Bgr& color = pixels[x * scale];
+      sum += color.b + 2 * color.g + color.r;
+    }
+    const bool is_masked = mask[x * scale + scale / 2] != 0;
+    levels[x] = static_cast<std::uint8_t>(is_masked ? 0 : std::max(1, sum / 16));
+  }
+}
+
 }  // namespace
 }  // namespace diminish::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -125,6 +166,7 @@ namespace {
 HWY_EXPORT(SumRows);
 HWY_EXPORT(AverageColumns);
 HWY_EXPORT(ShrinkGreenRow);
+HWY_EXPORT(ShrinkOutsideRow);
 
 }  // namespace
 
@@ -169,6 +211,16 @@ void shrink_green(ImageView<Bgr> image, Image<std::uint8_t>& small) {
        small.row(y));
     }
   });
+}
+
+void shrink_outside(ImageView<Bgr> image, const Mask& mask, int scale, Image<std::uint8_t>& small) {
+  small.resize(image.width() / scale, image.height() / scale);
+  for (int y = 0; y < small.height(); ++y) {
+    const int top = y * scale;
+    HWY_DYNAMIC_DISPATCH(ShrinkOutsideRow)
+    (image.row(top + scale / 4), image.row(top + scale - 1 - scale / 4), mask.row(top + scale / 2),
+     scale, small.width(), small.row(y));
+  }
 }
 
 }  // namespace diminish

@@ -9,7 +9,8 @@
 namespace diminish {
 
 // Pictures made smaller by a whole factor: from all colours of each square (`shrink`), or from as
-// few pixels as finding markers needs (`shrink_green`). ShrunkPicture computes pixels on demand.
+// few pixels as finding markers needs (`shrink_green`) or telling frames apart (`shrink_outside`).
+// ShrunkPicture computes pixels on demand.
 
 /// The size that `shrink` makes of a picture. Up to `scale - 1` columns and rows at the right and
 /// below are left out; a picture narrower or lower than `scale` becomes one pixel wide or high.
@@ -27,5 +28,10 @@ void shrink(ImageView<Bgr> image, int scale, const Rect& part, std::vector<std::
 /// Enough to see a marker, and little memory to read.
 inline constexpr int green_shrinkage = 4;
 void shrink_green(ImageView<Bgr> image, Image<std::uint8_t>& small);
+
+/// A coarse grey picture, for comparing frames: each pixel is the mean of b, g, g and r of four
+/// pixels of a square, at least 1; 0 where the mask is set in the square's middle. scale: the
+/// square's side. Both images have the same size.
+void shrink_outside(ImageView<Bgr> image, const Mask& mask, int scale, Image<std::uint8_t>& small);
 
 }  // namespace diminish

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <opencv2/core.hpp>
 #include <random>
@@ -74,6 +75,34 @@ TEST(ShrinkGreen, IsTheMeanOfTheMiddleRows) {
           sum += image(4 * x + i, 4 * y + 1).g + image(4 * x + i, 4 * y + 2).g;
         }
         ASSERT_NEAR(small(x, y), sum / 8, 0.5) << width << ": " << x << ' ' << y;
+      }
+    }
+  }
+}
+
+TEST(ShrinkOutside, IsTheWeightedMeanOfFourPixelsAndZeroOnTheMask) {
+  const Image<Bgr> image = testing::noise(263, 83);
+  std::mt19937 random(2);
+  Mask mask(image.width(), image.height());
+  for (std::uint8_t& value : mask) value = random() % 3 == 0 ? 255 : 0;
+  Image<std::uint8_t> small;
+  for (int scale = 1; scale <= 9; ++scale) {
+    shrink_outside(image, mask, scale, small);
+    ASSERT_EQ(small.bounds(), (Rect{0, 0, image.width() / scale, image.height() / scale}));
+    const int near = scale / 4;
+    const int far = scale - 1 - near;
+    for (int y = 0; y < small.height(); ++y) {
+      for (int x = 0; x < small.width(); ++x) {
+        double sum = 0;
+        for (const int row : {y * scale + near, y * scale + far}) {
+          for (const int column : {x * scale + near, x * scale + far}) {
+            const Bgr& color = image(column, row);
+            sum += color.b / 4. + color.g / 2. + color.r / 4.;
+          }
+        }
+        const bool is_masked = mask(x * scale + scale / 2, y * scale + scale / 2) != 0;
+        ASSERT_EQ(small(x, y), is_masked ? 0 : std::max(1., std::floor(sum / 4)))
+            << scale << ": " << x << ' ' << y;
       }
     }
   }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/shrink.h"
+
 namespace diminish {
 namespace {
 
@@ -116,21 +118,7 @@ void StreamDelay::remember(const Inputs& inputs, std::size_t cameras) {
   }
   now.stamp_s = inputs.stamp_s;
   now.color_from_world = inputs.color_from_world;
-  const int s = shrinkage_;
-  now.grey.resize(inputs.picture.width() / s, inputs.picture.height() / s);
-  for (int y = 0; y < now.grey.height(); ++y) {
-    const std::uint8_t* const hidden = inputs.occlusion.row(y * s + s / 2);
-    const Bgr* const upper = inputs.picture.row(y * s + s / 4);
-    const Bgr* const lower = inputs.picture.row(y * s + s - 1 - s / 4);
-    for (int x = 0; x < now.grey.width(); ++x) {
-      const int left_x = x * s + s / 4;
-      const int right_x = x * s + s - 1 - s / 4;
-      const int sum = level_of(upper[left_x]) + level_of(upper[right_x]) + level_of(lower[left_x]) +
-                      level_of(lower[right_x]);
-      const bool is_object = hidden[x * s + s / 2] != 0;
-      now.grey(x, y) = static_cast<std::uint8_t>(is_object ? 0 : std::max(1, sum / 16));
-    }
-  }
+  shrink_outside(inputs.picture, inputs.occlusion, shrinkage_, now.grey);
   moments.push_back(std::move(now));
 }
 
