@@ -12,7 +12,6 @@ constexpr float least_step_m = 0.05F;
 constexpr float reach_m = 2;  ///< beyond it the least step grows with the distance's square
 /// Metres per metre: how fast the depth of a surface changes that is seen at 60 degrees.
 constexpr float steepest = 1.7F;
-constexpr int none = -1;
 
 /// z where a known pixel was measured, else 0. x, y: in the codes.
 float depth_at(const FarSide::Input& input, int x, int y) {
@@ -45,23 +44,32 @@ const std::vector<FarSide::Place>& FarSide::find_front(const Input& input) {
     if (z0 == 0 || z1 == 0 || !are_apart(z0, z1, apart, picture_width)) return;
     front_.push_back(z0 < z1 ? a : b);
   };
-  above_.assign(static_cast<std::size_t>(width), none);
+  above_.resize(static_cast<std::size_t>(width));
+  is_below_.assign(static_cast<std::size_t>(width), 0);
   for (int y = 0; y < codes.height(); ++y) {
     const std::uint8_t* const row = codes.row(y);
-    for (int x = find_equal(row, 0, width, input.hole); x < width;) {
-      const int end = find_other(row, x, width, input.hole);
-      if (x > 0 && end < width) compare({x - 1, y}, {end, y}, end - x + 1);
-      x = find_equal(row, end, width, input.hole);
-    }
-    for (int x = 0; x < width; ++x) {
-      int& above = above_[static_cast<std::size_t>(x)];
-      if (row[x] == input.hole) {
-        // Nothing is known above the first row.
-        if (above == none && y > 0) above = y - 1;
-      } else if (above != none) {
-        compare({x, above}, {x, y}, y - above);
-        above = none;
+    std::uint8_t* const is_below = is_below_.data();
+    // Nothing is known above the first row.
+    const auto begin_columns = [&](int first, int last) {
+      for (int x = first; y > 0 && (x = find_equal(is_below, x, last, 0)) < last; ++x) {
+        is_below[x] = 1;
+        above_[static_cast<std::size_t>(x)] = y - 1;
       }
+    };
+    const auto end_columns = [&](int first, int last) {
+      for (int x = first; (x = find_equal(is_below, x, last, 1)) < last; ++x) {
+        is_below[x] = 0;
+        const int above = above_[static_cast<std::size_t>(x)];
+        compare({x, above}, {x, y}, y - above);
+      }
+    };
+    for (int x = 0; x < width;) {
+      const int begin = find_equal(row, x, width, input.hole);
+      end_columns(x, begin);
+      const int end = find_other(row, begin, width, input.hole);
+      begin_columns(begin, end);
+      if (begin > 0 && end < width) compare({begin - 1, y}, {end, y}, end - begin + 1);
+      x = end;
     }
   }
   return front_;

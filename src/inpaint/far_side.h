@@ -33,7 +33,8 @@ class FarSide {
 
  private:
   std::vector<Place> front_;
-  std::vector<int> above_;  ///< by column: the row above the hole that goes on; or none
+  std::vector<std::uint8_t> is_below_;  ///< by column: whether a hole goes on, below `above_`
+  std::vector<int> above_;              ///< by column: the row above it
 };
 
 }  // namespace diminish

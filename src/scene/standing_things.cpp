@@ -154,13 +154,15 @@ void StandingThings::lower(const View& view, int x, int y, Surfaces& surfaces) c
   const Eigen::Vector2f start(static_cast<float>(x), static_cast<float>(y));
   const Eigen::Vector2f way = *end - start;
   const auto steps = static_cast<int>(std::ceil(way.lpNorm<Eigen::Infinity>()));
+  // 1 / z is linear along a line in the picture.
+  const float at_top = 1 / top.z();
+  const float to_foot = 1 / foot.z() - at_top;
   bool is_checked = false;
   for (int i = 1; i <= steps; ++i) {
     const float share = static_cast<float>(i) / static_cast<float>(steps);
     const auto& [column, row] = nearest_pixel(start + share * way);
     if (!view.part.contains(column, row)) return;
-    // 1 / z is linear along a line in the picture.
-    const float z = 1 / (1 / top.z() + share * (1 / foot.z() - 1 / top.z()));
+    const float z = 1 / (at_top + share * to_foot);
     if (!view.hides(column, row, z)) continue;
     if (!is_checked && !is_solid(view, top, height_m)) return;
     is_checked = true;
@@ -173,45 +175,66 @@ void StandingThings::lower(const View& view, int x, int y, Surfaces& surfaces) c
 /// Marks a row's pixels of things that have something further away beside or below them. Not those
 /// at the back: what is below them is hidden by what is below the front.
 void StandingThings::find_edges(const View& view, int y, int begin, int end, std::uint8_t* edges) {
+  // Things cover little of the picture.
+  constexpr int at_once = 64;
   const std::uint8_t* const label = view.label.row(y);
   const float* const own = view.input.reconstruction.depth_m.row(y);
   const float* const below = view.input.reconstruction.depth_m.row(y + 1);
-  for (int x = begin; x < end; ++x) {
-    const float furthest = own[x] + thing_step_m;
-    const bool is_beside = any_of(own[x - 1] == 0, own[x - 1] > furthest, own[x + 1] == 0,
-                                  own[x + 1] > furthest, below[x] == 0, below[x] > furthest);
-    edges[x] = all_of(label[x] == surface_label::foreground, is_beside) ? 1 : 0;
+  std::fill(edges + begin, edges + end, std::uint8_t{0});
+  for (int first = begin;
+       (first = find_equal(label, first, end, surface_label::foreground)) < end;) {
+    const int last = std::min(first + at_once, end);
+    for (int x = first; x < last; ++x) {
+      const float furthest = own[x] + thing_step_m;
+      const bool is_beside = any_of(own[x - 1] == 0, own[x - 1] > furthest, own[x + 1] == 0,
+                                    own[x + 1] > furthest, below[x] == 0, below[x] > furthest);
+      edges[x] = all_of(label[x] == surface_label::foreground, is_beside) ? 1 : 0;
+    }
+    first = last;
   }
 }
 
 /// What lies in a row between two such pixels, or between one and the thing itself, is part of the
 /// thing, too: things have no slits.
 void StandingThings::close_slits(const View& view, Surfaces& surfaces) {
+  const int end = view.part.right();
   for (int y = view.part.y; y < view.part.bottom(); ++y) {
     std::uint8_t* const label = surfaces.label.row(y);
-    int begin = find_equal(label, view.part.x, view.part.right(), surface_label::standing);
-    if (begin == view.part.right()) continue;
-    begin = std::max(view.part.x, begin - widest_slit_px);
-    int last = view.part.right();  ///< the last pixel of a thing; none yet
-    float last_z = 0;
-    for (int x = begin; x < view.part.right(); ++x) {
-      const bool stands = label[x] == surface_label::standing;
-      if (!stands && label[x] != surface_label::foreground) continue;
-      const float z = stands ? surfaces.standing_depth_m(x, y) : view.depth_m(x, y);
-      const bool is_slit = x - last > 1 && x - last <= widest_slit_px &&
-                           (stands || label[last] == surface_label::standing) &&
-                           std::abs(z - last_z) < slit_step_m;
-      bool is_free = is_slit;
-      for (int k = last + 1; is_free && k < x; ++k) {
+    const int standing = find_equal(label, view.part.x, end, surface_label::standing);
+    if (standing == end) continue;
+    const int begin = std::max(view.part.x, standing - widest_slit_px);
+    std::uint8_t* const things = row_.data();
+    for (int x = begin; x < end; ++x) {
+      things[x] = any_of(label[x] == surface_label::standing, label[x] == surface_label::foreground)
+                      ? 1
+                      : 0;
+    }
+    const auto depth_m = [&](int x) {
+      return label[x] == surface_label::standing ? surfaces.standing_depth_m(x, y)
+                                                 : view.depth_m(x, y);
+    };
+    const auto close = [&](int last, int next) {
+      if (next - last > widest_slit_px ||
+          (label[last] != surface_label::standing && label[next] != surface_label::standing)) {
+        return;
+      }
+      const float z = depth_m(next);
+      const float last_z = depth_m(last);
+      bool is_free = std::abs(z - last_z) < slit_step_m;
+      for (int k = last + 1; is_free && k < next; ++k) {
         is_free = view.hides(k, y, std::max(z, last_z));
       }
-      for (int k = last + 1; is_free && k < x; ++k) {
+      if (!is_free) return;
+      for (int k = last + 1; k < next; ++k) {
         label[k] = surface_label::standing;
         surfaces.standing_depth_m(k, y) = std::max(z, last_z);
       }
-      last = x;
-      last_z = z;
-    }
+    };
+    int last = end;  ///< the last pixel of a thing; none yet
+    for_each_run(things, begin, end, Pixels::set, [&](int first, int after) {
+      if (last < end) close(last, first);
+      last = after - 1;
+    });
   }
 }
 
@@ -265,12 +288,10 @@ void StandingThings::find(const Input& input, Surfaces& surfaces) {
     std::copy_n(surfaces.label.row(row) + part.x, part.width, before_.row(row) + part.x);
   }
   const Rect inner = intersect(view.part, grow(drawn, -1));
-  edges_.resize(static_cast<std::size_t>(surfaces.label.width()));
+  row_.resize(static_cast<std::size_t>(surfaces.label.width()));
   for (int y = inner.y; y < inner.bottom(); ++y) {
-    find_edges(view, y, inner.x, inner.right(), edges_.data());
-    for (int x = inner.x;; ++x) {
-      x = find_equal(edges_.data(), x, inner.right(), 1);
-      if (x >= inner.right()) break;
+    find_edges(view, y, inner.x, inner.right(), row_.data());
+    for (int x = inner.x; (x = find_equal(row_.data(), x, inner.right(), 1)) < inner.right(); ++x) {
       const float z = view.depth_m(x, y);
       const bool hides =
           view.hides(x - 1, y, z) || view.hides(x + 1, y, z) || view.hides(x, y + 1, z);

@@ -61,14 +61,14 @@ class StandingThings {
   bool is_top(const View& view, int x, int y) const;
   void lower(const View& view, int x, int y, Surfaces& surfaces) const;
   static void find_edges(const View& view, int y, int begin, int end, std::uint8_t* edges);
-  static void close_slits(const View& view, Surfaces& surfaces);
+  void close_slits(const View& view, Surfaces& surfaces);
   void drop_loose(const View& view, Surfaces& surfaces);
 
   std::vector<Camera> cameras_;
   Projection color_;
   RayGrid rays_;
-  Image<std::uint8_t> before_;       ///< the labels of the mask's box
-  std::vector<std::uint8_t> edges_;  ///< of a row
+  Image<std::uint8_t> before_;     ///< the labels of the mask's box
+  std::vector<std::uint8_t> row_;  ///< what pixels of a row are
   ConnectedRegions regions_;
   std::vector<std::uint8_t> is_held_;  ///< by region
 };
