@@ -125,9 +125,12 @@ void CameraBlender::measure_cells(int cell_row, Scratch& scratch) {
   const Rect first = grid_.cell(0, cell_row);
   // The cameras that see the nearest surface in all rows of a column.
   scratch.bytes.assign(static_cast<std::size_t>(region_.width), 255);
+  std::uint8_t* const seen_by = scratch.bytes.data();
   for (int y = first.y; y < first.bottom(); ++y) {
     const std::uint8_t* const seen = seen_.row(y);
-    for (std::size_t x = 0; x < scratch.bytes.size(); ++x) scratch.bytes[x] &= seen[x];
+    // A local copy: a stored byte could alias the member.
+    const int width = region_.width;
+    for (int x = 0; x < width; ++x) seen_by[x] &= seen[x];
   }
   const int bottom = first.bottom() - 1;
   for (std::size_t k = 0; k < surfaces_->size(); ++k) {

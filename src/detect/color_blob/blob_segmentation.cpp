@@ -32,19 +32,19 @@ void BlobSegmentation::find_seeds() {
   dilate(smooth_, {1, 1}, picture_scratch_, lightest_);
   erode(smooth_, {1, 1}, picture_scratch_, darkest_);
   gradient_.resize(small_.width(), small_.height());
-  for (std::size_t i = 0; i < gradient_.size(); ++i) {
-    const Bgr& light = lightest_.data()[i];
-    const Bgr& dark = darkest_.data()[i];
-    gradient_.data()[i] =
-        static_cast<std::uint8_t>(std::max({light.b - dark.b, light.g - dark.g, light.r - dark.r}));
-  }
+  std::transform(lightest_.begin(), lightest_.end(), darkest_.begin(), gradient_.begin(),
+                 [](const Bgr& light, const Bgr& dark) {
+                   const int blue_green = std::max(light.b - dark.b, light.g - dark.g);
+                   return static_cast<std::uint8_t>(std::max(blue_green, light.r - dark.r));
+                 });
   // What changes less than this, in 8-bit levels, is even; noise has minima everywhere.
   constexpr std::uint8_t even = 6;
   erode(gradient_, {2, 2}, scratch_, lowest_);
   seeds_.resize(small_.width(), small_.height());
-  for (std::size_t i = 0; i < seeds_.size(); ++i) {
-    seeds_.data()[i] = gradient_.data()[i] <= std::max(lowest_.data()[i], even) ? 255 : 0;
-  }
+  std::transform(gradient_.begin(), gradient_.end(), lowest_.begin(), seeds_.begin(),
+                 [](std::uint8_t own, std::uint8_t lowest) -> std::uint8_t {
+                   return own <= even || own <= lowest ? 255 : 0;
+                 });
   seed_regions_.find(seeds_, Pixels::set, Connectivity::four);
   labels_.resize(small_.width(), small_.height(), 0);
   for (const ConnectedRegions::Run& run : seed_regions_.runs()) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "core/extremum_filters.h"
 
@@ -41,12 +42,15 @@ void CandidateWindows::take_samples(ImageView<Bgr> image, const ColorTable& tabl
     const Bgr* row = image.row(std::min(y * pitch + pitch / 2, image.height() - 1));
     std::uint8_t* const candidate = candidates_.row(y);
     std::uint8_t* const core = core_.row(y);
-    for (int x = 0; x < candidates_.width(); ++x, row += pitch) {
+    // Local copies: a stored byte could alias what they are read from.
+    const int width = candidates_.width();
+    const auto [most_neighbor, most_core] = std::pair(limits.neighbor, limits.core);
+    for (int x = 0; x < width; ++x, row += pitch) {
       const Bgr& a = row[beside];
       const Bgr& b = row[middle];
       const ColorTable::Entry entry = table({mean(a.b, b.b), mean(a.g, b.g), mean(a.r, b.r)});
-      candidate[x] = entry.neighbor <= limits.neighbor ? 255 : 0;
-      core[x] = entry.core <= limits.core ? 1 : 0;
+      candidate[x] = entry.neighbor <= most_neighbor ? 255 : 0;
+      core[x] = entry.core <= most_core ? 1 : 0;
     }
   }
 }

@@ -101,10 +101,12 @@ void ColorBlobFinder::find_levels(double spread) {
   }
   levels_.resize(labels.width(), labels.height());
   selected_.resize(labels.width(), labels.height());
-  for (std::size_t i = 0; i < labels.size(); ++i) {
-    levels_.data()[i] = level_of_blob_[labels.data()[i]];
-    selected_.data()[i] = core_of_blob_[labels.data()[i]];
-  }
+  const auto look_up = [&](const std::vector<std::uint8_t>& of_blob, Image<std::uint8_t>& to) {
+    std::transform(labels.begin(), labels.end(), to.begin(),
+                   [by_blob = of_blob.data()](std::uint32_t blob) { return by_blob[blob]; });
+  };
+  look_up(level_of_blob_, levels_);
+  look_up(core_of_blob_, selected_);
   dilate(selected_, {1, 1}, scratch_, closed_);
   erode(closed_, {1, 1}, scratch_, core_);
 }

@@ -50,18 +50,21 @@ void OutlineRefinement::find_band(const Mask& region, const Rect& box) {
   coarse_.resize(box.width + 2 * rim, box.height + 2 * rim);
   for (int y = 0; y < coarse_.height(); ++y) {
     const std::uint8_t* const row = region.row(std::clamp(box.y + y - rim, 0, region.height() - 1));
-    for (int x = 0; x < coarse_.width(); ++x) {
-      coarse_(x, y) = row[std::clamp(box.x + x - rim, 0, region.width() - 1)];
-    }
+    std::uint8_t* const coarse = coarse_.row(y);
+    // A local copy: a stored byte could alias the member.
+    const int width = coarse_.width();
+    const int last = region.width() - 1;
+    for (int x = 0; x < width; ++x) coarse[x] = row[std::clamp(box.x + x - rim, 0, last)];
   }
   erode(coarse_, {inward, inward}, scratch_, inside_);
   dilate(coarse_, {outward, outward}, scratch_, not_outside_);
   cells_.resize(coarse_.width(), coarse_.height());
-  for (std::size_t i = 0; i < cells_.size(); ++i) {
-    const std::uint8_t not_inside =
-        not_outside_.data()[i] != 0 ? Labels::unknown : background_label;
-    cells_.data()[i] = inside_.data()[i] != 0 ? object_label : not_inside;
-  }
+  std::transform(inside_.begin(), inside_.end(), not_outside_.begin(), cells_.begin(),
+                 [](std::uint8_t inside, std::uint8_t not_outside) {
+                   const std::uint8_t not_inside =
+                       not_outside != 0 ? Labels::unknown : background_label;
+                   return inside != 0 ? object_label : not_inside;
+                 });
 }
 
 void OutlineRefinement::set_labels(int scale) {
@@ -126,8 +129,8 @@ void OutlineRefinement::write_object(const Rect& part, const Rect& visible, Mask
   object.resize(visible.width, visible.height);
   for (int y = 0; y < visible.height; ++y) {
     const std::uint8_t* const label = labels_.row(visible.y - part.y + y) + (visible.x - part.x);
-    std::uint8_t* const row = object.row(y);
-    for (int x = 0; x < visible.width; ++x) row[x] = label[x] == object_label ? 255 : 0;
+    std::transform(label, label + visible.width, object.row(y),
+                   [](std::uint8_t own) -> std::uint8_t { return own == object_label ? 255 : 0; });
   }
   for (const int pixel : watershed_.line()) {
     const int x = pixel % labels_.width() + part.x - visible.x;
