@@ -45,6 +45,7 @@ StartUp measure_start_up(const Recording& input, const std::vector<FrameSet>& fr
   std::list<PipelineWithResult> others;
   for (std::size_t i = 0; i < further; ++i) {
     PipelineWithResult& other = others.emplace_back(input, options);
+    other.pipeline.share_memory(first.pipeline);
     for (std::size_t k = 0; k < std::min(frames.size(), most_frames); ++k) {
       other.pipeline.process(frames[k], other.result);
     }
