@@ -6,7 +6,7 @@
 // as the machine can. It should find its poses by markers: poses from files end with them. Prints
 // 24 stretches of the frames; ends with 1 if memory, handles or threads grow from the third on,
 // or if a frame takes a fifth more CPU time in the last two than in the third and fourth. Stopped
-// by ctrl-C or SIGTERM, it judges what ran until then, and ends with 3.
+// by ctrl-C or SIGTERM, it judges what ran until then, and ends with 1 or 3.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,6 +15,7 @@
 #include <cstdio>
 #include <ctime>
 #include <exception>
+#include <optional>
 #include <vector>
 
 #include "core/shrink.h"
@@ -139,12 +140,12 @@ void add(std::size_t end, double begun_ms, std::vector<double>& times_ms,
   std::fflush(stdout);
 }
 
-/// Whether it is the same at the end as at the start. Too few stretches are not.
-bool is_steady(const std::vector<Stretch>& done) {
+/// Whether it is the same at the end as at the start; nothing of too few stretches.
+std::optional<bool> is_steady(const std::vector<Stretch>& done) {
   constexpr std::size_t fewest = 6;
   if (done.size() < fewest) {
     std::printf("too short to judge: %zu of %zu stretches\n", done.size(), stretches);
-    return false;
+    return std::nullopt;
   }
   const Stretch& start = done[2];
   const Stretch& end = done.back();
@@ -159,8 +160,9 @@ bool is_steady(const std::vector<Stretch>& done) {
          end_ms <= steady_time * start_ms;
 }
 
-/// Returns whether it is the same at the end as at the start.
-bool soak(const Recording& recording, std::size_t frames, const Options& options, int shrinkage) {
+/// Returns whether it is the same at the end as at the start, if that can be told.
+std::optional<bool> soak(const Recording& recording, std::size_t frames, const Options& options,
+                         int shrinkage) {
   Player player(recording, options, shrinkage);
   std::printf("%zu frames, %.1f hours at %.0f frames a second, %d pixels wide; memory %s\n", frames,
               static_cast<double>(frames) / frames_per_second / 3600, frames_per_second,
@@ -200,11 +202,11 @@ int main(int argc, char** argv) try {
   for (const int signal : {SIGINT, SIGTERM}) {
     std::signal(signal, [](int) { diminish::is_stopped = 1; });
   }
-  const bool is_steady =
+  const std::optional<bool> is_steady =
       diminish::soak(diminish::load_recording(argv[1]), frames, options, shrinkage);
-  std::puts(is_steady ? "steady" : "NOT steady");
-  if (diminish::is_stopped != 0) return 3;
-  return is_steady ? 0 : 1;
+  if (is_steady) std::puts(*is_steady ? "steady" : "NOT steady");
+  if (is_steady && !*is_steady) return 1;
+  return diminish::is_stopped == 0 ? 0 : 3;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "%s\n", error.what());
   return 1;
