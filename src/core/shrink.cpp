@@ -124,8 +124,9 @@ void ShrinkOutsideRow(const Bgr* upper, const Bgr* lower, const std::uint8_t* ma
   const int left = scale / 4;
   const int right = scale - 1 - left;
   int x = 0;
-  // Four bytes are read for three, which the last pixel does not have.
-  for (; x + lanes < count; x += lanes) {
+  // Four bytes are read for three of the picture and for one of the mask, which the last pixels do
+  // not have.
+  for (; x + lanes <= count - 3; x += lanes) {
     const auto column = hn::Mul(hn::Iota(d, x), hn::Set(d, scale));
     const auto offset = hn::Mul(column, hn::Set(d, 3));
     auto blue_red = hn::Zero(d);  // in 16 bits each
