@@ -39,6 +39,7 @@ class RenderNodeTest : public ::testing::Test {
   RenderNodeTest() {
     options_.memory = "off";
     options_.complete_sides = false;
+    options_.draw_bars = false;
     options_.smooth_colors = false;
   }
 

@@ -84,6 +84,7 @@ Options comparable() {
   Options options;
   options.memory = "off";
   options.complete_sides = false;
+  options.draw_bars = false;
   options.smooth_colors = false;
   return options;
 }

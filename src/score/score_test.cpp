@@ -112,12 +112,12 @@ TEST_F(ScoreTest, GivesTheFiguresThatAreKnown) {
   EXPECT_TRUE(result.not_written.empty());
 }
 
-// Four stripes of 4 pixels, each with an error of its own.
+// Five stripes of 4 pixels, each with an error of its own.
 TEST_F(ScoreTest, TellsOriginsApart) {
-  constexpr std::array<int, 4> codes{2, 200, 201, 254};
+  constexpr std::array<int, 5> codes{2, 200, 201, 202, 254};
   Image<std::uint8_t> origins(width, height, 0);
   cv::Mat result = truth.clone();
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < 5; ++i) {
     const Rect stripe{square.x + 4 * i, square.y, 4, square.height};
     origins.fill(stripe, static_cast<std::uint8_t>(codes[static_cast<std::size_t>(i)]));
     result(cv::Rect(stripe.x, stripe.y, stripe.width, stripe.height)) +=
@@ -129,7 +129,7 @@ TEST_F(ScoreTest, TellsOriginsApart) {
   cv::Mat grown;
   cv::distanceTransform(~painted_mask(square), grown, cv::DIST_L2, cv::DIST_MASK_PRECISE);
   const double share = 4.0 * square.height / cv::countNonZero(grown <= 3.0001);
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < 5; ++i) {
     const auto& origin = scored.frames[1].origins[static_cast<std::size_t>(i)];
     ASSERT_TRUE(origin) << score_origins[static_cast<std::size_t>(i)];
     EXPECT_NEAR(origin->share, share, 1e-9);
