@@ -71,48 +71,50 @@ void CameraChoice::look(const FrameSet& frame, const Poses& poses, const Occlusi
   const double age_s = std::abs(frame.rgbd[k].depth_stamp_s - frame.stamp_s);
   const auto freshness = static_cast<float>(std::exp2(-age_s / half_life_s));
   std::fill(camera.worth.begin(), camera.worth.end(), 0.F);
-  // step: between pixels that are looked at.
-  const auto look_at = [&](int x, int y, int step) {
-    if (depth(x, y) == 0 || objects(x, y) != 0) return;
+  struct Seen {
+    Eigen::Vector3f point;
+    float depth_m, u, v;
+  };
+  const auto see = [&](int x, int y, Seen& seen) {
+    if (depth(x, y) == 0 || objects(x, y) != 0) return false;
     const float z = static_cast<float>(depth(x, y)) * camera.depth_unit_m;
     const Eigen::Vector2f ray = (*camera.rays)(x, y);
-    Eigen::Vector3f point;
     for (int axis = 0; axis < 3; ++axis) {
-      point[axis] = user_from_depth.apply(axis, ray.x() * z, ray.y() * z, z);
+      seen.point[axis] = user_from_depth.apply(axis, ray.x() * z, ray.y() * z, z);
     }
-    float u = 0;
-    float v = 0;
-    if (!(point.z() > 0) || !user_.distort(point.x() / point.z(), point.y() / point.z(), u, v)) {
-      return;
-    }
-    const float worth = freshness * alikeness(point, place);
-    // In the picture, from the point to half of the way to the next.
-    const float reach_px =
-        step == 1 ? 0 : static_cast<float>(step) * user_.fx / camera.fx * z / point.z() / 2;
-    const Rect around =
-        grow({static_cast<int>(std::floor(u)), static_cast<int>(std::floor(v)), 1, 1},
-             static_cast<int>(std::min(reach_px, most_reach_px)));
-    const auto tile_of = [](int pixel) {
-      return static_cast<int>(std::floor(static_cast<float>(pixel) / tile_px));
-    };
-    for (int row = tile_of(around.y); row <= tile_of(around.bottom() - 1); ++row) {
-      for (int column = tile_of(around.x); column <= tile_of(around.right() - 1); ++column) {
-        if (!tiles_.contains(column, row) || !wanted_[tile_at(column, row)]) continue;
-        float& best = camera.worth[tile_at(column, row)];
-        best = std::max(best, worth);
-      }
-    }
+    seen.depth_m = z;
+    const Eigen::Vector3f& point = seen.point;
+    return point.z() > 0 &&
+           user_.distort(point.x() / point.z(), point.y() / point.z(), seen.u, seen.v);
   };
+  const auto raise = [&](int column, int row, const Eigen::Vector3f& point) {
+    if (!tiles_.contains(column, row) || !wanted_[tile_at(column, row)]) return;
+    float& best = camera.worth[tile_at(column, row)];
+    best = std::max(best, freshness * alikeness(point, place));
+  };
+  const auto tile_of = [](float pixel) { return static_cast<int>(std::floor(pixel / tile_px)); };
+  Seen seen;
   if (frame.rgbd[k].is_remote()) {
     const Glance& glance = frame.rgbd[k].remote->glance();
     for (const GlancePoint& point : glance.points) {
-      look_at(point.column, point.row, glance.point_step_px);
+      if (!see(point.column, point.row, seen)) continue;
+      // In the picture, from the point to half of the way to the next.
+      const float reach_px = static_cast<float>(glance.point_step_px) * user_.fx / camera.fx *
+                             seen.depth_m / seen.point.z() / 2;
+      const float reach = std::floor(std::min(reach_px, most_reach_px));
+      for (int row = tile_of(seen.v - reach); row <= tile_of(seen.v + reach); ++row) {
+        for (int column = tile_of(seen.u - reach); column <= tile_of(seen.u + reach); ++column) {
+          raise(column, row, seen.point);
+        }
+      }
     }
     return;
   }
   const int step = std::max(1, depth.width() / columns_of_image);
   for (int y = step / 2; y < depth.height(); y += step) {
-    for (int x = step / 2; x < depth.width(); x += step) look_at(x, y, 1);
+    for (int x = step / 2; x < depth.width(); x += step) {
+      if (see(x, y, seen)) raise(tile_of(seen.u), tile_of(seen.v), seen.point);
+    }
   }
 }
 
