@@ -66,14 +66,18 @@ struct RenderNode::Implementation {
     while (!is_stopped) {
       const std::size_t before = images;
       std::string what;
+      bool is_done = false;
       try {
         read_until_gone();
-        has_ended = !is_stopped;
-        return;
+        is_done = true;
       } catch (const std::exception& error) {
         set_text(what, error.what());
       } catch (...) {
         set_text(what, "an unknown error");
+      }
+      if (is_done) {
+        has_ended = !is_stopped;
+        return;
       }
       note_failure(what.c_str());
       retry_s = images > before ? first_retry_s : std::min(2 * retry_s, last_retry_s);

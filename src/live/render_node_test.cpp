@@ -61,7 +61,7 @@ class RenderNodeTest : public ::testing::Test {
       const LiveSession& session, const std::function<bool(const LiveFrame&)>& suits) {
     std::size_t number = 0;
     for (const double end_s = monotonic_now_s() + 60; monotonic_now_s() < end_s;) {
-      const auto frame = session.wait_for_frame(number, milliseconds(200));
+      auto frame = session.wait_for_frame(number, milliseconds(200));
       if (!frame) continue;
       number = frame->number;
       if (suits(*frame)) return frame;

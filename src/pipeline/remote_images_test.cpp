@@ -50,6 +50,7 @@ class RemoteImagesTest : public ::testing::Test {
     Pipeline local(recording_.rig, recording_.scene, options);
     Pipeline merging(recording_.rig, recording_.scene, options);
     std::vector<std::unique_ptr<NodeInProcess>> nodes;
+    nodes.reserve(remote.size());
     for (const std::size_t k : remote) {
       nodes.push_back(std::make_unique<NodeInProcess>(recording_, k, settings));
     }

@@ -28,7 +28,7 @@ class ObjectPlaceTest : public ::testing::Test {
     for (const double x : {panel_min.x(), panel_max.x()}) {
       for (const double y : {panel_min.y(), panel_max.y()}) {
         for (const double z : {panel_min.z(), panel_max.z()}) {
-          settings->vertices.push_back(Eigen::Vector3d(x, y, z) - marker_at);
+          settings->vertices.emplace_back(Eigen::Vector3d(x, y, z) - marker_at);
         }
       }
     }

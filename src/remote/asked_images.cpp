@@ -89,7 +89,8 @@ void AskedImages::draw(const RemoteDrawing& drawing) {
   {
     const std::lock_guard lock(mutex_);
     layer_state_ = State::asked;
-    layer_.region = drawing.region;
+    const Rect& region = drawing.region;
+    layer_.region = region;
     drawing_since_s_ = monotonic_now_s();
   }
   NodeHead head = head_;

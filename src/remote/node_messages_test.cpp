@@ -169,7 +169,7 @@ TEST(NodeMessages, SurfacesWithoutLossAreSmall) {
   std::vector<std::uint8_t> bytes;
   compress_exactly(plane, bytes);
   // But for the first row and column, of which less is known.
-  EXPECT_LT(bytes.size(), plane.size() + 2 * (200 + 100));
+  EXPECT_LT(bytes.size(), plane.size() + std::size_t{2} * (200 + 100));
   Image<float> back(plane.width(), plane.height());
   decompress_exactly(bytes, 1, back);
   EXPECT_EQ(back, plane);
@@ -250,7 +250,7 @@ TEST(NodeMessages, BrokenOnesAreRefused) {
   const auto read_answer = [&](const std::vector<std::uint8_t>& bytes) {
     auto message = open_answer(bytes);
     RemoteLayer read_one;
-    read_one.region = region;
+    read_one.region = {region.x, region.y, region.width, region.height};
     read(message.rest, read_one);
   };
   const auto try_all = [](const std::vector<std::uint8_t>& whole, const auto& read_one) {

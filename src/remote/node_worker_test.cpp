@@ -71,7 +71,7 @@ TEST_F(NodeWorkerTest, DrawsWhatItIsAskedFor) {
   auto message = open_answer(answers_.back());
   EXPECT_EQ(message.head.topic, NodeTopic::layer);
   RemoteLayer layer;
-  layer.region = region_;
+  layer.region = {region_.x, region_.y, region_.width, region_.height};
   read(message.rest, layer);
   std::size_t drawn = 0;
   for (int y = 0; y < layer.inverse_z.height(); ++y) {

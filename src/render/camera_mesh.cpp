@@ -15,7 +15,7 @@ void draw_cells_between(const VertexRow& upper, const VertexRow& lower,
   VertexBounds next = join(upper.bounds[0], lower.bounds[0]);
   for (int block = 0; block < blocks; ++block) {
     const VertexBounds own = next;
-    const auto beside = static_cast<std::size_t>(block + 1);
+    const auto beside = static_cast<std::size_t>(block) + 1;
     next = join(upper.bounds[beside], lower.bounds[beside]);
     const VertexBounds both = join(own, next);
     if (!both.overlaps(part) || !input.region.touches(intersect(both.rect(), part))) continue;
@@ -26,7 +26,7 @@ void draw_cells_between(const VertexRow& upper, const VertexRow& lower,
 }  // namespace
 
 void CameraMesh::begin(const Input& input) {
-  region_ = input.region;
+  begin(static_cast<const Rect&>(input.region));
   visible_.find(input.depth, input.color_from_depth, region_);
   const Rect blocks = visible_.bounds();
   first_row_ = blocks.y * BlockSet::height;

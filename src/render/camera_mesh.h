@@ -42,7 +42,7 @@ class CameraMesh {
   /// texture then.
   void take(const RemoteLayer& layer, const TiledRegion& region, Rows rows);
   /// Call before taking the bands.
-  void begin(const TiledRegion& region) { region_ = region; }
+  void begin(const Rect& region) { region_ = region; }
 
   /// That holds a row of the picture.
   SurfaceBuffer& surface(int y) { return surfaces_[band_of(y)]; }
