@@ -148,7 +148,7 @@ void ShrinkOutsideRow(const Bgr* upper, const Bgr* lower, const std::uint8_t* ma
   for (; x < count; ++x) {
     int sum = 0;
     for (const Bgr* pixels : {upper + left, upper + right, lower + left, lower + right}) {
-      const Bgr& color = pixels[x * scale];
+      const Bgr& color = pixels[std::ptrdiff_t{x} * scale];
       sum += color.b + 2 * color.g + color.r;
     }
     const bool is_masked = mask[x * scale + scale / 2] != 0;
