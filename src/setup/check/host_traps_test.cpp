@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "diminish/camera_source.h"
 #include "temporary_folder.h"
 
 namespace diminish {
@@ -41,6 +42,10 @@ class HostTraps : public ::testing::Test {
 TEST_F(HostTraps, UdpBuffersMustHoldAnImage) {
   EXPECT_THAT(traps({{"rgbd0", "ros2:/a?color=b"}}), IsEmpty());
   const auto found = traps({{"rgbd0", "ros2:/a?color=b&interface=10.0.0.1"}});
+  if (Registry<CameraSource>::is_left_out("ros2")) {  // such a camera cannot be opened
+    EXPECT_THAT(found, IsEmpty());
+    return;
+  }
   ASSERT_THAT(found, SizeIs(1));
   EXPECT_EQ(found[0].code, "udp-buffer");
   EXPECT_THAT(found[0].figure, HasSubstr("212992 bytes, an image 921600"));
