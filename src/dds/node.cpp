@@ -226,7 +226,7 @@ std::shared_ptr<Node> Node::open(const Network& network) {
   std::weak_ptr<Node>& known = nodes[{network.domain, network.interface, network.shared_memory,
                                       network.most_mbits, network.keys, network.in_packets}];
   if (auto node = known.lock()) return node;
-  const std::shared_ptr<Node> node(new Node(network));
+  std::shared_ptr<Node> node(new Node(network));
   known = node;
   return node;
 }
