@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/bilinear.h"
-#include "geometry/point_projection.h"
+#include "core/shrunk_picture.h"
 
 namespace diminish {
 namespace {
@@ -13,37 +13,26 @@ namespace {
 constexpr float behind_m = 0.015F;
 constexpr float hiding_m = 0.06F;
 
-float grey(const Bgr& color) {
-  return 0.114F * color.b + 0.587F * color.g + 0.299F * color.r;
-}
-
 }  // namespace
 
 BarViews::BarViews(const Rig& rig) : user_(Lens(rig.color)), rays_(rig.color) {
   for (const RgbdCamera& camera : rig.rgbd) {
-    Camera& added = cameras_.emplace_back();
-    added.depth_lens = Projection(Lens(camera.depth));
-    added.color_lens = Projection(Lens(camera.color));
-    added.unit_m = static_cast<float>(camera.depth_unit_m);
-    added.measures = camera.measures_depth;
-    added.color_from_depth = camera.color_from_depth;
-    depth_pixel_px_ = std::max(depth_pixel_px_, user_.fx / added.depth_lens.fx);
+    cameras_.emplace_back(camera);
+    depth_pixel_px_ = std::max(depth_pixel_px_, user_.fx / static_cast<float>(camera.depth.fx));
   }
 }
 
 void BarViews::begin(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks) {
   for (std::size_t k = 0; k < cameras_.size(); ++k) {
     Camera& camera = cameras_[k];
+    camera.depth.clear();
     const auto& user_from_depth = poses.color_from_depth[k];
-    camera.is_there = camera.measures && user_from_depth && frame.rgbd[k].available();
-    if (!camera.is_there) continue;
-    camera.depth = frame.rgbd[k].depth;
-    camera.color = frame.rgbd[k].color;
-    camera.depth_objects = masks.rgbd_depth[k];
-    camera.color_objects = masks.rgbd_color[k];
+    if (!camera.rig.measures_depth || !user_from_depth || !frame.rgbd[k].available()) continue;
     const RigidTransform depth_from_user = user_from_depth->inverse();
-    camera.depth_from_user = FloatTransform(depth_from_user);
-    camera.color_from_user = FloatTransform(camera.color_from_depth * depth_from_user);
+    camera.depth.begin(frame.rgbd[k].depth, masks.rgbd_depth[k], depth_from_user);
+    camera.color = frame.rgbd[k].color;
+    camera.color_objects = masks.rgbd_color[k];
+    camera.color_from_user = FloatTransform(camera.rig.color_from_depth * depth_from_user);
     camera.centre = user_from_depth->translation.cast<float>();
   }
 }
@@ -51,24 +40,22 @@ void BarViews::begin(const FrameSet& frame, const Poses& poses, const OcclusionM
 BarViews::Place BarViews::look_at(const Eigen::Vector3f& point_m) const {
   Place place = Place::unknown;
   for (const Camera& camera : cameras_) {
-    if (!camera.is_there) continue;
-    const Eigen::Vector3f point = transform(camera.depth_from_user, point_m);
-    const auto pixel = diminish::project(camera.depth_lens, point);
-    if (!pixel || !camera.depth.bounds().contains(pixel->x, pixel->y)) continue;
-    const auto& [x, y] = *pixel;
-    if (camera.depth_objects.bounds().contains(x, y) && camera.depth_objects(x, y) != 0) continue;
-    const std::uint16_t value = camera.depth(x, y);
-    const float measured_m = camera.unit_m * static_cast<float>(value);
-    if (measured_m > point.z() + behind_m) return Place::seen;
-    if (value != 0 && measured_m > point.z() - hiding_m) place = Place::solid;
-    if (value == 0 && place == Place::unknown) place = Place::bare;
+    const auto depth = camera.depth.at(point_m);
+    if (!depth) continue;
+    const auto& [measured_m, own_m] = *depth;
+    if (measured_m > own_m + behind_m) return Place::seen;
+    if (measured_m == 0) {
+      if (place == Place::unknown) place = Place::bare;
+    } else if (measured_m > own_m - hiding_m) {
+      place = Place::solid;
+    }
   }
   return place;
 }
 
 std::optional<float> BarViews::level(std::size_t k, const Eigen::Vector3f& point_m) const {
   const Camera& camera = cameras_[k];
-  if (!camera.is_there) return std::nullopt;
+  if (camera.depth.empty()) return std::nullopt;
   const auto at = project_exactly(camera.color_lens, transform(camera.color_from_user, point_m));
   const Rect inner = grow(camera.color.bounds(), -1);
   if (!at || !inner.contains(nearest_pixel(*at).x, nearest_pixel(*at).y)) return std::nullopt;
@@ -76,12 +63,14 @@ std::optional<float> BarViews::level(std::size_t k, const Eigen::Vector3f& point
   if (camera.color_objects.bounds().contains(x, y) && camera.color_objects(x, y) != 0) {
     return std::nullopt;
   }
-  return bilinear(at->x(), at->y(),
-                  [&](int column, int row) { return grey(camera.color(column, row)); });
+  return bilinear(at->x(), at->y(), [&](int column, int row) {
+    const Bgr& color = camera.color(column, row);
+    return brightness(color.b, color.g, color.r);
+  });
 }
 
 std::optional<Eigen::Vector3f> BarViews::centre(std::size_t k) const {
-  if (!cameras_[k].is_there) return std::nullopt;
+  if (cameras_[k].depth.empty()) return std::nullopt;
   return cameras_[k].centre;
 }
 

@@ -9,7 +9,7 @@
 #include "diminish/occlusion_masks.h"
 #include "diminish/poses.h"
 #include "diminish/rig.h"
-#include "geometry/projection.h"
+#include "geometry/depth_view.h"
 #include "geometry/ray_grid.h"
 
 namespace diminish {
@@ -45,15 +45,15 @@ class BarViews {
 
  private:
   struct Camera {
-    Projection depth_lens, color_lens;
-    float unit_m = 0;
-    bool measures = false;  ///< depth, instead of estimating it
-    RigidTransform color_from_depth;
-    bool is_there = false;
-    ImageView<std::uint16_t> depth;
+    explicit Camera(const RgbdCamera& camera)
+        : rig(camera), depth(camera), color_lens(Lens(camera.color)) {}
+
+    RgbdCamera rig;
+    DepthView depth;  ///< empty: it takes no part
+    Projection color_lens;
     ImageView<Bgr> color;
-    ImageView<std::uint8_t> depth_objects, color_objects;
-    FloatTransform depth_from_user{RigidTransform{}}, color_from_user{RigidTransform{}};
+    ImageView<std::uint8_t> color_objects;
+    FloatTransform color_from_user{RigidTransform{}};
     Eigen::Vector3f centre = Eigen::Vector3f::Zero();
   };
   std::vector<Camera> cameras_;

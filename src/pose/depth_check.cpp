@@ -4,6 +4,16 @@
 
 namespace diminish {
 
+std::optional<MarkerDepth> depth_at(const Eigen::Vector3d& x_in_depth, const Lens& depth_lens,
+                                    ImageView<std::uint16_t> depth, double depth_unit_m) {
+  const auto pixel = depth_lens.project(x_in_depth);
+  if (!pixel) return std::nullopt;
+  const auto x = static_cast<int>(std::lround(pixel->x()));
+  const auto y = static_cast<int>(std::lround(pixel->y()));
+  if (!depth.bounds().contains(x, y) || depth(x, y) == 0) return std::nullopt;
+  return MarkerDepth{depth(x, y) * depth_unit_m, x_in_depth.z()};
+}
+
 MarkerDepths marker_depths(const RigidTransform& depth_from_marker, double size_m,
                            const Lens& depth_lens, ImageView<std::uint16_t> depth,
                            double depth_unit_m) {
@@ -14,13 +24,8 @@ MarkerDepths marker_depths(const RigidTransform& depth_from_marker, double size_
     for (int column = 0; column < places; ++column) {
       const Eigen::Vector3d on_marker(((column + 0.5) / places - 0.5) * size_m,
                                       ((row + 0.5) / places - 0.5) * size_m, 0);
-      const Eigen::Vector3d x_in_depth = depth_from_marker * on_marker;
-      const auto pixel = depth_lens.project(x_in_depth);
-      if (!pixel) continue;
-      const auto x = static_cast<int>(std::lround(pixel->x()));
-      const auto y = static_cast<int>(std::lround(pixel->y()));
-      if (!depth.bounds().contains(x, y) || depth(x, y) == 0) continue;
-      depths.values[depths.count++] = {depth(x, y) * depth_unit_m, x_in_depth.z()};
+      const auto at = depth_at(depth_from_marker * on_marker, depth_lens, depth, depth_unit_m);
+      if (at) depths.values[depths.count++] = *at;
     }
   }
   if (depths.count * 2 < MarkerDepths::most) depths.count = 0;

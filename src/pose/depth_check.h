@@ -17,6 +17,11 @@ struct MarkerDepth {
   double measured_m, computed_m;
 };
 
+/// The depth of a place, given in the depth sensor's frame; nothing outside the image, or where
+/// none was measured.
+std::optional<MarkerDepth> depth_at(const Eigen::Vector3d& x_in_depth, const Lens& depth_lens,
+                                    ImageView<std::uint16_t> depth, double depth_unit_m);
+
 /// Depths over a grid of places on a marker.
 struct MarkerDepths {
   static constexpr std::size_t most = 81;  ///< 9 places along each side

@@ -5,6 +5,7 @@
 
 #include "diminish/occluder_settings.h"
 #include "geometry/triangle_mesh.h"
+#include "pose/depth_check.h"
 #include "pose/known_markers.h"
 #include "pose/marker_pose.h"
 
@@ -66,15 +67,10 @@ ObjectPlace::ObjectPlace(const Rig& rig, const Scene& scene) : rig_(rig), color_
 
 std::optional<double> ObjectPlace::behind_m(const Eigen::Vector3d& point_in_color_m,
                                             const View& view) const {
-  const Eigen::Vector3d at_m = view.depth_from_color * point_in_color_m;
-  const auto pixel = depth_lenses_[view.camera].project(at_m);
-  if (!pixel) return std::nullopt;
-  const auto x = std::lround(pixel->x());
-  const auto y = std::lround(pixel->y());
-  if (x < 0 || y < 0 || x >= view.depth.width() || y >= view.depth.height()) return std::nullopt;
-  const std::uint16_t measured = view.depth.row(static_cast<int>(y))[x];
-  if (measured == 0) return std::nullopt;
-  return measured * rig_.rgbd[view.camera].depth_unit_m - at_m.z();
+  const auto at = depth_at(view.depth_from_color * point_in_color_m, depth_lenses_[view.camera],
+                           view.depth, rig_.rgbd[view.camera].depth_unit_m);
+  if (!at) return std::nullopt;
+  return at->measured_m - at->computed_m;
 }
 
 bool ObjectPlace::is_covered(const Eigen::Vector3d& point_in_color_m, const View& view) const {

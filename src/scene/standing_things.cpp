@@ -65,21 +65,18 @@ struct StandingThings::View {
 
 StandingThings::StandingThings(const Rig& rig) : color_(Lens(rig.color)), rays_(rig.color) {
   for (const RgbdCamera& camera : rig.rgbd) {
-    Camera& added = cameras_.emplace_back();
-    added.lens = Projection(Lens(camera.depth));
-    added.unit_m = static_cast<float>(camera.depth_unit_m);
+    cameras_.push_back({DepthView(camera), Eigen::Vector3f::Zero()});
   }
 }
 
 void StandingThings::place_cameras(const Input& input) {
   for (std::size_t k = 0; k < cameras_.size(); ++k) {
     Camera& camera = cameras_[k];
-    camera.depth = {};
+    camera.depth.clear();
     const auto& color_from_depth = input.poses.color_from_depth[k];
     if (!color_from_depth || !input.frame.rgbd[k].available()) continue;
-    camera.depth = input.frame.rgbd[k].depth;
-    camera.objects = input.masks.rgbd_depth[k];
-    camera.depth_from_color = FloatTransform(color_from_depth->inverse());
+    camera.depth.begin(input.frame.rgbd[k].depth, input.masks.rgbd_depth[k],
+                       color_from_depth->inverse());
     camera.centre = color_from_depth->translation.cast<float>();
   }
 }
@@ -87,16 +84,11 @@ void StandingThings::place_cameras(const Input& input) {
 /// What an RGB-D camera says of a place below a top of this height.
 StandingThings::Place StandingThings::look_at(const View& view, const Camera& camera,
                                               const Eigen::Vector3f& point_m, float top_height_m) {
-  if (camera.depth.empty()) return Place::unknown;
-  const Eigen::Vector3f point = transform(camera.depth_from_color, point_m);
-  const auto pixel = project(camera.lens, point);
-  if (!pixel || !camera.depth.bounds().contains(pixel->x, pixel->y)) return Place::unknown;
-  const auto& [x, y] = *pixel;
-  if (camera.objects.bounds().contains(x, y) && camera.objects(x, y) != 0) return Place::unknown;
-  const float measured = camera.unit_m * static_cast<float>(camera.depth(x, y));
-  if (measured == 0) return Place::unknown;
-  if (measured > point.z() + behind.at(point.z())) return Place::empty;
-  const Eigen::Vector3f hider = camera.centre + measured / point.z() * (point_m - camera.centre);
+  const auto depth = camera.depth.at(point_m);
+  if (!depth || depth->measured_m == 0) return Place::unknown;
+  const auto& [measured, own] = *depth;
+  if (measured > own + behind.at(own)) return Place::empty;
+  const Eigen::Vector3f hider = camera.centre + measured / own * (point_m - camera.centre);
   const bool is_side = view.plane.height_m(hider) < top_height_m - lowest_top_m &&
                        (point_m - hider).norm() < deepest_m;
   return is_side ? Place::hidden_by_side : Place::unknown;

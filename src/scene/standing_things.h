@@ -12,7 +12,7 @@
 #include "diminish/reconstruction.h"
 #include "diminish/rig.h"
 #include "diminish/surfaces.h"
-#include "geometry/point_projection.h"
+#include "geometry/depth_view.h"
 #include "geometry/ray_grid.h"
 #include "scene/background_planes.h"
 
@@ -44,12 +44,8 @@ class StandingThings {
  private:
   /// An RGB-D camera.
   struct Camera {
-    Projection lens;
-    float unit_m = 0;
-    ImageView<std::uint16_t> depth;  ///< empty: no image or no pose
-    ImageView<std::uint8_t> objects;
-    FloatTransform depth_from_color{RigidTransform{}};
-    Eigen::Vector3f centre = Eigen::Vector3f::Zero();  ///< in the colour camera's frame
+    DepthView depth;
+    Eigen::Vector3f centre;  ///< in the colour camera's frame
   };
   struct View;
   enum class Place { empty, hidden_by_side, unknown };

@@ -6,7 +6,7 @@
 #include "diminish/frame_set.h"
 #include "diminish/poses.h"
 #include "diminish/rig.h"
-#include "geometry/point_projection.h"
+#include "geometry/depth_view.h"
 
 namespace diminish {
 
@@ -23,15 +23,7 @@ class FreeSpace {
   bool is_free(const Eigen::Vector2f& ray, float from_m, float to_m) const;
 
  private:
-  struct Camera {
-    Projection projection;
-    float unit_m;
-    FloatTransform depth_from_color{RigidTransform{}};
-    ImageView<std::uint16_t> depth;  ///< empty: takes no part
-  };
-  bool is_free(const Camera& camera, const Eigen::Vector3f& point_m) const;
-
-  std::vector<Camera> cameras_;
+  std::vector<DepthView> cameras_;
 };
 
 }  // namespace diminish

@@ -36,9 +36,9 @@ struct Polygons {
   /// Adds a corner; begins a polygon if none is open.
   void add_corner(const Eigen::Vector2d& pixel) {
     // Far outside any picture; products of differences still fit into 53 bits.
-    static constexpr double farthest_px = 65536;
+    static constexpr double largest_px = 65536;
     const auto rounded = [](double px) {
-      const double within_px = std::clamp(px, -farthest_px, farthest_px);
+      const double within_px = std::clamp(px, -largest_px, largest_px);
       return static_cast<std::int32_t>(std::lrint(within_px * subpixels));
     };
     corners.push_back({rounded(pixel.x()), rounded(pixel.y())});

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+
+#include "diminish/image.h"
+#include "diminish/rig.h"
+#include "geometry/point_projection.h"
+
+namespace diminish {
+
+/// What an RGB-D camera's depth image says of points in the colour camera's frame.
+class DepthView {
+ public:
+  explicit DepthView(const RgbdCamera& camera)
+      : lens_(Lens(camera.depth)), unit_m_(static_cast<float>(camera.depth_unit_m)) {}
+
+  /// Looks at an image, which must outlive all that is asked. objects: what the image shows there
+  /// is not told; empty: all is.
+  void begin(ImageView<std::uint16_t> depth, ImageView<std::uint8_t> objects,
+             const RigidTransform& depth_from_color) {
+    depth_ = depth;
+    objects_ = objects;
+    depth_from_color_ = FloatTransform(depth_from_color);
+  }
+  /// There is no image.
+  void clear() { depth_ = {}; }
+  bool empty() const { return depth_.empty(); }
+
+  /// Both z in the depth sensor's frame.
+  struct Depth {
+    float measured_m;  ///< 0: no depth was measured
+    float own_m;       ///< the point's
+  };
+  /// Nothing for a point outside the image, or where it shows an object.
+  std::optional<Depth> at(const Eigen::Vector3f& point_m) const {
+    if (depth_.empty()) return std::nullopt;
+    const Eigen::Vector3f point = transform(depth_from_color_, point_m);
+    const auto pixel = project(lens_, point);
+    if (!pixel || !depth_.bounds().contains(pixel->x, pixel->y)) return std::nullopt;
+    const auto& [x, y] = *pixel;
+    if (objects_.bounds().contains(x, y) && objects_(x, y) != 0) return std::nullopt;
+    return Depth{unit_m_ * static_cast<float>(depth_(x, y)), point.z()};
+  }
+
+ private:
+  Projection lens_;
+  float unit_m_;
+  FloatTransform depth_from_color_{RigidTransform{}};
+  ImageView<std::uint16_t> depth_;
+  ImageView<std::uint8_t> objects_;
+};
+
+}  // namespace diminish
