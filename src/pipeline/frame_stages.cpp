@@ -107,10 +107,9 @@ bool FrameStages::completes_sides() const {
   return options.complete_sides && methods.inpainting.uses_surfaces && background.planes();
 }
 
-/// They are moved in front of the background's planes.
+/// If there is an object that hides them. They are looked for in front of the background's planes.
 bool FrameStages::draws_bars() const {
-  return options.draw_bars && methods.inpainting.uses_surfaces && !rig.rgbd.empty() &&
-         !occluders.objects().empty();
+  return options.draw_bars && methods.inpainting.uses_surfaces && !rig.rgbd.empty();
 }
 
 void FrameStages::choose_region() {
@@ -250,7 +249,7 @@ void FrameStages::process(const FrameSet& given, DiminishedFrame& result) {
   const auto prepare = [&] {
     stage(Stage::inpainting, [&] {
       rim_lines.clear();
-      if ((methods.inpainting.uses_lines && !objects.empty()) || draws_bars()) {
+      if (!objects.empty() && (methods.inpainting.uses_lines || draws_bars())) {
         rim_lines.find(frame.color, masks.color, objects);
       }
     });
@@ -301,10 +300,9 @@ void FrameStages::process(const FrameSet& given, DiminishedFrame& result) {
           [&] { compositor.correct_colors(inputs, color_maps.by_source(), *corrector, result); });
   };
   const bool has_sides = completes_sides();
-  const bool has_bars = draws_bars() && background.planes();
+  const bool has_bars = draws_bars() && !objects.empty() && background.planes();
   bar_search.clear();
-  // The scene's structure inside the mask: from it, nothing of the above is changed but the label
-  // of sides.
+  // Of what is behind the objects; changes labels only, which colours do not need.
   const auto find_structure = [&] {
     stage(Stage::inpainting, [&] {
       if (has_sides) {
@@ -319,7 +317,11 @@ void FrameStages::process(const FrameSet& given, DiminishedFrame& result) {
       }
     });
   };
-  do_all(find_structure, correct_colors);
+  if (has_sides || has_bars) {
+    do_all(find_structure, correct_colors);
+  } else {
+    correct_colors();
+  }
   stage(Stage::inpainting, [&] {
     if (has_sides) Compositor::hide_behind_sides(inputs, result);
     compositor.inpaint(inputs, *inpainter, result);
