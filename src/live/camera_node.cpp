@@ -1,27 +1,18 @@
 #include "live/camera_node.h"
 
-#include <algorithm>
 #include <atomic>
 #include <mutex>
 #include <thread>
 #include <utility>
 
 #include "camera/ros2_address.h"
-#include "core/set_text.h"
 #include "core/thread_name.h"
 #include "diminish/error.h"
 #include "live/camera_messages.h"
+#include "live/read_camera.h"
 #include "source/find_camera.h"
 
 namespace diminish {
-namespace {
-
-/// As for a session's cameras.
-constexpr double first_retry_s = 0.2;
-constexpr double last_retry_s = 5;
-
-}  // namespace
-
 struct CameraNode::Implementation {
   explicit Implementation(const CameraNodeOptions& wanted) : options(wanted) {
     const CameraUri uri = parse_camera_uri("ros2:" + options.topic);
@@ -53,59 +44,33 @@ struct CameraNode::Implementation {
 
   void work() {
     name_this_thread("camera");
-    double retry_s = first_retry_s;
-    while (!is_stopped) {
-      const std::size_t before = status.images;
-      std::string what;
-      bool has_ended = false;
-      try {
-        publish_until_gone();
-        has_ended = true;
-        const std::lock_guard lock(mutex);
-        status.has_ended = !is_stopped;
-      } catch (const std::exception& error) {
-        set_text(what, error.what());
-      } catch (...) {
-        set_text(what, "an unknown error");
-      }
-      if (has_ended) return;
-      {
-        const std::lock_guard lock(mutex);
-        status.problem = std::move(what);
-        retry_s = status.images > before ? first_retry_s : std::min(2 * retry_s, last_retry_s);
-      }
-      const double end_s = monotonic_now_s() + retry_s;
-      while (!is_stopped && monotonic_now_s() < end_s) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(20));
-      }
-    }
-  }
-
-  void publish_until_gone() {
-    CameraRequest request;
-    request.name = options.name;
-    request.rig = options.rig ? &*options.rig : nullptr;
-    request.epoch_s = monotonic_now_s();
-    const auto source = open_camera(options.uri, request);
-    CameraImage image;
-    while (!is_stopped) {
-      const auto got = source->read(image, std::chrono::milliseconds(100));
-      if (got == CameraSource::Status::end) return;
-      if (got == CameraSource::Status::image && image.fault.empty()) {
-        if (!options.rig) learn_lenses(*source);
+    const CameraRequest request{options.name, options.rig ? &*options.rig : nullptr};
+    const auto publish = [&](const CameraSource& source, CameraSource::Status got,
+                             const CameraImage& image) {
+      const bool is_good = got == CameraSource::Status::image && image.fault.empty();
+      if (is_good) {
+        if (!options.rig) learn_lenses(source);
         messages->send(image, lenses);
       }
       const std::lock_guard lock(mutex);
       if (got == CameraSource::Status::image) {
-        ++(image.fault.empty() ? status.images : status.damaged);
-        if (!image.fault.empty()) status.problem = image.fault;
+        ++(is_good ? status.images : status.damaged);
+        if (!is_good) status.problem = image.fault;
       }
       status.moments = messages->moments();
       status.color_bytes = messages->color_bytes();
       status.depth_bytes = messages->depth_bytes();
       status.listeners = messages->listeners();
       status.compress_ms = messages->compress_ms();
-    }
+      return is_good;
+    };
+    const bool has_ended =
+        read_camera(options.uri, request, is_stopped, publish, [&](std::string& what) {
+          const std::lock_guard lock(mutex);
+          status.problem = std::move(what);
+        });
+    const std::lock_guard lock(mutex);
+    status.has_ended = has_ended;
   }
 
   void learn_lenses(const CameraSource& source) {

@@ -12,6 +12,7 @@
 #include "diminish/error.h"
 #include "live/image_pairs.h"
 #include "live/node_network.h"
+#include "live/read_camera.h"
 #include "source/find_camera.h"
 
 namespace diminish {
@@ -19,9 +20,6 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// As for a session's cameras.
-constexpr double first_retry_s = 0.2;
-constexpr double last_retry_s = 5;
 /// Two sensors' images so far apart are of one moment.
 constexpr double moment_s = 0.02;
 /// How often questions that wait for images are looked at.
@@ -45,7 +43,7 @@ struct RenderNode::Implementation {
     answers.emplace(node, dds::Topic{ros2_topic(uri, uri.target, "answer"), node_answer_type},
                     wire.delivery);
     try {
-      reading = std::thread([this] { read_camera(); });
+      reading = std::thread([this] { read_images(); });
       answering = std::thread([this] { answer(); });
     } catch (...) {  // the system has none to give
       stop();
@@ -60,52 +58,22 @@ struct RenderNode::Implementation {
     if (answering.joinable()) answering.join();
   }
 
-  void read_camera() {
+  void read_images() {
     name_this_thread("camera");
-    double retry_s = first_retry_s;
-    while (!is_stopped) {
-      const std::size_t before = images;
-      std::string what;
-      bool is_done = false;
-      try {
-        read_until_gone();
-        is_done = true;
-      } catch (const std::exception& error) {
-        set_text(what, error.what());
-      } catch (...) {
-        set_text(what, "an unknown error");
-      }
-      if (is_done) {
-        has_ended = !is_stopped;
-        return;
-      }
-      note_failure(what.c_str());
-      retry_s = images > before ? first_retry_s : std::min(2 * retry_s, last_retry_s);
-      const double end_s = monotonic_now_s() + retry_s;
-      while (!is_stopped && monotonic_now_s() < end_s)
-        std::this_thread::sleep_for(milliseconds(20));
-    }
-  }
-
-  void read_until_gone() {
-    CameraRequest request;
-    request.name = options.name;
-    request.rig = options.rig ? &*options.rig : nullptr;
-    request.epoch_s = monotonic_now_s();
-    const auto source = open_camera(options.uri, request);
-    CameraImage image;
-    while (!is_stopped) {
-      const auto got = source->read(image, milliseconds(100));
-      if (got == CameraSource::Status::end) return;
-      if (got != CameraSource::Status::image) continue;
-      if (image.fault.empty()) {
-        pairs.put(image);
-        ++images;
-      } else {
+    const CameraRequest request{options.name, options.rig ? &*options.rig : nullptr};
+    const auto take = [&](const CameraSource&, CameraSource::Status got, CameraImage& image) {
+      if (got != CameraSource::Status::image) return false;
+      if (!image.fault.empty()) {
         ++damaged;
         note_failure(image.fault.c_str());
+        return false;
       }
-    }
+      pairs.put(image);
+      ++images;
+      return true;
+    };
+    has_ended = read_camera(options.uri, request, is_stopped, take,
+                            [&](const std::string& what) { note_failure(what.c_str()); });
   }
 
   void answer() {
