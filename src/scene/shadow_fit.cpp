@@ -20,7 +20,7 @@ constexpr float ridge = 2;
 /// Below this a direction explains hardly anything and gets no share.
 constexpr float least_share = 0.007F;
 /// The largest share of the squared error in the shadow that a fit may leave.
-constexpr float most_unexplained = 0.6F;
+constexpr float most_unexplained = 0.4F;
 /// Objects do not hide the whole sky. A fit that says so explains texture.
 constexpr float most_shares = 0.75F;
 /// The largest difference between the channels' shares: a larger one is a colour, not a shadow.
@@ -69,13 +69,15 @@ bool ShadowFit::fit() {
     fit_shares(brightness);
     find_light();
   }
-  if (!explains()) return false;
+  if (!explains(brightness)) return false;
+  // A shadow darkens all channels, a dark thing with a colour does not.
   for (int c = 0; c < brightness; ++c) {
     fit_field(c);
     fit_shares(c);
+    if (!explains(c)) return false;
   }
   const Eigen::Array3f sums = shares_.leftCols<brightness>().colwise().sum().transpose().array();
-  return sums.maxCoeff() <= most_shares && sums.maxCoeff() <= largest_ratio * sums.minCoeff();
+  return sums.maxCoeff() <= largest_ratio * sums.minCoeff();
 }
 
 Eigen::Array3f ShadowFit::share(std::size_t direction) const {
@@ -216,14 +218,14 @@ void ShadowFit::find_light() {
   for (Point& point : points_) point.light = std::max(point.light, least_light);
 }
 
-bool ShadowFit::explains() const {
+bool ShadowFit::explains(int channel) const {
   float with = 0;
   float without = 0;
   std::size_t in_shadow = 0;
   for (const Point& point : points_) {
     constexpr float shadow = 0.95F;
     if (point.light > shadow) continue;
-    const float relative = point.levels[brightness] / point.field;
+    const float relative = point.levels[channel] / point.field;
     with += point.weight * (relative - point.light) * (relative - point.light);
     without += point.weight * (relative - 1) * (relative - 1);
     ++in_shadow;

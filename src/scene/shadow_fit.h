@@ -54,7 +54,7 @@ class ShadowFit {
   void fit_shares(int channel);
   const float* column(std::size_t direction);
   void find_light();
-  bool explains() const;
+  bool explains(int channel) const;
 
   std::vector<Point> points_;
   std::vector<std::uint8_t> hidden_;
