@@ -23,7 +23,9 @@ class Composing {
     const Compositor::Inputs inputs{camera,  occlusion,       objects,
                                     options, smoothing_share, lines_.lines()};
     Compositor::sort(inputs, result);
-    compositor_.correct_colors(inputs, maps_.by_source(), corrector, result);
+    Compositor::correct_colors(inputs, maps_.by_source(), corrector, result);
+    // With the light as it is in the surfaces.
+    compositor_.lift_shadows(inputs, {}, {}, result);
     Inpainter& inpainter = inpainters_.get(options.inpaint);
     compositor_.inpaint(inputs, inpainter, result);
     compositor_.finish(inputs, modes_.get(options.mode), result);

@@ -90,12 +90,20 @@ void Compositor::hide_behind_sides(const Inputs& inputs, DiminishedFrame& result
 }
 
 void Compositor::correct_colors(const Inputs& inputs, ColorMapsBySource maps,
-                                ColorCorrector& corrector, DiminishedFrame& result) const {
+                                ColorCorrector& corrector, DiminishedFrame& result) {
   if (result.report.valid_pixels > 0) {
     corrector.correct({inputs.camera, inputs.occlusion, result.reconstruction, maps},
                       result.picture);
   }
-  if (!result.surfaces.light.empty()) shadow_lifting_.lift(result.surfaces, result.picture);
+}
+
+void Compositor::lift_shadows(const Inputs& inputs, std::span<const CastShadows::Shadow> shadows,
+                              const SceneSamples& samples, DiminishedFrame& result) {
+  if (!result.surfaces.light.empty()) {
+    shadow_gain_.apply({result.picture, result.provenance, shadows, samples.surfaces},
+                       result.surfaces);
+    shadow_lifting_.lift(result.surfaces, result.picture);
+  }
   if (result.report.witnessed_pixels + result.report.remembered_pixels > 0) {
     show_remembered(inputs.objects, result);
   }

@@ -3,6 +3,7 @@
 #include <span>
 
 #include "composite/color_smoothing.h"
+#include "composite/shadow_gain.h"
 #include "composite/shadow_lifting.h"
 #include "composite/soft_rim.h"
 #include "diminish/color_corrector.h"
@@ -32,9 +33,14 @@ class Compositor {
   /// the camera's, and the mask's pixels are sorted into seen ones and ones to inpaint.
   static void sort(const Inputs& inputs, DiminishedFrame& result);
 
-  /// Stage::colors. Gives seen pixels their corrected colour, without the objects' shadows.
-  void correct_colors(const Inputs& inputs, ColorMapsBySource maps, ColorCorrector& corrector,
-                      DiminishedFrame& result) const;
+  /// Stage::colors. Gives seen pixels their corrected colour.
+  static void correct_colors(const Inputs& inputs, ColorMapsBySource maps,
+                             ColorCorrector& corrector, DiminishedFrame& result);
+
+  /// Stage::colors. Removes the objects' shadows, outside the mask, too, and shows what is
+  /// remembered.
+  void lift_shadows(const Inputs& inputs, std::span<const CastShadows::Shadow> shadows,
+                    const SceneSamples& samples, DiminishedFrame& result);
 
   /// Sorts what is behind a thing's side (surface_label::standing) into the pixels to inpaint.
   static void hide_behind_sides(const Inputs& inputs, DiminishedFrame& result);
@@ -50,6 +56,7 @@ class Compositor {
  private:
   static void show_remembered(const Rect& part, DiminishedFrame& result);
 
+  ShadowGain shadow_gain_;
   ShadowLifting shadow_lifting_;
   ColorSmoothing color_smoothing_;
   SoftRim soft_rim_;

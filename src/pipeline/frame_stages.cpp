@@ -322,6 +322,8 @@ void FrameStages::process(const FrameSet& given, DiminishedFrame& result) {
   } else {
     correct_colors();
   }
+  stage(Stage::colors,
+        [&] { compositor.lift_shadows(inputs, background.shadows(), samples, result); });
   stage(Stage::inpainting, [&] {
     if (has_sides) Compositor::hide_behind_sides(inputs, result);
     compositor.inpaint(inputs, *inpainter, result);

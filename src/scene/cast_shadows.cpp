@@ -61,6 +61,11 @@ Eigen::Vector3f CastShadows::Ground::point_m(const Eigen::Vector2f& place) const
   return origin + place.x() * along_u + place.y() * along_v;
 }
 
+float CastShadows::Shadow::light_at(const Eigen::Vector3f& point_m) const {
+  const Rect cell = cell_of(ground.coordinates(point_m));
+  return light.bounds().contains(cell.x, cell.y) ? light(cell.x, cell.y).mean() : 1.F;
+}
+
 CastShadows::CastShadows(const Intrinsics& color) : lens_(color), rays_(color) {
   constexpr float degree = std::numbers::pi_v<float> / 180;
   Eigen::Index d = 0;

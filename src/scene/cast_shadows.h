@@ -38,6 +38,10 @@ class CastShadows {
     Ground ground;
     std::uint8_t label = 0;       ///< the plane's, as in Surfaces::label
     Image<Eigen::Array3f> light;  ///< the share that is left, by cell
+
+    /// The share of the light that is left at a point of the plane, of all channels: that of the
+    /// nearest cell; 1 beyond the grid.
+    float light_at(const Eigen::Vector3f& point_m) const;
   };
   static constexpr float cell_m = 0.02F;
   static constexpr int grid_cells = 128;
