@@ -20,7 +20,12 @@ constexpr float ridge = 2;
 /// Below this a direction explains hardly anything and gets no share.
 constexpr float least_share = 0.007F;
 /// The largest share of the squared error in the shadow that a fit may leave.
-constexpr float most_unexplained = 0.4F;
+constexpr float most_unexplained = 0.6F;
+/// ... together with the share that is a colour. On the recordings it is at most .37 of shadows,
+/// and at least .46 of dark posters.
+constexpr float most_unexplained_or_color = 0.41F;
+/// With less light than this a point is in the shadow.
+constexpr float shadow = 0.95F;
 /// Objects do not hide the whole sky. A fit that says so explains texture.
 constexpr float most_shares = 0.75F;
 /// The largest difference between the channels' shares: a larger one is a colour, not a shadow.
@@ -69,13 +74,14 @@ bool ShadowFit::fit() {
     fit_shares(brightness);
     find_light();
   }
-  if (!explains(brightness)) return false;
-  // A shadow darkens all channels, a dark thing with a colour does not.
+  if (!explains()) return false;
+  for (Point& point : points_) point.relative.setZero();
   for (int c = 0; c < brightness; ++c) {
     fit_field(c);
     fit_shares(c);
-    if (!explains(c)) return false;
+    for (Point& point : points_) point.relative[c] = point.levels[c] / point.field;
   }
+  if (!is_colorless()) return false;
   const Eigen::Array3f sums = shares_.leftCols<brightness>().colwise().sum().transpose().array();
   return sums.maxCoeff() <= largest_ratio * sums.minCoeff();
 }
@@ -218,20 +224,34 @@ void ShadowFit::find_light() {
   for (Point& point : points_) point.light = std::max(point.light, least_light);
 }
 
-bool ShadowFit::explains(int channel) const {
+bool ShadowFit::explains() {
   float with = 0;
   float without = 0;
   std::size_t in_shadow = 0;
   for (const Point& point : points_) {
-    constexpr float shadow = 0.95F;
     if (point.light > shadow) continue;
-    const float relative = point.levels[channel] / point.field;
+    const float relative = point.levels[brightness] / point.field;
     with += point.weight * (relative - point.light) * (relative - point.light);
     without += point.weight * (relative - 1) * (relative - 1);
     ++in_shadow;
   }
-  return in_shadow >= fewest_in_shadow && with < most_unexplained * without &&
-         shares_.col(brightness).sum() <= most_shares;
+  if (in_shadow < fewest_in_shadow || !(without > 0)) return false;
+  unexplained_ = with / without;
+  return unexplained_ < most_unexplained && shares_.col(brightness).sum() <= most_shares;
+}
+
+/// A shadow darkens all channels alike: what of the darkness is colour, and what it leaves
+/// unexplained, are small together.
+bool ShadowFit::is_colorless() const {
+  float color = 0;
+  float dark = 0;
+  for (const Point& point : points_) {
+    if (point.light > shadow) continue;
+    const float mean = point.relative.mean();
+    color += point.weight * (point.relative - mean).square().mean();
+    dark += point.weight * (mean - 1) * (mean - 1);
+  }
+  return color < (most_unexplained_or_color - unexplained_) * dark;
 }
 
 }  // namespace diminish

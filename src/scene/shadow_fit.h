@@ -44,6 +44,7 @@ class ShadowFit {
   struct Point {
     Monomials monomials;
     Eigen::Array4f levels;
+    Eigen::Array3f relative;                  ///< to the field, by channel
     std::uint32_t first_hidden, last_hidden;  ///< in hidden_
     float weight, light, field;
   };
@@ -54,7 +55,8 @@ class ShadowFit {
   void fit_shares(int channel);
   const float* column(std::size_t direction);
   void find_light();
-  bool explains(int channel) const;
+  bool explains();
+  bool is_colorless() const;
 
   std::vector<Point> points_;
   std::vector<std::uint8_t> hidden_;
@@ -68,6 +70,7 @@ class ShadowFit {
   std::vector<float> weights_, darker_;  ///< of each point, and times how much darker it is
   Eigen::MatrixXf shares_;               ///< directions by channels
   std::vector<float> residuals_;
+  float unexplained_ = 1;  ///< share of the squared error in the shadow
 };
 
 }  // namespace diminish
