@@ -6,7 +6,6 @@
 #include <cstring>
 
 #include "core/robust.h"
-#include "core/rows.h"
 #include "core/runs.h"
 #include "diminish/diminished_frame.h"
 #include "scene/background_planes.h"
@@ -15,19 +14,18 @@
 namespace diminish {
 namespace {
 
+using Levels = Eigen::Array4f;
+
 /// With more light than this a cell is lit.
 constexpr float lit = 0.98F;
 /// Light is not lowered below this.
 constexpr float least_light = ShadowFit::least_light;
-/// A gain in fixed point: the largest one, times the largest level, fits 16 bits.
-constexpr std::uint8_t one = 64;
-constexpr auto most_dark = static_cast<std::uint16_t>(255 * (1 - least_light));
-/// Cells in a shadow, at the finest scale, and cells that show the field.
+/// Of whole parts of cells in a shadow, and of cells that show the field.
 constexpr int fewest_shaded = 32;
 constexpr std::size_t fewest_cells = 24;
 /// Of a cell that counts.
 constexpr float least_weight = 0.05F;
-/// Brightness is 0 to 1.
+/// Colours are 0 to 1.
 constexpr float least_field = 0.03F;
 /// Of the brightness beside the field; more is a highlight or another thing.
 constexpr float most_bright = 1.3F;
@@ -37,34 +35,48 @@ constexpr int robust_passes = 3;
 /// How many times the texture's variance the prior weighs.
 constexpr float prior_by_texture = 2;
 constexpr float least_texture = 0.02F;
-/// The sum of a white cell's channels.
-constexpr float full = 3 * 255 * ShadowGain::cell_px * ShadowGain::cell_px;
+/// A gain in fixed point: the largest one, times the largest level, fits 16 bits.
+constexpr std::uint8_t one = 64;
+constexpr auto most_dark = static_cast<std::uint16_t>(255 * (1 - least_light));
 
-int sum_of(const Bgr& color) {
-  return color.b + color.g + color.r;
-}
-
-/// Whether a row of a cell has one value.
+/// Whether four bytes have one value.
 bool is_even(const std::uint8_t* bytes, std::uint8_t value) {
   std::uint32_t word = 0;
-  static_assert(sizeof word == ShadowGain::cell_px);
   std::memcpy(&word, bytes, sizeof word);
   return word == 0x01010101U * value;
 }
 
+/// The sum of a square's colours.
+Eigen::Array4i sum_of(const Image<Bgr>& image, int left, int top, int size) {
+  int b = 0;
+  int g = 0;
+  int r = 0;
+  for (int y = top; y < top + size; ++y) {
+    const Bgr* const row = image.row(y) + left;
+    for (int x = 0; x < size; ++x) {
+      b += row[x].b;
+      g += row[x].g;
+      r += row[x].r;
+    }
+  }
+  return {b, g, r, 0};
+}
+
 /// Means of two by two cells. Beyond the border is 0.
-void halve(const Image<float>& fine, Image<float>& coarse) {
+template <class Value>
+void halve(const Image<Value>& fine, Image<Value>& coarse) {
   for (int row = 0; row < coarse.height(); ++row) {
-    const float* const above = fine.row(2 * row);
+    const Value* const above = fine.row(2 * row);
     const bool has_below = 2 * row + 1 < fine.height();
-    const float* const below = fine.row(has_below ? 2 * row + 1 : 2 * row);
+    const Value* const below = fine.row(has_below ? 2 * row + 1 : 2 * row);
     for (int column = 0; column < coarse.width(); ++column) {
       const int left = 2 * column;
-      const int right = std::min(left + 1, fine.width() - 1);
-      const float share = right > left ? 1 : 0;
-      const float upper = above[left] + share * above[right];
-      const float lower = below[left] + share * below[right];
-      coarse(column, row) = (upper + (has_below ? lower : 0)) / 4;
+      const bool has_right = left + 1 < fine.width();
+      Value sum = above[left];
+      if (has_right) sum += above[left + 1];
+      if (has_below) sum += below[left];
+      if (has_right && has_below) sum += below[left + 1];
+      coarse(column, row) = sum / 4;
     }
   }
 }
@@ -83,19 +95,22 @@ Between between(int place, int step, int cells) {
 }
 
 /// From gains at the centres of cells to those of a row of channels; 1 where the label is another.
-void spread(const std::vector<int>& by_cell, const std::uint8_t* labels, std::uint8_t label,
-            int width, std::uint8_t* by_channel) {
-  static_assert(ShadowGain::cell_px == 4);
-  const int* const cells = by_cell.data();
+void spread(const std::vector<Eigen::Array4i>& by_cell, const std::uint8_t* labels,
+            std::uint8_t label, int width, std::uint8_t* by_channel) {
+  static_assert(ShadowGain::cell_px == 8);
   const auto count = static_cast<int>(by_cell.size());
   for (int x = 0; x < width; ++x) {
-    // Eighths of a cell from the first one's centre.
-    const int at = std::max(2 * x - 3, 0);
-    const int left = std::min(at >> 3, count - 1);
+    // Sixteenths of a cell from the first one's centre.
+    const int at = std::max(2 * x - 7, 0);
+    const int left = std::min(at >> 4, count - 1);
     const int right = std::min(left + 1, count - 1);
-    const int by = (8 * cells[left] + (at & 7) * (cells[right] - cells[left])) >> 3;
-    const auto here = static_cast<std::uint8_t>(labels[x] == label ? by : one);
-    for (int c = 0; c < 3; ++c) by_channel[3 * x + c] = here;
+    const int* const a = by_cell[static_cast<std::size_t>(left)].data();
+    const int* const b = by_cell[static_cast<std::size_t>(right)].data();
+    const bool is_here = labels[x] == label;
+    for (int c = 0; c < 3; ++c) {
+      const int by = (16 * a[c] + (at & 15) * (b[c] - a[c])) >> 4;
+      by_channel[3 * x + c] = static_cast<std::uint8_t>(is_here ? by : one);
+    }
   }
 }
 
@@ -112,9 +127,12 @@ void scale_row(const std::uint8_t* __restrict__ by, int count, std::uint8_t* __r
 }  // namespace
 
 void ShadowGain::Scale::resize(int width, int height) {
-  for (auto* image : {&weight, &brightness, &dark, &agreement, &square})
-    image->resize(width, height);
-  gain.resize(width, height, 1);
+  weight.resize(width, height, 0);
+  color.resize(width, height, Levels::Zero());
+  dark.resize(width, height, Levels::Zero());
+  agreement.resize(width, height);
+  square.resize(width, height);
+  gain.resize(width, height, Levels::Ones());
 }
 
 void ShadowGain::apply(const Inputs& inputs, Surfaces& surfaces) {
@@ -132,39 +150,36 @@ void ShadowGain::apply(const Inputs& inputs, Surfaces& surfaces) {
   }
 }
 
-/// Fills weight, brightness and dark at the finest scale, from cells that are all camera or all
-/// seen. Returns whether the plane has a shadow.
+/// Fills weight, colour and dark at the finest scale, from parts of cells that are all camera or
+/// all seen. Returns whether the plane has a shadow.
 bool ShadowGain::gather(const Inputs& inputs, const Surfaces& surfaces, std::uint8_t label) {
   const Rect& region = surfaces.region;
   Scale& fine = scales_.front();
   fine.resize(region.width / cell_px, region.height / cell_px);
-  const auto darken = [&](int column, int row) {
-    const int left = region.x + column * cell_px;
-    const int top = region.y + row * cell_px;
+  constexpr float parts = cell_px / part_px * (cell_px / part_px);
+  constexpr float full = 255 * part_px * part_px;
+  const auto add = [&](int left, int top, int column, int row) {
     const std::uint8_t origin = inputs.provenance(left, top);
-    bool is_pure = origin < provenance::witnessed;
-    int level = 0;
-    int light = 0;
-    for (int y = top; is_pure && y < top + cell_px; ++y) {
-      is_pure = is_even(surfaces.label.row(y) + left, label) &&
-                is_even(inputs.provenance.row(y) + left, origin);
-      for (int x = left; x < left + cell_px; ++x) {
-        level += sum_of(inputs.picture(x, y));
-        light += sum_of(surfaces.light(x, y));
-      }
+    if (origin >= provenance::witnessed) return false;
+    for (int y = top; y < top + part_px; ++y) {
+      if (!is_even(surfaces.label.row(y) + left, label)) return false;
+      if (!is_even(inputs.provenance.row(y) + left, origin)) return false;
     }
-    const float weight = !is_pure ? 0 : origin == provenance::camera ? 1 : seen_weight;
-    const float dark = 1 - static_cast<float>(light) / full;
-    fine.weight(column, row) = weight;
-    fine.brightness(column, row) = weight * static_cast<float>(level) / full;
-    fine.dark(column, row) = weight * dark;
-    return is_pure && dark > 1 - lit;
+    const float weight = (origin == provenance::camera ? 1 : seen_weight) / parts;
+    const Levels color = sum_of(inputs.picture, left, top, part_px).cast<float>() / full;
+    const Levels dark = 1 - sum_of(surfaces.light, left, top, part_px).cast<float>() / full;
+    fine.weight(column, row) += weight;
+    fine.color(column, row) += weight * color;
+    fine.dark(column, row) += weight * dark;
+    return dark.head<3>().mean() > 1 - lit;
   };
   const int shaded = sum_over_rows(fine.weight.height(), [&](Rows rows) {
     int count = 0;
     for (int row = rows.first; row < rows.last; ++row) {
-      for (int column = 0; column < fine.weight.width(); ++column) {
-        count += darken(column, row) ? 1 : 0;
+      for (int y = 0; y < cell_px; y += part_px) {
+        for (int x = 0; x < fine.weight.width() * cell_px; x += part_px) {
+          count += add(region.x + x, region.y + row * cell_px + y, x / cell_px, row) ? 1 : 0;
+        }
       }
     }
     return count;
@@ -174,7 +189,7 @@ bool ShadowGain::gather(const Inputs& inputs, const Surfaces& surfaces, std::uin
     scales_[i].resize((scales_[i - 1].weight.width() + 1) / 2,
                       (scales_[i - 1].weight.height() + 1) / 2);
     halve(scales_[i - 1].weight, scales_[i].weight);
-    halve(scales_[i - 1].brightness, scales_[i].brightness);
+    halve(scales_[i - 1].color, scales_[i].color);
     halve(scales_[i - 1].dark, scales_[i].dark);
   }
   return true;
@@ -188,34 +203,31 @@ void ShadowGain::gather_samples(const Inputs& inputs, const CastShadows::Shadow&
   for (const SceneSample& sample : inputs.samples) {
     const float tolerance_m = BackgroundPlanes::tolerance.at(sample.point_m.z());
     if (std::abs(shadow.ground.plane.height_m(sample.point_m)) > tolerance_m) continue;
-    const Rect cell{static_cast<int>(sample.pixel.x()) - cell_px / 2,
-                    static_cast<int>(sample.pixel.y()) - cell_px / 2, cell_px, cell_px};
-    if (intersect(cell, whole) != cell || shadow.light_at(sample.point_m) < lit) continue;
-    int level = 0;
+    const Rect part{static_cast<int>(sample.pixel.x()) - part_px / 2,
+                    static_cast<int>(sample.pixel.y()) - part_px / 2, part_px, part_px};
+    if (intersect(part, whole) != part || shadow.light_at(sample.point_m) < lit) continue;
     bool is_camera = true;
-    for (int y = cell.y; y < cell.bottom(); ++y) {
-      for (int x = cell.x; x < cell.right(); ++x) {
-        is_camera &= inputs.provenance(x, y) == provenance::camera;
-        level += sum_of(inputs.picture(x, y));
-      }
+    for (int y = part.y; y < part.bottom(); ++y) {
+      is_camera &= is_even(inputs.provenance.row(y) + part.x, provenance::camera);
     }
     if (!is_camera) continue;
-    const Eigen::Vector2f place = sample.pixel - Eigen::Vector2f(region.x, region.y);
-    cells_.push_back({monomials(place.x() / cell_px, place.y() / cell_px),
-                      static_cast<float>(level) / full, 1, 1});
+    constexpr float full = 255 * part_px * part_px;
+    const Eigen::Vector2f place = (sample.pixel - Eigen::Vector2f(region.x, region.y)) / cell_px;
+    cells_.push_back({monomials(place.x(), place.y()),
+                      sum_of(inputs.picture, part.x, part.y, part_px).cast<float>() / full, 1, 1});
   }
   sample_count_ = cells_.size();
 }
 
 /// x, y: in cells of the finest scale.
-ShadowGain::Field ShadowGain::monomials(float x, float y) const {
+ShadowGain::Terms ShadowGain::monomials(float x, float y) const {
   const Scale& fine = scales_.front();
   const auto size = static_cast<float>(std::max(fine.weight.width(), fine.weight.height()));
   x /= size;
   y /= size;
-  return Field{{1, x, y, x * x, x * y, y * y}};
+  return Terms{{1, x, y, x * x, x * y, y * y}};
 }
-ShadowGain::Field ShadowGain::monomials(std::size_t scale, int column, int row) const {
+ShadowGain::Terms ShadowGain::monomials(std::size_t scale, int column, int row) const {
   const auto cells = static_cast<float>(1 << scale);
   return monomials(cells * (static_cast<float>(column) + 0.5F),
                    cells * (static_cast<float>(row) + 0.5F));
@@ -230,21 +242,21 @@ bool ShadowGain::fit_field(bool only_lit) {
     for (int column = 0; column < scale.weight.width(); ++column) {
       const float weight = scale.weight(column, row);
       if (weight < least_weight) continue;
-      const float dark = scale.dark(column, row) / weight;
-      if (only_lit && dark > 1 - lit) continue;
-      const float light = std::max(1 - scale.gain(column, row) * dark, least_light);
+      const Levels dark = scale.dark(column, row) / weight;
+      if (only_lit && dark.head<3>().mean() > 1 - lit) continue;
+      const Levels light = (1 - scale.gain(column, row) * dark).max(least_light);
       cells_.push_back({monomials(field_scale, column, row),
-                        scale.brightness(column, row) / weight / light, weight, 1});
+                        scale.color(column, row) / weight / light, weight, 1});
     }
   }
   if (cells_.size() < fewest_cells) return false;
   for (int pass = 0; pass < robust_passes; ++pass) {
-    Eigen::Matrix<float, terms, terms> squares = 1e-4F * Field::Ones().asDiagonal().toDenseMatrix();
-    Field products = Field::Zero();
+    Eigen::Matrix<float, terms, terms> squares = 1e-4F * Terms::Ones().asDiagonal().toDenseMatrix();
+    Eigen::Matrix<float, terms, 4> products = Eigen::Matrix<float, terms, 4>::Zero();
     for (const Cell& cell : cells_) {
-      const float weight = cell.weight * cell.trust;
-      squares += weight * cell.monomials * cell.monomials.transpose();
-      products += weight * cell.brightness * cell.monomials;
+      const Terms weighted = cell.weight * cell.trust * cell.monomials;
+      squares += weighted * cell.monomials.transpose();
+      products += weighted * cell.color.matrix().transpose();
     }
     field_ = squares.ldlt().solve(products);
     residuals_.clear();
@@ -255,10 +267,14 @@ bool ShadowGain::fit_field(bool only_lit) {
   return true;
 }
 
+ShadowGain::Levels ShadowGain::field_at(const Terms& monomials) const {
+  return (field_.transpose() * monomials).array().max(least_field);
+}
+
 /// Of the brightness, relative to the field.
 float ShadowGain::residual(const Cell& cell) const {
-  const float field = std::max(field_.dot(cell.monomials), least_field);
-  return std::abs(cell.brightness / field - 1);
+  const float field = field_at(cell.monomials).head<3>().mean();
+  return std::abs(cell.color.head<3>().mean() / field - 1);
 }
 
 /// From the coarsest scale to `finest`.
@@ -267,16 +283,18 @@ void ShadowGain::find_gains(std::size_t finest) {
   for (int row = 0; row < from.weight.height(); ++row) {
     for (int column = 0; column < from.weight.width(); ++column) {
       const float weight = from.weight(column, row);
+      Levels& agreement = from.agreement(column, row);
+      Levels& square = from.square(column, row);
       if (weight < least_weight) {
-        from.agreement(column, row) = from.square(column, row) = 0;
+        agreement.setZero();
+        square.setZero();
         continue;
       }
-      const float field = std::max(field_.dot(monomials(finest, column, row)), least_field);
-      const float brightness = from.brightness(column, row) / weight;
-      const float missing = 1 - std::min(brightness / field, most_bright);
-      const float dark = from.dark(column, row);
-      from.agreement(column, row) = dark * missing;
-      from.square(column, row) = dark * dark / weight;
+      const Levels field = field_at(monomials(finest, column, row));
+      const Levels missing = 1 - (from.color(column, row) / weight / field).min(most_bright);
+      const Levels dark = from.dark(column, row);
+      agreement = dark * missing;
+      square = dark * dark / weight;
     }
   }
   for (std::size_t i = finest + 1; i < scales; ++i) {
@@ -286,70 +304,69 @@ void ShadowGain::find_gains(std::size_t finest) {
   const float prior = prior_by_texture * texture_ * texture_;
   for (std::size_t i = scales; i-- > finest;) {
     Scale& scale = scales_[i];
-    blur(scale.agreement);
-    blur(scale.square);
+    // Nearly Gaussians of two cells; of one at the finest scale.
+    const int reach = i == 0 ? 1 : 2;
+    blur(reach, scale.agreement);
+    blur(reach, scale.square);
     for (int row = 0; row < scale.weight.height(); ++row) {
       for (int column = 0; column < scale.weight.width(); ++column) {
-        const float coarse = i + 1 < scales ? coarser_gain(i, column, row) : 1;
-        const float gain =
-            (scale.agreement(column, row) + prior * coarse) / (scale.square(column, row) + prior);
-        scale.gain(column, row) = std::clamp(gain, 0.F, most);
+        const Levels coarse =
+            i + 1 < scales ? coarser_gain(i, column, row) : Levels(Levels::Ones());
+        scale.gain(column, row) =
+            ((scale.agreement(column, row) + prior * coarse) / (scale.square(column, row) + prior))
+                .max(0.F)
+                .min(most);
       }
     }
   }
 }
 
 /// Between the four nearest cells of the next coarser scale.
-float ShadowGain::coarser_gain(std::size_t scale, int column, int row) const {
-  const Image<float>& gain = scales_[scale + 1].gain;
+ShadowGain::Levels ShadowGain::coarser_gain(std::size_t scale, int column, int row) const {
+  const Image<Levels>& gain = scales_[scale + 1].gain;
   const Between columns = between(column, 2, gain.width());
   const Between rows = between(row, 2, gain.height());
-  const auto in_row = [&](int y) {
-    const float left = gain(columns.first, y);
+  const auto in_row = [&](int y) -> Levels {
+    const Levels& left = gain(columns.first, y);
     return left + columns.share * (gain(columns.second, y) - left);
   };
-  const float above = in_row(rows.first);
+  const Levels above = in_row(rows.first);
   return above + rows.share * (in_row(rows.second) - above);
 }
 
-/// Two means over five cells along rows, then along columns: nearly a Gaussian of two cells. Beyond
-/// the border is 0.
-void ShadowGain::blur(Image<float>& image) {
-  constexpr int reach = 2;
-  constexpr float share = 1.F / (2 * reach + 1);
+/// Two means along rows, then along columns. Beyond the border is 0.
+void ShadowGain::blur(int reach, Image<Levels>& image) {
+  const int count = 2 * reach + 1;
   const int width = image.width();
   const int height = image.height();
   // A frame of zeros around the image.
-  padded_.resize(width + 2 * reach, height + 2 * reach, 0);
-  const auto mean_of = [&](const float* first, std::ptrdiff_t step, float* to) {
-    for (int x = 0; x < width; ++x) {
-      const float* const at = first + x;
-      to[x] = share * (at[0] + at[step] + at[2 * step] + at[3 * step] + at[4 * step]);
-    }
+  padded_.resize(width + 2 * reach, height + 2 * reach, Levels::Zero());
+  const auto mean = [&](const Levels* first, std::ptrdiff_t step) -> Levels {
+    Levels sum = *first;
+    for (int i = 1; i < count; ++i) sum += first[i * step];
+    return sum / static_cast<float>(count);
   };
-  const auto pad = [&] {
+  for (const bool along_rows : {true, true, false, false}) {
     for (int row = 0; row < height; ++row) {
       std::copy_n(image.row(row), width, padded_.row(row + reach) + reach);
     }
-  };
-  for (int pass = 0; pass < 2; ++pass) {
-    pad();
-    for (int row = 0; row < height; ++row) mean_of(padded_.row(row + reach), 1, image.row(row));
-    pad();
     for (int row = 0; row < height; ++row) {
-      mean_of(padded_.row(row) + reach, padded_.width(), image.row(row));
+      const Levels* const first = along_rows ? padded_.row(row + reach) : padded_.row(row) + reach;
+      for (int column = 0; column < width; ++column) {
+        image(column, row) = mean(first + column, along_rows ? 1 : padded_.width());
+      }
     }
   }
 }
 
 void ShadowGain::scale_light(std::uint8_t label, Surfaces& surfaces) {
   const Rect& region = surfaces.region;
-  const Image<float>& gain = scales_.front().gain;
+  const Image<Levels>& gain = scales_.front().gain;
   const int cells = gain.width();
   const int count = 3 * region.width;
   for_rows(region.height, [&](Rows rows) {
     // Of a row of cells and of the row's channels, in fixed point.
-    std::vector<int>& by_cell = by_cell_[rows.band];
+    std::vector<Eigen::Array4i>& by_cell = by_cell_[rows.band];
     std::vector<std::uint8_t>& by_channel = by_channel_[rows.band];
     by_cell.resize(static_cast<std::size_t>(cells));
     by_channel.resize(static_cast<std::size_t>(count));
@@ -357,11 +374,11 @@ void ShadowGain::scale_light(std::uint8_t label, Surfaces& surfaces) {
       auto* const levels = reinterpret_cast<std::uint8_t*>(surfaces.light.row(y) + region.x);
       if (find_other(levels, 0, count, 255) == count) continue;
       const Between beside = between(y - region.y, cell_px, gain.height());
-      const float* const above = gain.row(beside.first);
-      const float* const below = gain.row(beside.second);
+      const Levels* const above = gain.row(beside.first);
+      const Levels* const below = gain.row(beside.second);
       for (int i = 0; i < cells; ++i) {
-        by_cell[static_cast<std::size_t>(i)] =
-            static_cast<int>(one * (above[i] + beside.share * (below[i] - above[i])));
+        const Levels here = above[i] + beside.share * (below[i] - above[i]);
+        by_cell[static_cast<std::size_t>(i)] = (here * one).cast<int>();
       }
       spread(by_cell, surfaces.label.row(y) + region.x, label, region.width, by_channel.data());
       scale_row(by_channel.data(), count, levels);

@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -16,8 +18,8 @@ namespace diminish {
 /// Brings the objects' shadows (Surfaces::light) to what the picture shows of them.
 ///
 /// The light was found from few samples and few directions: its shadows are blurred, and too faint
-/// where they should be sharp. Each plane's brightness in the picture is taken for a smooth field
-/// times the light,
+/// where they should be deep. Each plane's colour in the picture is taken for a smooth field times
+/// the light, channel by channel,
 ///
 ///   Y(p) = F(p) (1 - g(p) (1 - light(p))),
 ///
@@ -28,8 +30,8 @@ namespace diminish {
 /// shadow that the picture does not show gets a gain of 0.
 class ShadowGain {
  public:
-  /// Pixels of a cell, in which brightness is averaged.
-  static constexpr int cell_px = 4;
+  /// Pixels of a cell, in which colours are averaged.
+  static constexpr int cell_px = 8;
   /// The largest gain.
   static constexpr float most = 2.5F;
   /// What an RGB-D camera saw counts less than what the user's camera sees itself.
@@ -48,48 +50,55 @@ class ShadowGain {
   void apply(const Inputs& inputs, Surfaces& surfaces);
 
  private:
-  /// From fine to coarse: cells of 4, 8, 16, 32 pixels.
-  static constexpr std::size_t scales = 4;
+  /// From fine to coarse: cells of 8, 16, 32 pixels.
+  static constexpr std::size_t scales = 3;
   /// Fields are fitted at this scale.
-  static constexpr std::size_t field_scale = 2;
+  static constexpr std::size_t field_scale = 1;
+  /// What is averaged together belongs to one plane and origin.
+  static constexpr int part_px = 4;
   static constexpr int terms = 6;
-  using Field = Eigen::Matrix<float, terms, 1>;
+  using Terms = Eigen::Matrix<float, terms, 1>;
+  /// By channel: blue, green, red, and one of no meaning.
+  using Levels = Eigen::Array4f;
 
   /// Means over cells, from 0 to 1. All but the gain are products with the weight.
   struct Scale {
-    Image<float> weight, brightness;
-    Image<float> dark;       ///< 1 - light
-    Image<float> agreement;  ///< (1 - light) (1 - Y / F)
-    Image<float> square;     ///< (1 - light)^2
-    Image<float> gain;
+    Image<float> weight;
+    Image<Levels> color;
+    Image<Levels> dark;       ///< 1 - light
+    Image<Levels> agreement;  ///< (1 - light) (1 - Y / F)
+    Image<Levels> square;     ///< (1 - light)^2
+    Image<Levels> gain;
 
     void resize(int width, int height);
   };
   struct Cell {
-    Field monomials;
-    float brightness, weight, trust;
+    Terms monomials;
+    Levels color;
+    float weight, trust;
   };
 
   bool gather(const Inputs& inputs, const Surfaces& surfaces, std::uint8_t label);
   void gather_samples(const Inputs& inputs, const CastShadows::Shadow& shadow, const Rect& region);
-  Field monomials(float x, float y) const;
-  Field monomials(std::size_t scale, int column, int row) const;
+  Terms monomials(float x, float y) const;
+  Terms monomials(std::size_t scale, int column, int row) const;
   bool fit_field(bool only_lit);
+  Levels field_at(const Terms& monomials) const;
   float residual(const Cell& cell) const;
   void find_gains(std::size_t finest);
-  void blur(Image<float>& image);
-  float coarser_gain(std::size_t scale, int column, int row) const;
+  void blur(int reach, Image<Levels>& image);
+  Levels coarser_gain(std::size_t scale, int column, int row) const;
   void scale_light(std::uint8_t label, Surfaces& surfaces);
 
   std::array<Scale, scales> scales_;
   std::vector<Cell> cells_;
   std::size_t sample_count_ = 0;  ///< the first cells are samples without a shadow
-  Field field_;
+  Eigen::Matrix<float, terms, 4> field_;
   float texture_ = 0;  ///< relative to the field, one standard deviation
   std::vector<float> residuals_;
-  Image<float> padded_;
+  Image<Levels> padded_;
   /// Of each band.
-  std::vector<int> by_cell_[most_bands];
+  std::vector<Eigen::Array4i> by_cell_[most_bands];
   std::vector<std::uint8_t> by_channel_[most_bands];
 };
 
