@@ -20,14 +20,15 @@ class BarHole {
 
   /// If the bar is in this plane: the share of its places where no depth is measured, less that
   /// beside it. 0 where too little is known, and where most of it has depth: then it is drawn
-  /// anyway.
-  float margin(const BackgroundPlane& plane) const;
+  /// anyway. What is less than `least` may be any such number, and is found with fewer looks.
+  float margin(const BackgroundPlane& plane, float least) const;
 
  private:
-  /// Rays along the bar, at some distance from its middle.
+  /// Rays along the bar, at some distance from its middle. In an order in which the first few are
+  /// spread over all of it.
   struct Strip {
-    static constexpr int most = 32;
-    std::array<Eigen::Vector3f, most> rays;
+    static constexpr int most = 2 * DepthView::few;
+    std::array<float, most> ray_x{}, ray_y{};
     int count = 0;
   };
   /// On the bar, and to each side of it nearer and further away.
@@ -35,15 +36,41 @@ class BarHole {
     Strip near, far;
   };
   Strip strip(const Bar& bar, float begin, float end, float side) const;
-  std::optional<float> bare_share(const Strip& strip, const BackgroundPlane& plane) const;
+  /// The share of places where no depth is measured. Nothing if too little is known, nor if it is
+  /// less than `least` or more than `most`: it stops when it knows.
+  std::optional<float> bare_share(const Strip& strip, const BackgroundPlane& plane, float least,
+                                  float most) const;
 
   const BarViews& views_;
   Strip middle_;
   std::array<Side, 2> sides_;
 };
 
-/// How clearly an RGB-D camera's picture shows the less clear edge of the bar, in grey levels: the
-/// mean over pieces of the size of each one's mean step. In the camera that shows both best.
-float edge_contrast(const BarViews& views, const Bar& bar, float begin, float end);
+/// The edges of a bar in the RGB-D cameras' pictures.
+class BarEdges {
+ public:
+  static constexpr int longest_px = 280;
+
+  /// begin, end: along the bar, at most `longest_px` apart.
+  BarEdges(const BarViews& views, const Bar& bar, float begin, float end);
+
+  /// How clearly an RGB-D camera's picture shows the less clear edge of the bar if it is in this
+  /// plane, in grey levels: the mean over pieces of the size of each one's mean step. In the camera
+  /// that shows both best. What is not more than `least` may be any such number.
+  float contrast(const BackgroundPlane& plane, float least) const;
+
+ private:
+  static constexpr int step_px = 5;
+  static constexpr int most = longest_px / step_px + 1;
+  /// Of an edge: the rays on its one side and on its other.
+  struct Edge {
+    std::array<Eigen::Vector3f, most> left, right;
+  };
+  float contrast(std::size_t k, const BackgroundPlane& plane, const Edge& edge) const;
+
+  const BarViews& views_;
+  int places_;
+  std::array<Edge, 2> edges_;
+};
 
 }  // namespace diminish

@@ -22,6 +22,26 @@ constexpr float far_fade = 0.4F;
 constexpr float nearer_m = 0.03F;
 constexpr float nearer_side_m = 0.02F;
 
+struct Columns {
+  int begin, end;
+};
+
+/// Of a row: all that may show the bar, and little more.
+Columns columns_of(const Bar& bar, int y, const Rect& box) {
+  const Eigen::Vector2f across = bar.across();
+  const float wide = bar.width_px / 2 + 1;
+  constexpr float level = 1e-3F;
+  if (std::abs(across.x()) < level) return {box.x, box.right()};
+  const float middle =
+      bar.entry.x() - across.y() * (static_cast<float>(y) - bar.entry.y()) / across.x();
+  const float reach = wide / std::abs(across.x()) + 1;
+  const auto column = [&](float x) {
+    return static_cast<int>(
+        std::clamp(x, static_cast<float>(box.x), static_cast<float>(box.right())));
+  };
+  return {column(middle - reach), column(middle + reach + 1)};
+}
+
 }  // namespace
 
 /// The mean colours across the bar, from `begin` on along it, in the direction of `sign`.
@@ -92,7 +112,8 @@ void BarPainting::paint(const Input& input, const Bar& bar, DiminishedFrame& res
     return profile[first] + share * (profile[first + 1] - profile[first]);
   };
   for (int y = box.y; y < box.bottom(); ++y) {
-    for (int x = box.x; x < box.right(); ++x) {
+    const Columns columns = columns_of(bar, y, box);
+    for (int x = columns.begin; x < columns.end; ++x) {
       std::uint8_t& origin = result.provenance(x, y);
       if (input.occlusion(x, y) == 0 || origin == provenance::witnessed ||
           origin == provenance::remembered || origin == provenance::estimated) {

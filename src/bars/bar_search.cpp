@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <tuple>
 
 #include "bars/bar_evidence.h"
@@ -19,6 +20,7 @@ constexpr float farthest_apart_px = 60;  ///< along them, from one's entry to th
 /// How far a bar is looked at, outside the mask and inside.
 constexpr int outside_px = 40;
 constexpr int inside_px = 200;
+static_assert(outside_px + inside_px <= BarEdges::longest_px);
 constexpr int sample_px = 6;  ///< from one label that is looked at to the next
 
 // An edge that leaves the mask on its other side.
@@ -149,9 +151,11 @@ void BarSearch::judge(const Input& input, const RimLine& a, const RimLine& b) {
   const auto outside = static_cast<float>(std::min({outside_px, a.length, b.length}));
   const float end = std::max(std::abs(apart), depth_inside(input.occlusion, bar));
   const BarHole hole(views, bar, -outside, end);
+  std::optional<BarEdges> edges;  ///< of few that may be bars
   std::array<float, distances> margins{};
   for (int i = 0; i < distances; ++i) {
-    margins[static_cast<std::size_t>(i)] = hole.margin(in_front(*behind, distance_at(i)));
+    margins[static_cast<std::size_t>(i)] =
+        hole.margin(in_front(*behind, distance_at(i)), least_share);
   }
   // Every range of distances is a bar that may be there: one that an RGB-D camera sees beside the
   // hole of another seems to be further in front.
@@ -170,16 +174,16 @@ void BarSearch::judge(const Input& input, const RimLine& a, const RimLine& b) {
     }
     begin = last;
     // Where exactly: as the RGB-D camera's picture shows its edges.
+    if (!edges) edges.emplace(views, bar, -outside, end);
     float contrast = 0;
     Bar placed = bar;
     for (int i = -refined_steps; i <= refined_steps; ++i) {
       const float shift_m = static_cast<float>(i) * refined_step_m;
-      Bar moved = bar;
-      moved.plane = in_front(*behind, sum_m / static_cast<float>(count) + shift_m);
-      const float its = edge_contrast(views, moved, -outside, end);
+      const BackgroundPlane plane = in_front(*behind, sum_m / static_cast<float>(count) + shift_m);
+      const float its = edges->contrast(plane, contrast);
       if (its <= contrast) continue;
       contrast = its;
-      placed.plane = moved.plane;
+      placed.plane = plane;
     }
     if (contrast < least_contrast) continue;
     placed.goes_on = goes_on(input.lines, placed);

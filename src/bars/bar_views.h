@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -29,6 +30,9 @@ class BarViews {
     unknown,  ///< no camera sees the place
   };
   Place look_at(const Eigen::Vector3f& point_m) const;
+  /// The same of a few points.
+  using Places = std::array<Place, DepthView::few>;
+  void look_at(const PointRow& points, Places& places) const;
 
   std::size_t size() const { return cameras_.size(); }
   /// The grey level in camera k's picture, 0 to 255; nothing outside it or on an object.
@@ -56,6 +60,9 @@ class BarViews {
     FloatTransform color_from_user{RigidTransform{}};
     Eigen::Vector3f centre = Eigen::Vector3f::Zero();
   };
+  /// What is said of a place, when one more camera has been asked.
+  static Place add(Place so_far, const std::optional<DepthView::Depth>& depth);
+
   std::vector<Camera> cameras_;
   Projection user_;
   RayGrid rays_;

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <optional>
 
 #include "diminish/image.h"
 #include "diminish/rig.h"
 #include "geometry/point_projection.h"
+#include "geometry/point_rows.h"
 
 namespace diminish {
 
@@ -39,12 +41,29 @@ class DepthView {
     const Eigen::Vector3f point = transform(depth_from_color_, point_m);
     const auto pixel = project(lens_, point);
     if (!pixel || !depth_.bounds().contains(pixel->x, pixel->y)) return std::nullopt;
-    const auto& [x, y] = *pixel;
-    if (objects_.bounds().contains(x, y) && objects_(x, y) != 0) return std::nullopt;
-    return Depth{unit_m_ * static_cast<float>(depth_(x, y)), point.z()};
+    return at(pixel->x, pixel->y, point.z());
+  }
+  static constexpr int few = 16;
+  /// The same of up to `few` points, on vector instructions.
+  void at(const PointRow& points, std::array<std::optional<Depth>, few>& found) const {
+    found.fill(std::nullopt);
+    if (depth_.empty()) return;
+    constexpr int pitch = 1 << 16;
+    std::array<std::int32_t, few> pixels;
+    std::array<float, few> own_m;
+    find_pixels(points, {depth_from_color_, lens_, depth_.bounds(), pitch}, pixels.data(),
+                own_m.data());
+    for (std::size_t i = 0; i < static_cast<std::size_t>(points.count); ++i) {
+      if (pixels[i] >= 0) found[i] = at(pixels[i] % pitch, pixels[i] / pitch, own_m[i]);
+    }
   }
 
  private:
+  std::optional<Depth> at(int x, int y, float own_m) const {
+    if (objects_.bounds().contains(x, y) && objects_(x, y) != 0) return std::nullopt;
+    return Depth{unit_m_ * static_cast<float>(depth_(x, y)), own_m};
+  }
+
   Projection lens_;
   float unit_m_;
   FloatTransform depth_from_color_{RigidTransform{}};

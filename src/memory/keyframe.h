@@ -14,8 +14,8 @@
 #include "diminish/rigid_transform.h"
 #include "diminish/scene_samples.h"
 #include "geometry/point_projection.h"
+#include "geometry/point_rows.h"
 #include "geometry/ray_table.h"
-#include "memory/point_rows.h"
 #include "memory/testimony.h"
 
 namespace diminish {

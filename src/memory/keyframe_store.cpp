@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "core/tasks.h"
-#include "memory/point_rows.h"
+#include "geometry/point_rows.h"
 
 namespace diminish {
 namespace {

@@ -8,7 +8,7 @@
 #include "core/tasks.h"
 #include "depth/depth_rows.h"
 #include "geometry/every.h"
-#include "memory/point_rows.h"
+#include "geometry/point_rows.h"
 
 namespace diminish {
 namespace {

@@ -7,8 +7,8 @@
 #include "core/conditions.h"
 #include "core/rows.h"
 #include "core/runs.h"
+#include "geometry/point_rows.h"
 #include "memory/light.h"
-#include "memory/point_rows.h"
 
 namespace diminish {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "geometry/point_rows.h"
 #include "memory/keyframe_preparation.h"
-#include "memory/point_rows.h"
 
 namespace diminish {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "core/rows.h"
 #include "geometry/every.h"
-#include "memory/point_rows.h"
+#include "geometry/point_rows.h"
 
 namespace diminish {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/tasks.h"
-#include "memory/point_rows.h"
+#include "geometry/point_rows.h"
 
 namespace diminish {
 namespace {

@@ -1,4 +1,4 @@
-#include "memory/point_rows.h"
+#include "geometry/point_rows.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "each_vector_target.h"
-#include "memory/keyframe.h"
+#include "geometry/point_projection.h"
 
 namespace diminish {
 namespace {

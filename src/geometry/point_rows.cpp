@@ -1,7 +1,7 @@
-#include "memory/point_rows.h"
+#include "geometry/point_rows.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "memory/point_rows.cpp"
+#define HWY_TARGET_INCLUDE "geometry/point_rows.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
