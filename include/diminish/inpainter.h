@@ -24,6 +24,11 @@ struct Holes {
   /// The straight edges that run into the mask, the strongest first. Empty unless declared to be
   /// used.
   std::span<const RimLine> lines = {};
+  /// The box of `occlusion`. Empty: not known.
+  Rect objects = {};
+
+  /// A part of the picture that contains all of `missing`.
+  Rect part() const { return objects.empty() ? missing.bounds() : objects; }
 };
 
 /// Fills pixels that no camera sees. Registered by name; chosen by the option `inpaint`.

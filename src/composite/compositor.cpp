@@ -78,11 +78,14 @@ void Compositor::hide_behind_sides(const Inputs& inputs, DiminishedFrame& result
   for (int y = part.y; y < part.bottom(); ++y) {
     const std::uint8_t* const label = result.surfaces.label.row(y);
     std::uint8_t* const origin = result.provenance.row(y);
-    for (int x = part.x;; ++x) {
-      x = find_equal(label, x, part.right(), surface_label::standing);
-      if (x >= part.right()) break;
-      hidden += origin[x] != provenance::inpainted ? 1 : 0;
-      origin[x] = provenance::inpainted;
+    for (int last = part.x;;) {
+      const int first = find_equal(label, last, part.right(), surface_label::standing);
+      if (first >= part.right()) break;
+      last = find_other(label, first, part.right(), surface_label::standing);
+      hidden += static_cast<std::size_t>(last - first) -
+                static_cast<std::size_t>(
+                    std::count(origin + first, origin + last, provenance::inpainted));
+      std::fill(origin + first, origin + last, provenance::inpainted);
     }
   }
   result.report.missing_pixels += hidden;
@@ -138,8 +141,8 @@ void Compositor::inpaint(const Inputs& inputs, Inpainter& inpainter, DiminishedF
     std::transform(origin, origin + part.width, missing_.row(y) + part.x,
                    [](std::uint8_t from) { return from == provenance::inpainted ? 255 : 0; });
   }
-  const Holes holes{missing_, occlusion, result.surfaces, result.reconstruction.depth_m,
-                    inputs.lines};
+  const Holes holes{missing_,     occlusion, result.surfaces, result.reconstruction.depth_m,
+                    inputs.lines, part};
   if (inpainter.inpaint(holes, inputs.options, result.picture)) return;
   for (int y = part.y; y < part.bottom(); ++y) {
     std::uint8_t* const origin = result.provenance.row(y) + part.x;

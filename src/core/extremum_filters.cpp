@@ -43,7 +43,27 @@ HWY_INLINE void Combine(const std::uint8_t* const* taps, int tap_count, int coun
     for (int i = 0; i < count; ++i) combine(hn::CappedTag<std::uint8_t, 1>(), i);
     return;
   }
-  for (int i = 0; i + lanes <= count; i += lanes) combine(d, i);
+  // Four vectors at a time: a tap is read once for all of them.
+  int i = 0;
+  for (; i + 4 * lanes <= count; i += 4 * lanes) {
+    const auto load = [&](int k, int part)
+                          HWY_ATTR { return hn::LoadU(d, taps[k] + i + part * lanes); };
+    auto a = load(0, 0);
+    auto b = load(0, 1);
+    auto c = load(0, 2);
+    auto e = load(0, 3);
+    for (int k = 1; k < tap_count; ++k) {
+      a = choose(a, load(k, 0));
+      b = choose(b, load(k, 1));
+      c = choose(c, load(k, 2));
+      e = choose(e, load(k, 3));
+    }
+    hn::StoreU(a, d, result + i);
+    hn::StoreU(b, d, result + i + lanes);
+    hn::StoreU(c, d, result + i + 2 * lanes);
+    hn::StoreU(e, d, result + i + 3 * lanes);
+  }
+  for (; i + lanes <= count; i += lanes) combine(d, i);
   if (count % lanes != 0) combine(d, count - lanes);
 }
 

@@ -13,8 +13,9 @@ int find_other_far(const std::uint8_t* bytes, int x, int end, std::uint8_t value
     const std::uint64_t word = differences(bytes + x, value);
     if (word != 0) return x + std::countr_zero(word) / 8;
   }
-  while (x < end && bytes[x] == value) ++x;
-  return x;
+  if (x >= end) return end;
+  const std::uint64_t word = differences(bytes + end - word_bytes, value);
+  return word == 0 ? end : end - word_bytes + std::countr_zero(word) / 8;
 }
 
 int find_equal_far(const std::uint8_t* bytes, int x, int end, std::uint8_t value) {

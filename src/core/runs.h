@@ -7,6 +7,7 @@
 namespace diminish {
 
 namespace runs_detail {
+/// From x on; the eight bytes before it are `value`.
 int find_other_far(const std::uint8_t* bytes, int x, int end, std::uint8_t value);
 int find_equal_far(const std::uint8_t* bytes, int x, int end, std::uint8_t value);
 
@@ -27,9 +28,10 @@ inline int find_other(const std::uint8_t* bytes, int x, int end, std::uint8_t va
   if (x + runs_detail::word_bytes <= end) {
     const std::uint64_t word = runs_detail::differences(bytes + x, value);
     if (word != 0) return x + std::countr_zero(word) / 8;
-    x += runs_detail::word_bytes;
+    return runs_detail::find_other_far(bytes, x + runs_detail::word_bytes, end, value);
   }
-  return runs_detail::find_other_far(bytes, x, end, value);
+  while (x < end && bytes[x] == value) ++x;
+  return x;
 }
 
 /// The index of the first of the bytes [x, end) that is `value`; `end` if there is none.

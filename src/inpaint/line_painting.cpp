@@ -36,7 +36,7 @@ constexpr float measured_side = 4;  ///< pixels beside it
 constexpr float own_colors = 0.5F;
 
 std::uint8_t label_at(const Surfaces& surfaces, int x, int y) {
-  if (!intersect(surfaces.region, surfaces.label.bounds()).contains(x, y)) {
+  if (!surfaces.region.contains(x, y) || !surfaces.label.bounds().contains(x, y)) {
     return surface_label::unknown;
   }
   return surfaces.label(x, y);
@@ -245,12 +245,12 @@ void LinePainting::claim(const Mask& missing, const Surfaces& surfaces, const Re
   for (std::size_t i = 0; i < strokes_.size(); ++i) {
     const float handicap = strokes_[i].end != nullptr ? 0.F : 1.F;
     for_each_beside(strokes_[i], half_width, part, missing, [&](int x, int y, float across) {
-      // A line runs on behind a thing, not over its side.
-      if (label_at(surfaces, x, y) == surface_label::standing) return;
       std::uint8_t& nearest = nearest_(x - objects_.x, y - objects_.y);
       Claim& claim = claims_(x - objects_.x, y - objects_.y);
       const float distance = std::abs(across) + handicap;
       if (nearest != 0 && distance >= claim.distance) return;
+      // A line runs on behind a thing, not over its side.
+      if (label_at(surfaces, x, y) == surface_label::standing) return;
       nearest = static_cast<std::uint8_t>(1 + i);
       claim = {distance, false};
     });

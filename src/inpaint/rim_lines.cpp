@@ -120,9 +120,9 @@ bool RimLines::is_hidden(const Eigen::Vector2f& at) const {
                        static_cast<int>(std::lrint(at.y()))) != 0;
 }
 
-/// Whether an edge that runs into the mask passes through this pixel of `part_`.
+/// Whether an edge that runs into the mask passes through this pixel of `part_`, whose surroundings
+/// have been looked at.
 bool RimLines::start(int x, int y, Track& track) {
-  grey_.look_at(grow({x, y, 1, 1}, sampled));
   const Eigen::Vector2f slope = gradient(x, y);
   const float contrast = slope.norm();
   if (contrast < least_contrast) return false;
@@ -231,9 +231,10 @@ void RimLines::find(ImageView<Bgr> picture, const Mask& occlusion, const Rect& o
   find_ring(box);
   const Rect inner = intersect(box, grow(part_, -1));
   for (int y = inner.y; y < inner.bottom(); ++y) {
-    for_each_set(ring_.row(y - box.y) + inner.x - box.x, inner.width, [&](int i) {
+    const std::uint8_t* const ring = ring_.row(y - box.y) - box.x;
+    const auto try_from = [&](int x) {
       Track track;
-      if (!start(inner.x + i - part_.x, y - part_.y, track)) return;
+      if (!start(x - part_.x, y - part_.y, track)) return;
       RimLine line;
       line.entry = track.start;
       line.outward = track.outward;
@@ -248,6 +249,10 @@ void RimLines::find(ImageView<Bgr> picture, const Mask& occlusion, const Rect& o
         line.entry -= line.outward;
       }
       if (!is_known(line) && collect_profile(picture, line)) lines_.push_back(line);
+    };
+    for_each_run(ring, inner.x, inner.right(), Pixels::set, [&](int first, int last) {
+      grey_.look_at(grow({first - part_.x, y - part_.y, last - first, 1}, sampled));
+      for (int x = first; x < last; ++x) try_from(x);
     });
   }
   // Ends with what tells any two lines apart, so that the order does not depend on the library.

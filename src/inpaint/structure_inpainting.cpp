@@ -15,7 +15,9 @@ class StructureInpainting : public Inpainter {
 
   bool inpaint(const Holes& holes, const Options& options, Image<Bgr>& picture) override {
     if (!surfaces_->inpaint(holes, options, picture)) return false;
-    if (!holes.lines.empty()) painting_.paint(holes, bounding_box(holes.occlusion), picture);
+    if (!holes.lines.empty()) {
+      painting_.paint(holes, bounding_box(holes.occlusion, holes.part()), picture);
+    }
     return true;
   }
 

@@ -67,7 +67,7 @@ class SurfaceInpainting : public Inpainter {
   }
 
   bool inpaint(const Holes& holes, const Options&, Image<Bgr>& picture) override {
-    window_ = grow(bounding_box(holes.missing), 1);
+    window_ = grow(bounding_box(holes.missing, holes.part()), 1);
     if (window_.empty()) return true;
     do_all([&] { plane_colors_.collect(holes.occlusion, holes.surfaces, picture); },
            [&] {
@@ -274,17 +274,26 @@ class SurfaceInpainting : public Inpainter {
     const Image<float>& side_m = holes.surfaces.standing_depth_m;
     const Rect measured = intersect(holes.surfaces.region, holes.depth_m.bounds());
     for (int y = box.y; y < box.bottom(); ++y) {
-      for (int x = box.x;; ++x) {
-        x = find_equal(state_row(y), x, box.right(), state::open | state::standing);
-        if (x >= box.right()) break;
-        kinds(x - box.x + 1, y - box.y + 1) = SmoothFilling::open;
-        for (const auto& [column, row] :
-             {std::pair{x - 1, y}, {x + 1, y}, {x, y - 1}, {x, y + 1}}) {
-          if (state_row(row)[column] != state::foreground || !measured.contains(column, row)) {
-            continue;
-          }
-          if (may_be_one_thing(holes.depth_m(column, row), side_m(x, y))) {
+      constexpr state::Code open_side = state::open | state::standing;
+      SmoothFilling::Kind* const own = kinds.row(y - box.y + 1);
+      for (int last = box.x;;) {
+        const int first = find_equal(state_row(y), last, box.right(), open_side);
+        if (first >= box.right()) break;
+        last = find_other(state_row(y), first, box.right(), open_side);
+        std::fill(own + first - box.x + 1, own + last - box.x + 1, SmoothFilling::open);
+        // A pixel of the thing, and the side's pixel beside it.
+        const auto border_on = [&](int column, int row, int x) {
+          if (measured.contains(column, row) &&
+              may_be_one_thing(holes.depth_m(column, row), side_m(x, y))) {
             kinds(column - box.x + 1, row - box.y + 1) = SmoothFilling::known;
+          }
+        };
+        if (state_row(y)[first - 1] == state::foreground) border_on(first - 1, y, first);
+        if (state_row(y)[last] == state::foreground) border_on(last, y, last - 1);
+        for (const int row : {y - 1, y + 1}) {
+          for (int x = first; (x = find_equal(state_row(row), x, last, state::foreground)) < last;
+               ++x) {
+            border_on(x, row, x);
           }
         }
       }

@@ -122,10 +122,12 @@ bool StandingThings::is_top(const View& view, int x, int y) const {
   const Eigen::Vector3f here = point(x, y);
   const auto is_level = [&](int column, int row) {
     if (!view.part.contains(column, row)) return false;
-    if (view.label(column, row) != surface_label::foreground) return false;
+    if (view.label(column, row) != surface_label::foreground ||
+        !(std::abs(view.depth_m(column, row) - here.z()) < thing_step_m)) {
+      return false;
+    }
     const Eigen::Vector3f between = point(column, row) - here;
-    return std::abs(between.z()) < thing_step_m &&
-           std::abs(view.plane.normal.dot(between)) < top_slope * between.norm();
+    return std::abs(view.plane.normal.dot(between)) < top_slope * between.norm();
   };
   const auto any = [&](const auto& is_level_at) {
     return std::any_of(std::begin(slope_px), std::end(slope_px), is_level_at);
