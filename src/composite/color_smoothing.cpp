@@ -12,6 +12,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "core/small_numbers-inl.h"
+
 // Included once for every instruction set.
 #ifndef DIMINISH_COMPOSITE_COLOR_SMOOTHING_ROWS
 #define DIMINISH_COMPOSITE_COLOR_SMOOTHING_ROWS
@@ -82,7 +84,7 @@ struct Division {
       const auto weight = hn::PromoteTo(ints, hn::LoadU(some, lanes + i));
       const auto dividend = hn::Add(one, hn::ConvertTo(floats, hn::ShiftRight<1>(weight)));
       // Exact when rounded down, because the numbers are below 2^24.
-      const auto quotient = hn::ConvertTo(ints, hn::Div(dividend, hn::ConvertTo(floats, weight)));
+      const auto quotient = TruncateSmall(hn::Div(dividend, hn::ConvertTo(floats, weight)));
       const hn::Rebind<std::uint16_t, Floats> to;
       hn::StoreU(hn::DemoteTo(to, quotient), to, inverses + i);
     }

@@ -7,6 +7,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "core/small_numbers-inl.h"
+
 // Included once for every instruction set.
 #ifndef DIMINISH_COMPOSITE_MAP_COLORS_ROW
 #define DIMINISH_COMPOSITE_MAP_COLORS_ROW
@@ -67,8 +69,30 @@ HWY_INLINE hn::Vec<AllBytes> Joined(const Part (&parts)[4]) {
 }
 #endif
 
+/// A map, ready for a row.
+struct RowMap {
+  /// The field is a quadratic polynomial of the column.
+  Vector constant, linear, square, scale;
+  Vector matrix[3][3], offset[3];
+  float center_x, scale_x;
+
+  RowMap(const ColorMap& map, int y) {
+    scale_x = 1 / map.half_width;
+    center_x = map.center.x();
+    const float v = (static_cast<float>(y) - map.center.y()) * scale_x;
+    constant = Set(1 + map.field[1] * v + map.field[4] * v * v);
+    linear = Set(map.field[0] + map.field[3] * v);
+    square = Set(map.field[2]);
+    scale = Set(scale_x);
+    for (int c = 0; c < 3; ++c) {
+      for (int k = 0; k < 3; ++k) matrix[c][k] = Set(map.matrix(c, k));
+      offset[c] = Set(map.offset[c]);
+    }
+  }
+};
+
 /// As many pixels as a vector has bytes from column i of the row on, of which `chosen` are written.
-HWY_INLINE void MapPixels(const ColorMap& map, const MappedRow& row, int i,
+HWY_INLINE void MapPixels(const RowMap& map, const MappedRow& row, int i,
                           hn::Mask<AllBytes> chosen) {
   const Bytes bytes;
   const AllBytes all;
@@ -86,11 +110,6 @@ HWY_INLINE void MapPixels(const ColorMap& map, const MappedRow& row, int i,
     hn::Store(colors[c], all, color[c]);
     hn::Store(old[c], all, before[c]);
   }
-  // The field is a quadratic polynomial of the column.
-  const float scale = 1 / map.half_width;
-  const float v = (static_cast<float>(row.y) - map.center.y()) * scale;
-  const Vector constant = Set(1 + map.field[1] * v + map.field[4] * v * v);
-  const Vector linear = Set(map.field[0] + map.field[3] * v);
   const SoftMembrane::Node& left = row.correction[i / block];
   const SoftMembrane::Node slope = (row.correction[i / block + 1] - left) / block;
   hn::Vec<Bytes> result[3][part_count];
@@ -101,23 +120,23 @@ HWY_INLINE void MapPixels(const ColorMap& map, const MappedRow& row, int i,
     const Vector blue = load(color[0]);
     const Vector green = load(color[1]);
     const Vector red = load(color[2]);
-    const Vector first = Set((static_cast<float>(row.x + i + at) - map.center.x()) * scale);
-    const Vector u = hn::MulAdd(hn::Iota(Floats(), 0), Set(scale), first);
+    const Vector first = Set((static_cast<float>(row.x + i + at) - map.center_x) * map.scale_x);
+    const Vector u = hn::MulAdd(hn::Iota(Floats(), 0), map.scale, first);
     const Vector place = hn::Iota(Floats(), static_cast<float>(i % block + at));
-    Vector field = hn::MulAdd(hn::MulAdd(Set(map.field[2]), u, linear), u, constant);
+    Vector field = hn::MulAdd(hn::MulAdd(map.square, u, map.linear), u, map.constant);
     field = hn::Min(hn::Max(field, Set(ColorMap::least_field)), Set(ColorMap::greatest_field));
     for (int c = 0; c < 3; ++c) {
-      Vector sum = hn::MulAdd(Set(map.matrix(c, 0)), blue, Set(map.offset[c]));
-      sum = hn::MulAdd(Set(map.matrix(c, 1)), green, sum);
-      sum = hn::MulAdd(Set(map.matrix(c, 2)), red, sum);
+      Vector sum = hn::MulAdd(map.matrix[c][0], blue, map.offset[c]);
+      sum = hn::MulAdd(map.matrix[c][1], green, sum);
+      sum = hn::MulAdd(map.matrix[c][2], red, sum);
       const Vector correction = hn::Add(Set(left[c]), hn::Mul(place, Set(slope[c])));
       sum = hn::MulAdd(field, sum, correction);
-      auto level = hn::DemoteTo(bytes, hn::NearestInt(sum));
+      auto level = hn::DemoteTo(bytes, NearestSmall(sum));
       if (row.shares) {
         const Vector share = hn::Mul(load(row.shares + i), Set(1 / 255.F));
         const Vector own = load(before[c]);
         const Vector mixed = hn::MulAdd(share, hn::Sub(ToFloats(level), own), own);
-        level = hn::DemoteTo(bytes, hn::NearestInt(mixed));
+        level = hn::DemoteTo(bytes, NearestSmall(mixed));
       }
       result[c][part] = level;
     }
@@ -131,6 +150,8 @@ HWY_INLINE void MapPixels(const ColorMap& map, const MappedRow& row, int i,
 void MapRow(const ColorMap* maps, const MappedRow& row) {
   const AllBytes bytes;
   const auto lanes = static_cast<int>(hn::Lanes(bytes));
+  int last_source = -1;
+  RowMap map(ColorMap(), row.y);
   for (int i = 0; i < row.count; i += lanes) {
     const auto sources = hn::LoadU(bytes, row.sources + i);
     const auto wanted = hn::AndNot(hn::Eq(sources, hn::Zero(bytes)),
@@ -140,7 +161,9 @@ void MapRow(const ColorMap* maps, const MappedRow& row) {
     while (!hn::AllFalse(bytes, left)) {
       const std::uint8_t source = row.sources[i + hn::FindFirstTrue(bytes, left)];
       const auto own = hn::And(left, hn::Eq(sources, hn::Set(bytes, source)));
-      MapPixels(maps[source], row, i, own);
+      if (source != last_source) map = RowMap(maps[source], row.y);
+      last_source = source;
+      MapPixels(map, row, i, own);
       left = hn::AndNot(own, left);
     }
   }

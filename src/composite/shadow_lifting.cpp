@@ -10,6 +10,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "core/small_numbers-inl.h"
+
 // Included once for every instruction set.
 HWY_BEFORE_NAMESPACE();
 namespace diminish::HWY_NAMESPACE {
@@ -30,7 +32,7 @@ HWY_INLINE hn::Vec<Bytes> Lit(hn::Vec<Bytes> level, hn::Vec<Bytes> light) {
   const auto quotient =
       hn::Div(sum, hn::Max(hn::ConvertTo(Floats(), divisor), hn::Set(Floats(), 1.F)));
   const auto clamped = hn::Min(quotient, hn::Set(Floats(), 255.F));
-  return hn::DemoteTo(Bytes(), hn::ConvertTo(Ints(), clamped));
+  return hn::DemoteTo(Bytes(), TruncateSmall(clamped));
 }
 
 void Lift(const std::uint8_t* light, int count, std::uint8_t* levels) {

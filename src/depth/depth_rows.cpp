@@ -7,6 +7,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "core/small_numbers-inl.h"
 #include "depth/row_vectors-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -18,6 +19,7 @@ using diminish::HWY_NAMESPACE::ForEachVector;
 using diminish::HWY_NAMESPACE::most_lanes;
 using diminish::HWY_NAMESPACE::NoiseAt;
 using diminish::HWY_NAMESPACE::StoreBytes;
+using diminish::HWY_NAMESPACE::TruncateSmall;
 
 template <class D>
 HWY_INLINE hn::Vec<D> Load(D d, const std::uint16_t* depth) {
@@ -27,9 +29,8 @@ HWY_INLINE hn::Vec<D> Load(D d, const std::uint16_t* depth) {
 }
 template <class D>
 HWY_INLINE void Store(D, hn::Vec<D> values, std::uint16_t* depth) {
-  const hn::RebindToSigned<D> ints;
   const hn::Rebind<std::uint16_t, D> words;
-  hn::StoreU(hn::DemoteTo(words, hn::ConvertTo(ints, values)), words, depth);
+  hn::StoreU(hn::DemoteTo(words, TruncateSmall(values)), words, depth);
 }
 
 /// Whether a surface continues to depth z. first, second: its nearest pixel and the next one.

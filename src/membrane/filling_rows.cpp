@@ -8,6 +8,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "core/small_numbers-inl.h"
+
 // Included once for every instruction set.
 #ifndef DIMINISH_MEMBRANE_FILLING_ROWS_CELLS
 #define DIMINISH_MEMBRANE_FILLING_ROWS_CELLS
@@ -28,6 +30,8 @@ inline int first_relaxed(Run run, int y, int parity) {
 HWY_BEFORE_NAMESPACE();
 namespace diminish::filling_rows::HWY_NAMESPACE {
 namespace {
+
+using diminish::HWY_NAMESPACE::TruncateSmall;
 
 #if HWY_TARGET == HWY_SCALAR || HWY_HAVE_SCALABLE
 
@@ -115,7 +119,6 @@ void Relax(std::span<const Run> runs, int y, int parity, float factor, const Col
 
 void Round(const Color* colors, int count, Bgr* pixels) {
   const hn::CappedTag<float, 8> d;
-  const hn::RebindToSigned<decltype(d)> ints;
   const hn::Rebind<std::uint8_t, decltype(d)> bytes;
   constexpr int at_once = static_cast<int>(hn::MaxLanes(d)) / 4;
   int x = 0;
@@ -123,7 +126,7 @@ void Round(const Color* colors, int count, Bgr* pixels) {
   for (; x + at_once < count; x += at_once) {
     const auto color = hn::Add(hn::LoadU(d, colors[x].data()), hn::Set(d, 0.5F));
     std::uint8_t levels[4 * at_once];
-    hn::StoreU(hn::DemoteTo(bytes, hn::ConvertTo(ints, color)), bytes, levels);
+    hn::StoreU(hn::DemoteTo(bytes, TruncateSmall(color)), bytes, levels);
     for (int i = 0; i < at_once; ++i) {
       std::memcpy(reinterpret_cast<std::uint8_t*>(pixels + x + i), levels + 4 * i, 4);
     }

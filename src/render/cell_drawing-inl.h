@@ -154,7 +154,9 @@ HWY_INLINE void DrawCell(const Cells& cells, int lane, SurfaceBuffer& surface) {
   const auto lanes = static_cast<int>(hn::Lanes(d));
   const int rows = cells.rows[lane];
   for (int x = 0; x < cells.columns[lane]; x += lanes) {
-    CellWalk<OfOne> walk(cells, lane, hn::Iota(Ints(), x));
+    // hn::Iota of a variable is written to memory lane by lane.
+    const IntVector columns = hn::Add(hn::Iota(Ints(), 0), hn::Set(Ints(), x));
+    CellWalk<OfOne> walk(cells, lane, columns);
     SurfacePlace place(surface, cells.place[lane] + x);
     for (int y = 0; y < rows; ++y) {
       const CellPixels pixels = walk.Pixels();

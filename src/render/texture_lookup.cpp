@@ -10,6 +10,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "core/small_numbers-inl.h"
 #include "depth/row_vectors-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -61,7 +62,7 @@ HWY_INLINE void FindPlaces(const SurfaceRow& row, ImageView<Bgr> texture, int fi
       const auto last = hn::Set(d, static_cast<float>(side - 1));
       const auto value = hn::Min(hn::Max(hn::Mul(hn::LoadU(d, over_z + first + i), z), zero), last);
       // The last pixel is the second one of a pair.
-      const auto whole = hn::Min(hn::ConvertTo(di, value), hn::Set(di, side - 2));
+      const auto whole = hn::Min(TruncateSmall(value), hn::Set(di, side - 2));
       hn::StoreU(hn::Sub(value, hn::ConvertTo(d, whole)), d, fraction + i);
       return whole;
     };
@@ -162,7 +163,7 @@ void LookUpColors(const SurfaceRow& row, ImageView<Bgr> texture, int width,
       const auto fx = hn::LoadU(d, places.fx + i);
       const auto fy = hn::LoadU(d, places.fy + i);
       const auto mix = [&](auto top, auto bottom) HWY_ATTR {
-        return hn::NearestInt(hn::MulAdd(fy, hn::Sub(bottom, top), top));
+        return NearestSmall(hn::MulAdd(fy, hn::Sub(bottom, top), top));
       };
       const auto blue = mix(upper.template Between<0>(fx), lower.template Between<0>(fx));
       const auto green =

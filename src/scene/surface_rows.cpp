@@ -7,6 +7,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "core/small_numbers-inl.h"
 #include "depth/row_vectors-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -18,6 +19,7 @@ using diminish::HWY_NAMESPACE::ForEachVector;
 using diminish::HWY_NAMESPACE::most_lanes;
 using diminish::HWY_NAMESPACE::NoiseAt;
 using diminish::HWY_NAMESPACE::StoreBytes;
+using diminish::HWY_NAMESPACE::TruncateSmall;
 
 template <class D>
 HWY_INLINE hn::Vec<D> Linear(D d, float start, float slope, hn::Vec<D> at) {
@@ -87,7 +89,7 @@ void Shade(const Shading* shadings, int shading_count, const float* depth_m,
       const auto shade = [&](int c, auto& level) HWY_ATTR {
         const auto dark = hn::Mul(Linear(d, shading.first[c], shading.slope[c], at), left);
         const auto lit = hn::Sub(hn::Set(d, 255.5F), hn::Mul(hn::Set(d, 255.F), dark));
-        level = hn::IfThenElse(is_on, hn::ConvertTo(levels, lit), level);
+        level = hn::IfThenElse(is_on, TruncateSmall(lit), level);
       };
       shade(0, blue);
       shade(1, green);
