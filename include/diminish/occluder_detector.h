@@ -52,6 +52,11 @@ class DIMINISH_EXPORT OccluderDetector {
   /// Sets the object's pixels in `masks` to 255 and leaves the others alone. `masks` has the rig's
   /// sizes. Leaves cameras without images in this frame alone too.
   virtual OccluderReport detect(const Observation& observation, OcclusionMasks& masks) = 0;
+  /// The same. report: an earlier frame's, whose memory may be used again.
+  virtual void detect_again(const Observation& observation, OcclusionMasks& masks,
+                            OccluderReport& report) {
+    report = detect(observation, masks);
+  }
 };
 
 /// The object's settings, as its detector's own type. Throws Error if they have another type.

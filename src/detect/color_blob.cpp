@@ -23,10 +23,18 @@ class ColorBlobDetector : public OccluderDetector {
   }
 
   OccluderReport detect(const Observation& observation, OcclusionMasks& masks) override {
+    OccluderReport report;
+    detect_again(observation, masks, report);
+    return report;
+  }
+
+  void detect_again(const Observation& observation, OcclusionMasks& masks,
+                    OccluderReport& report) override {
     const FrameSet& frame = observation.frame;
     const Options& options = observation.options;
-    OccluderReport report;
     report.name = name_;
+    report.kept = false;
+    report.message.clear();
     // One image a core.
     found_.assign(rgbd_.size() + 1, 0);
     for_tasks(found_.size(), [&](std::size_t i) {
@@ -39,10 +47,10 @@ class ColorBlobDetector : public OccluderDetector {
       }
     });
     report.in_color = found_[0] != 0;
-    report.in_rgbd.assign(found_.begin() + 1, found_.end());
+    report.in_rgbd.resize(rgbd_.size());
+    std::copy(found_.begin() + 1, found_.end(), report.in_rgbd.begin());
     const bool in_any = std::find(found_.begin(), found_.end(), char{1}) != found_.end();
     if (!in_any) report.message = name_ + ": no blob of its colour and shape in any camera";
-    return report;
   }
 
  private:

@@ -63,7 +63,7 @@ void OccluderStage::detect(const Observation& observation, std::vector<OccluderR
     auto* const shape = dynamic_cast<ShapeDetector*>(detectors_[i].get());
     const bool is_kept = std::find(kept.begin(), kept.end(), names_[i]) != kept.end();
     if (!is_kept && !shape) {
-      report = detectors_[i]->detect(observation, masks_);
+      detectors_[i]->detect_again(observation, masks_, report);
       is_blank_ = false;
       continue;
     }
