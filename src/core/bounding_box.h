@@ -16,9 +16,11 @@ inline bool any_set(const std::uint8_t* row, int count) {
   std::uint64_t any[words] = {};
   int x = 0;
   for (; x + 8 * words <= count; x += 8 * words) {
-    std::uint64_t pixels[words];
-    std::memcpy(pixels, row + x, sizeof(pixels));
-    for (int i = 0; i < words; ++i) any[i] |= pixels[i];
+    for (int i = 0; i < words; ++i) {
+      std::uint64_t pixels;
+      std::memcpy(&pixels, row + x + std::ptrdiff_t{8} * i, sizeof(pixels));
+      any[i] |= pixels;
+    }
   }
   for (; x + 8 <= count; x += 8) {
     std::uint64_t pixels;

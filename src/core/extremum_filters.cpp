@@ -43,11 +43,13 @@ HWY_INLINE void Combine(const std::uint8_t* const* taps, int tap_count, int coun
     for (int i = 0; i < count; ++i) combine(hn::CappedTag<std::uint8_t, 1>(), i);
     return;
   }
-  // Four vectors at a time: a tap is read once for all of them.
-  int i = 0;
-  for (; i + 4 * lanes <= count; i += 4 * lanes) {
+  // Four vectors at a time: a tap is read once for all of them. The last ones overlap.
+  const int last = count - lanes;
+  for (int i = 0; i < count; i += 4 * lanes) {
+    const int places[] = {std::min(i, last), std::min(i + lanes, last),
+                          std::min(i + 2 * lanes, last), std::min(i + 3 * lanes, last)};
     const auto load = [&](int k, int part)
-                          HWY_ATTR { return hn::LoadU(d, taps[k] + i + part * lanes); };
+                          HWY_ATTR { return hn::LoadU(d, taps[k] + places[part]); };
     auto a = load(0, 0);
     auto b = load(0, 1);
     auto c = load(0, 2);
@@ -58,13 +60,11 @@ HWY_INLINE void Combine(const std::uint8_t* const* taps, int tap_count, int coun
       c = choose(c, load(k, 2));
       e = choose(e, load(k, 3));
     }
-    hn::StoreU(a, d, result + i);
-    hn::StoreU(b, d, result + i + lanes);
-    hn::StoreU(c, d, result + i + 2 * lanes);
-    hn::StoreU(e, d, result + i + 3 * lanes);
+    hn::StoreU(a, d, result + places[0]);
+    hn::StoreU(b, d, result + places[1]);
+    hn::StoreU(c, d, result + places[2]);
+    hn::StoreU(e, d, result + places[3]);
   }
-  for (; i + lanes <= count; i += lanes) combine(d, i);
-  if (count % lanes != 0) combine(d, count - lanes);
 }
 
 void FindLargest(const std::uint8_t* const* taps, int tap_count, int count, std::uint8_t* result) {
