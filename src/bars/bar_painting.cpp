@@ -124,7 +124,7 @@ void BarPainting::paint(const Input& input, const Bar& bar, DiminishedFrame& res
       const float side = bar.side(at);
       const float weight = std::min(half + 0.5F - std::abs(side), 1.0F);
       if (weight <= 0 || along < -reach_px || along > end) continue;
-      const Eigen::Vector3f ray = input.views.ray(at);
+      const Eigen::Vector3f ray = input.views.ray(x, y);
       const float inverse = bar.plane.inverse_depth(ray.x(), ray.y());
       if (!(inverse > 0)) continue;
       const float z_m = 1 / inverse;

@@ -15,7 +15,8 @@ constexpr float hiding_m = 0.06F;
 
 }  // namespace
 
-BarViews::BarViews(const Rig& rig) : user_(Lens(rig.color)), rays_(rig.color) {
+BarViews::BarViews(const Rig& rig)
+    : user_(Lens(rig.color)), rays_(rig.color), pixel_rays_(RayTable::of(rig.color)) {
   for (const RgbdCamera& camera : rig.rgbd) {
     cameras_.emplace_back(camera);
     depth_pixel_px_ = std::max(depth_pixel_px_, user_.fx / static_cast<float>(camera.depth.fx));

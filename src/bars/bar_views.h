@@ -1,7 +1,8 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "diminish/rig.h"
 #include "geometry/depth_view.h"
 #include "geometry/ray_grid.h"
+#include "geometry/ray_table.h"
 
 namespace diminish {
 
@@ -42,6 +44,7 @@ class BarViews {
 
   /// The ray (x, y, 1) of a place in the user's picture.
   Eigen::Vector3f ray(const Eigen::Vector2f& at) const;
+  Eigen::Vector3f ray(int x, int y) const { return (*pixel_rays_)(x, y).homogeneous(); }
   std::optional<Eigen::Vector2f> project(const Eigen::Vector3f& point_m) const;
   /// Pixels of the user's picture to one of the coarsest depth image's, at any distance that is
   /// alike for both cameras.
@@ -66,6 +69,7 @@ class BarViews {
   std::vector<Camera> cameras_;
   Projection user_;
   RayGrid rays_;
+  std::shared_ptr<const RayTable> pixel_rays_;
   float depth_pixel_px_ = 1;
 };
 

@@ -63,7 +63,8 @@ struct StandingThings::View {
   }
 };
 
-StandingThings::StandingThings(const Rig& rig) : color_(Lens(rig.color)), rays_(rig.color) {
+StandingThings::StandingThings(const Rig& rig)
+    : color_(Lens(rig.color)), rays_(RayTable::of(rig.color)) {
   for (const RgbdCamera& camera : rig.rgbd) {
     cameras_.push_back({DepthView(camera), Eigen::Vector3f::Zero()});
   }
@@ -116,7 +117,7 @@ bool StandingThings::is_solid(const View& view, const Eigen::Vector3f& top_m,
 /// Whether the thing is level around a pixel of its edge: a box or a cup is, a ball is not.
 bool StandingThings::is_top(const View& view, int x, int y) const {
   const auto point = [&](int column, int row) -> Eigen::Vector3f {
-    const Eigen::Vector2f ray = rays_.segment(column, row, column + 1).first;
+    const Eigen::Vector2f ray = (*rays_)(column, row);
     return view.depth_m(column, row) * Eigen::Vector3f(ray.x(), ray.y(), 1);
   };
   const Eigen::Vector3f here = point(x, y);
@@ -138,7 +139,7 @@ bool StandingThings::is_top(const View& view, int x, int y) const {
 
 /// Labels what is below a pixel of a top's edge.
 void StandingThings::lower(const View& view, int x, int y, Surfaces& surfaces) const {
-  const Eigen::Vector2f ray = rays_.segment(x, y, x + 1).first;
+  const Eigen::Vector2f ray = (*rays_)(x, y);
   const Eigen::Vector3f top = view.depth_m(x, y) * Eigen::Vector3f(ray.x(), ray.y(), 1);
   const float height_m = view.plane.height_m(top);
   if (height_m < lowest_top_m) return;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "core/connected_regions.h"
@@ -13,7 +14,7 @@
 #include "diminish/rig.h"
 #include "diminish/surfaces.h"
 #include "geometry/depth_view.h"
-#include "geometry/ray_grid.h"
+#include "geometry/ray_table.h"
 #include "scene/background_planes.h"
 
 namespace diminish {
@@ -62,7 +63,7 @@ class StandingThings {
 
   std::vector<Camera> cameras_;
   Projection color_;
-  RayGrid rays_;
+  std::shared_ptr<const RayTable> rays_;
   Image<std::uint8_t> before_;     ///< the labels of the mask's box
   std::vector<std::uint8_t> row_;  ///< what pixels of a row are
   ConnectedRegions regions_;
