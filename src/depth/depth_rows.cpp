@@ -199,8 +199,9 @@ void FindJumps(const std::uint16_t* depth, int count, std::ptrdiff_t step, int s
 void KeepGaps(const std::uint16_t* depth, std::ptrdiff_t pitch, int count, const Gap& gap,
               std::uint8_t* flags) {
   ForEachVector(count, [&](auto d, int x) HWY_ATTR {
-    const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
-    if (std::find(flags + x, flags + x + lanes, 1) == flags + x + lanes) return;
+    const hn::Rebind<std::uint8_t, decltype(d)> flag_bytes;
+    const auto own_flags = hn::LoadU(flag_bytes, flags + x);
+    if (hn::AllTrue(flag_bytes, hn::Eq(own_flags, hn::Zero(flag_bytes)))) return;
     const auto none = hn::Set(d, 65535.F);
     auto least = none;
     auto most = hn::Zero(d);
@@ -217,8 +218,7 @@ void KeepGaps(const std::uint16_t* depth, std::ptrdiff_t pitch, int count, const
                                       hn::Mul(hn::Mul(hn::Set(d, gap.by_square), least), least)));
     const auto has_gap = hn::Gt(hn::Sub(most, least), wide);
     const hn::RebindToSigned<decltype(d)> di;
-    const hn::Rebind<std::uint8_t, decltype(d)> d8;
-    const auto old = hn::PromoteTo(di, hn::LoadU(d8, flags + x));
+    const auto old = hn::PromoteTo(di, own_flags);
     StoreBytes(d, hn::IfThenElseZero(hn::RebindMask(di, has_gap), old), flags + x);
   });
 }

@@ -6,9 +6,6 @@
 
 #include "core/bilinear.h"
 #include "core/channels.h"
-#include "core/conditions.h"
-#include "core/extremum_filters.h"
-#include "core/runs.h"
 
 namespace diminish {
 namespace {
@@ -71,18 +68,32 @@ struct RimLines::Track {
   }
 };
 
-/// Marks the pixels of `box` on a ring around the mask.
-void RimLines::find_ring(const Rect& box) {
-  hidden_.resize(box.width, box.height);
-  for (int y = 0; y < box.height; ++y) {
-    std::copy_n(occlusion_->row(box.y + y) + box.x, box.width, hidden_.row(y));
-  }
-  dilate(hidden_, {ring_begin, ring_begin}, scratch_, near_);
-  dilate(near_, {ring_end - ring_begin, ring_end - ring_begin}, scratch_, ring_);
-  for (int y = 0, width = box.width; y < box.height; ++y) {
-    const std::uint8_t* const near = near_.row(y);
-    std::uint8_t* const ring = ring_.row(y);
-    for (int x = 0; x < width; ++x) ring[x] = all_of(ring[x] != 0, near[x] == 0) ? 1 : 0;
+/// Calls visit(first, last) for the runs of columns in a row of `box` that are on a ring around the
+/// mask.
+template <class Visit>
+void RimLines::for_each_on_ring(int y, const Rect& box, const Visit& visit) {
+  const auto join = [&](int reach, JoinedRuns& joined) {
+    joined.clear();
+    mask_runs_.for_each_near(y, reach, [&](const ColumnRun& run, int) {
+      joined.add({run.first - reach, run.last + reach});
+    });
+  };
+  join(ring_begin, near_);
+  join(ring_end, around_);
+  const auto clip_and_visit = [&](int first, int last) {
+    first = std::max(first, box.x);
+    last = std::min(last, box.right());
+    if (first < last) visit(first, last);
+  };
+  // What is near is around, too.
+  auto near = near_.in_order().begin();
+  for (const ColumnRun& around : around_.in_order()) {
+    int first = around.first;
+    for (; near != near_.runs().end() && near->last <= around.last; ++near) {
+      clip_and_visit(first, near->first);
+      first = near->last;
+    }
+    clip_and_visit(first, around.last);
   }
 }
 
@@ -227,11 +238,9 @@ void RimLines::find(ImageView<Bgr> picture, const Mask& occlusion, const Rect& o
   part_ = intersect(grow(objects, ring_end + longest), picture.bounds());
   if (part_.empty()) return;
   grey_.begin(picture, part_);
-  const Rect box = intersect(grow(objects, ring_end), part_);
-  find_ring(box);
-  const Rect inner = intersect(box, grow(part_, -1));
+  mask_runs_.find(occlusion, intersect(objects, picture.bounds()), Pixels::set);
+  const Rect inner = intersect(grow(objects, ring_end), grow(part_, -1));
   for (int y = inner.y; y < inner.bottom(); ++y) {
-    const std::uint8_t* const ring = ring_.row(y - box.y) - box.x;
     const auto try_from = [&](int x) {
       Track track;
       if (!start(x - part_.x, y - part_.y, track)) return;
@@ -250,7 +259,7 @@ void RimLines::find(ImageView<Bgr> picture, const Mask& occlusion, const Rect& o
       }
       if (!is_known(line) && collect_profile(picture, line)) lines_.push_back(line);
     };
-    for_each_run(ring, inner.x, inner.right(), Pixels::set, [&](int first, int last) {
+    for_each_on_ring(y, inner, [&](int first, int last) {
       grey_.look_at(grow({first - part_.x, y - part_.y, last - first, 1}, sampled));
       for (int x = first; x < last; ++x) try_from(x);
     });

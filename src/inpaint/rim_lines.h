@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/joined_runs.h"
 #include "diminish/image.h"
 #include "diminish/rim_line.h"
 #include "inpaint/blurred_grey.h"
@@ -26,7 +27,8 @@ class RimLines {
  private:
   struct Track;
 
-  void find_ring(const Rect& box);
+  template <class Visit>
+  void for_each_on_ring(int y, const Rect& box, const Visit& visit);
   Eigen::Vector2f gradient(int x, int y) const;
   float level(const Eigen::Vector2f& at) const;
   bool is_hidden(const Eigen::Vector2f& at) const;
@@ -37,10 +39,10 @@ class RimLines {
   bool is_known(const RimLine& line) const;
 
   const Mask* occlusion_ = nullptr;
-  Rect part_;                  ///< of the picture, around the objects
-  BlurredGrey grey_;           ///< of `part_`
-  Mask hidden_, near_, ring_;  ///< of the box around the mask
-  Mask scratch_;
+  Rect part_;         ///< of the picture, around the objects
+  BlurredGrey grey_;  ///< of `part_`
+  MaskRuns mask_runs_;
+  JoinedRuns near_, around_;  ///< of a row
   std::vector<RimLine> lines_;
 };
 

@@ -28,8 +28,8 @@ void DiscDilation::copy_part(const Mask& mask, const Rect& part) {
   }
 }
 
-/// Writes `value` to `target` within `radius` of every pixel that was set, or clear: a row's runs,
-/// widened as the disc is wide, are drawn into the rows above and below.
+/// Writes `value` to `target` within `radius` of every pixel that was set, or clear: into each row
+/// go the runs of the rows above and below, widened as the disc is wide, together.
 /// part: where what was before lies in `target`.
 void DiscDilation::spread_runs(const Rect& part, int radius, Pixels pixels, std::uint8_t value,
                                Mask& target) {
@@ -38,19 +38,19 @@ void DiscDilation::spread_runs(const Rect& part, int radius, Pixels pixels, std:
     half_widths_.push_back(
         static_cast<int>(std::sqrt(static_cast<double>(radius * radius - dy * dy))));
   }
-  for (int y = part.y; y < part.bottom(); ++y) {
-    for_each_run(before_.row(y - part.y), 0, part.width, pixels, [&](int run, int run_end) {
-      const int begin = part.x + run;
-      const int end = part.x + run_end;
-      const int first_row = std::max(0, y - radius);
-      const int last_row = std::min(target.height() - 1, y + radius);
-      for (int row = first_row; row <= last_row; ++row) {
-        const int half_width = half_widths_[static_cast<std::size_t>(std::abs(row - y))];
-        const int first = std::max(0, begin - half_width);
-        const int last = std::min(target.width(), end + half_width);
-        std::fill(target.row(row) + first, target.row(row) + last, value);
-      }
+  runs_.find(before_, before_.bounds(), pixels);
+  const int first_row = std::max(0, part.y - radius);
+  const int last_row = std::min(target.height(), part.bottom() + radius);
+  for (int y = first_row; y < last_row; ++y) {
+    joined_.clear();
+    runs_.for_each_near(y - part.y, radius, [&](const ColumnRun& run, int rows) {
+      const int half_width = half_widths_[static_cast<std::size_t>(rows)];
+      joined_.add({std::max(0, part.x + run.first - half_width),
+                   std::min(target.width(), part.x + run.last + half_width)});
     });
+    for (const ColumnRun& run : joined_.runs()) {
+      std::fill(target.row(y) + run.first, target.row(y) + run.last, value);
+    }
   }
 }
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/runs.h"
+#include "core/joined_runs.h"
 #include "diminish/image.h"
 
 namespace diminish {
@@ -25,6 +25,8 @@ class DiscDilation {
   void spread_runs(const Rect& part, int radius, Pixels pixels, std::uint8_t value, Mask& target);
 
   Mask before_;
+  MaskRuns runs_;                 ///< of what was before
+  JoinedRuns joined_;             ///< of a row of the target
   std::vector<int> half_widths_;  ///< of the disc's rows, from its middle on
 };
 
