@@ -87,12 +87,11 @@ std::optional<float> BarHole::bare_share(const Strip& strip, const BackgroundPla
     }
     BarViews::Places places;
     views_.look_at({ray_x, ray_y, z_m.data(), few}, places);
-    const auto number = [&](BarViews::Place place) {
-      return static_cast<int>(std::count(places.begin(), places.end(), place));
-    };
-    bare += number(BarViews::Place::bare);
-    solid += number(BarViews::Place::solid);
-    seen += number(BarViews::Place::seen);
+    for (const BarViews::Place place : places) {
+      bare += place == BarViews::Place::bare ? 1 : 0;
+      solid += place == BarViews::Place::solid ? 1 : 0;
+      seen += place == BarViews::Place::seen ? 1 : 0;
+    }
     rest -= count;
     if (!may_be()) return std::nullopt;
   }

@@ -48,16 +48,16 @@ Columns columns_of(const Bar& bar, int y, const Rect& box) {
 bool BarPainting::collect(const Input& input, const Bar& bar, float begin, float sign,
                           Profile& profile) {
   const int size = static_cast<int>(std::ceil(bar.width_px + 2 * margin_px)) + 1;
-  profile.assign(static_cast<std::size_t>(size), Eigen::Array3f::Zero());
+  profile.assign(static_cast<std::size_t>(size), Eigen::Array4f::Zero());
   for (int i = 0; i < size; ++i) {
     const float side = static_cast<float>(i) - bar.width_px / 2 - margin_px;
     int count = 0;
-    Eigen::Array3f& color = profile[static_cast<std::size_t>(i)];
+    Eigen::Array4f& color = profile[static_cast<std::size_t>(i)];
     for (int k = 1; k <= reach_px + colors_px && count < colors_px; ++k) {
       const auto [x, y] = nearest_pixel(bar.at(begin + sign * static_cast<float>(k), side));
       if (!input.camera.bounds().contains(x, y)) break;
       if (input.occlusion(x, y) != 0) continue;
-      color += to_channels(input.camera(x, y));
+      color.head<3>() += to_channels(input.camera(x, y));
       ++count;
     }
     if (count < colors_px / 4) return false;
@@ -106,7 +106,7 @@ void BarPainting::paint(const Input& input, const Bar& bar, DiminishedFrame& res
                               floor(high.y()) - floor(low.y()) + 3},
                              input.objects);
   const Reconstruction& drawn = result.reconstruction;
-  const auto color_at = [](const Profile& profile, float position) -> Eigen::Array3f {
+  const auto color_at = [](const Profile& profile, float position) -> Eigen::Array4f {
     const auto first = std::min(static_cast<std::size_t>(position), profile.size() - 2);
     const float share = position - static_cast<float>(first);
     return profile[first] + share * (profile[first + 1] - profile[first]);
@@ -136,15 +136,15 @@ void BarPainting::paint(const Input& input, const Bar& bar, DiminishedFrame& res
         continue;
       }
       const float position = side + half + margin_px;
-      Eigen::Array3f color = color_at(near_, position);
+      Eigen::Array4f color = color_at(near_, position);
       if (has_far) {
         const float share = std::clamp(along / length, 0.0F, 1.0F);
         color += share * (color_at(far_, position) - color);
       }
       Bgr& pixel = result.picture(x, y);
-      const Eigen::Array3f below = to_channels(pixel);
+      const Eigen::Array4f below(pixel.b, pixel.g, pixel.r, 0);
       const float fade = has_far ? 1 : 1 - far_fade * std::clamp(along / length, 0.0F, 1.0F);
-      pixel = to_color(below + fade * weight * (color - below));
+      pixel = to_color((below + fade * weight * (color - below)).head<3>());
       if (weight < 0.5F) continue;
       if (origin == provenance::inpainted) {
         --result.report.missing_pixels;

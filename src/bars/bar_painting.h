@@ -29,7 +29,8 @@ class BarPainting {
   void paint(const Input& input, DiminishedFrame& result);
 
  private:
-  using Profile = std::vector<Eigen::Array3f>;
+  /// A fourth channel, 0, makes it a vector.
+  using Profile = std::vector<Eigen::Array4f>;
 
   static bool collect(const Input& input, const Bar& bar, float begin, float sign,
                       Profile& profile);

@@ -38,9 +38,9 @@ void BarViews::begin(const FrameSet& frame, const Poses& poses, const OcclusionM
   }
 }
 
-BarViews::Place BarViews::add(Place so_far, const std::optional<DepthView::Depth>& depth) {
-  if (!depth || so_far == Place::seen) return so_far;
-  const auto& [measured_m, own_m] = *depth;
+BarViews::Place BarViews::add(Place so_far, const DepthView::Depth& depth) {
+  if (so_far == Place::seen) return so_far;
+  const auto& [measured_m, own_m] = depth;
   if (measured_m > own_m + behind_m) return Place::seen;
   if (measured_m == 0) return so_far == Place::unknown ? Place::bare : so_far;
   return measured_m > own_m - hiding_m ? Place::solid : so_far;
@@ -48,17 +48,18 @@ BarViews::Place BarViews::add(Place so_far, const std::optional<DepthView::Depth
 
 BarViews::Place BarViews::look_at(const Eigen::Vector3f& point_m) const {
   Place place = Place::unknown;
-  for (const Camera& camera : cameras_) place = add(place, camera.depth.at(point_m));
+  for (const Camera& camera : cameras_) {
+    if (const auto depth = camera.depth.at(point_m)) place = add(place, *depth);
+  }
   return place;
 }
 
 void BarViews::look_at(const PointRow& points, Places& places) const {
   places.fill(Place::unknown);
-  std::array<std::optional<DepthView::Depth>, DepthView::few> depths;
   for (const Camera& camera : cameras_) {
-    if (camera.depth.empty()) continue;
-    camera.depth.at(points, depths);
-    for (std::size_t i = 0; i < places.size(); ++i) places[i] = add(places[i], depths[i]);
+    camera.depth.for_each(points, [&](std::size_t i, const DepthView::Depth& depth) {
+      places[i] = add(places[i], depth);
+    });
   }
 }
 

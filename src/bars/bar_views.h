@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -25,7 +26,7 @@ class BarViews {
   /// Looks at this frame, which must outlive all other calls.
   void begin(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks);
 
-  enum class Place {
+  enum class Place : std::uint8_t {
     bare,     ///< no depth was measured there
     solid,    ///< just this depth was measured, as steel's few returns have it
     seen,     ///< a camera measures what is behind it
@@ -64,7 +65,7 @@ class BarViews {
     Eigen::Vector3f centre = Eigen::Vector3f::Zero();
   };
   /// What is said of a place, when one more camera has been asked.
-  static Place add(Place so_far, const std::optional<DepthView::Depth>& depth);
+  static Place add(Place so_far, const DepthView::Depth& depth);
 
   std::vector<Camera> cameras_;
   Projection user_;

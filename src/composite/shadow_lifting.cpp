@@ -82,13 +82,21 @@ void for_each_shaded(const Bgr* row, int width, const Visit& visit) {
   }
 }
 
-/// Calls visit(x) for each of the columns [begin, end) that is nearer to the rim than `fading_px`.
-template <class Visit>
-void for_each_within(const std::uint8_t* distances, int begin, int end, const Visit& visit) {
+/// Calls visit(x) for each of the columns [begin, end) that is nearer to the rim than `fading_px`,
+/// but visit_outside(first, last) for most of those that are outside.
+template <class VisitOutside, class Visit>
+void for_each_within(const std::uint8_t* distances, int begin, int end,
+                     const VisitOutside& visit_outside, const Visit& visit) {
   constexpr int step = 16;
   for (int first = begin; first < end; first += step) {
     const int last = std::min(first + step, end);
-    if (first + step <= end && all_equal<step>(distances + first, fading_px)) continue;
+    if (first + step <= end) {
+      if (all_equal<step>(distances + first, fading_px)) continue;
+      if (all_equal<step>(distances + first, 0)) {
+        visit_outside(first, last);
+        continue;
+      }
+    }
     for (int x = first; x < last; ++x) {
       if (distances[x] < fading_px) visit(x);
     }
@@ -156,7 +164,11 @@ void ShadowLifting::restore_outside(ImageView<Bgr> camera, const Mask& occlusion
       const Bgr* light = surfaces.light.row(y);
       const std::uint8_t* distances = distances_.row(y - part.y) - part.x;
       Bgr* colors = picture.row(y);
-      for_each_within(distances, part.x, part.right(), [&](int x) {
+      // Nothing but lifting has changed what is outside.
+      const auto restore = [&](int first, int last) {
+        std::copy(camera.row(y) + first, camera.row(y) + last, colors + first);
+      };
+      for_each_within(distances, part.x, part.right(), restore, [&](int x) {
         if (light[x] == all_light) return;
         if (distances[x] == 0) {
           colors[x] = camera(x, y);

@@ -44,17 +44,22 @@ class DepthView {
     return at(pixel->x, pixel->y, point.z());
   }
   static constexpr int few = 16;
-  /// The same of up to `few` points, on vector instructions.
-  void at(const PointRow& points, std::array<std::optional<Depth>, few>& found) const {
-    found.fill(std::nullopt);
+  /// The same of up to `few` points, on vector instructions: calls visit(i, depth) for those of
+  /// which there is something to tell.
+  template <class Visit>
+  void for_each(const PointRow& points, const Visit& visit) const {
     if (depth_.empty()) return;
-    constexpr int pitch = 1 << 16;
+    constexpr unsigned pitch = 1 << 16;
     std::array<std::int32_t, few> pixels;
     std::array<float, few> own_m;
-    find_pixels(points, {depth_from_color_, lens_, depth_.bounds(), pitch}, pixels.data(),
-                own_m.data());
+    find_pixels(points, {depth_from_color_, lens_, depth_.bounds(), static_cast<int>(pitch)},
+                pixels.data(), own_m.data());
     for (std::size_t i = 0; i < static_cast<std::size_t>(points.count); ++i) {
-      if (pixels[i] >= 0) found[i] = at(pixels[i] % pitch, pixels[i] / pitch, own_m[i]);
+      if (pixels[i] < 0) continue;
+      const auto pixel = static_cast<unsigned>(pixels[i]);
+      const auto depth =
+          at(static_cast<int>(pixel % pitch), static_cast<int>(pixel / pitch), own_m[i]);
+      if (depth) visit(i, *depth);
     }
   }
 

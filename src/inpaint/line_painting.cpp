@@ -219,10 +219,13 @@ void LinePainting::for_each_beside(const Stroke& stroke, float width, const Rect
     const float centre = stroke.start[side] + slope * ahead;
     const int begin = std::max(low[side], static_cast<int>(std::ceil(centre - wide)));
     const int end = std::min(high[side] - 1, static_cast<int>(std::floor(centre + wide)));
-    for (int k = begin; k <= end; ++k) {
+    if (begin > end) continue;
+    const std::uint8_t* at = steep ? missing.row(i) + begin : missing.row(begin) + i;
+    const std::ptrdiff_t next = steep ? 1 : missing.width();
+    for (int k = begin; k <= end; ++k, at += next) {
+      if (*at == 0) continue;
       const int x = steep ? k : i;
       const int y = steep ? i : k;
-      if (missing(x, y) == 0) continue;
       const float beside = static_cast<float>(k) - stroke.start[side];
       const float along = own_along + beside * stroke.along[side];
       if (along < -before || along > stroke.length + after) continue;
