@@ -1,6 +1,5 @@
 #include "core/shrunk_picture.h"
 
-#include <algorithm>
 #include <atomic>
 
 namespace diminish {
@@ -17,36 +16,6 @@ void ShrunkPicture::begin(ImageView<Bgr> picture, const Mask& occlusion, int shr
   shrinkage_ = shrinkage;
   levels_.resize(picture.width() / shrinkage, picture.height() / shrinkage);
   levels_.fill(not_yet);
-}
-
-bool ShrunkPicture::look_up(float x, float y, Brightness& found) {
-  const int column = static_cast<int>(x);
-  const int row = static_cast<int>(y);
-  float* const first = levels_.row(row) + column;
-  float* const second = levels_.row(row + 1) + column;
-  float upper[2];
-  float lower[2];
-  const auto read = [&] {
-    for (int i = 0; i < 2; ++i) {
-      upper[i] = std::atomic_ref(first[i]).load(std::memory_order_relaxed);
-      lower[i] = std::atomic_ref(second[i]).load(std::memory_order_relaxed);
-    }
-    return std::min(std::min(upper[0], upper[1]), std::min(lower[0], lower[1]));
-  };
-  if (read() < 0) {
-    fill_in(column, row);
-    fill_in(column, row + 1);
-    if (read() < 0) return false;
-  }
-  const float u = x - static_cast<float>(column);
-  const float v = y - static_cast<float>(row);
-  const float above = upper[1] - upper[0];
-  const float below = lower[1] - lower[0];
-  const float left = upper[0] + u * above;
-  found.dy = lower[0] + u * below - left;
-  found.dx = above + v * (below - above);
-  found.level = left + v * found.dy;
-  return true;
 }
 
 void ShrunkPicture::fill_in(int column, int row) {

@@ -208,7 +208,6 @@ DirectAlignment::Equations DirectAlignment::add_up() const {
   std::array<Lanes, 6> products;
   squares.fill(Lanes::Zero());
   products.fill(Lanes::Zero());
-  Lanes cost = Lanes::Zero();
   for (const Points& points : points_) {
     auto square = squares.begin();
     for (std::size_t i = 0; i < 6; ++i) {
@@ -216,10 +215,6 @@ DirectAlignment::Equations DirectAlignment::add_up() const {
       products[i] -= weighted * points.residual;
       for (std::size_t j = 0; j <= i; ++j) *square++ += weighted * points.derivative[j];
     }
-    // Of one scale, so that iterations compare (Geman & McClure 1985).
-    constexpr float same_scale = 400;
-    const Lanes squared = points.residual.square();
-    cost += squared / (squared + same_scale);
   }
   Equations sums;
   auto square = squares.begin();
@@ -229,8 +224,18 @@ DirectAlignment::Equations DirectAlignment::add_up() const {
       sums.squares(i, j) = sums.squares(j, i) = (square++)->sum();
     }
   }
-  sums.cost = cost.sum();
   return sums;
+}
+
+/// The sum over all points. Of one scale, so that iterations compare (Geman & McClure 1985).
+float DirectAlignment::cost() const {
+  constexpr float same_scale = 400;
+  Lanes sum = Lanes::Zero();
+  for (const Points& points : points_) {
+    const Lanes squared = points.residual.square();
+    sum += squared / (squared + same_scale);
+  }
+  return sum.sum();
 }
 
 DirectAlignment::Twist DirectAlignment::further(const Twist& step, const Twist& last) {
@@ -262,9 +267,9 @@ bool DirectAlignment::iterate(int iterations, Estimate& estimate) {
       scale = find_scale();
       weigh(scale);
     }
-    Equations equations = add_up();
-    estimate.cost = equations.cost / static_cast<float>(seen);
+    estimate.cost = cost() / static_cast<float>(seen);
     if (iteration == iterations) return true;
+    Equations equations = add_up();
     const Twist held = prior * (scale * scale / independent_share);
     equations.squares.diagonal() += held;
     equations.products -= held.cwiseProduct(estimate.twist);

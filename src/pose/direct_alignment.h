@@ -65,9 +65,7 @@ class DirectAlignment {
   struct Line {
     float gain = 1, offset = 0;
   };
-  struct Equations : NormalEquations<float> {
-    float cost = 0;
-  };
+  using Equations = NormalEquations<float>;
   static constexpr std::size_t most_sources = 256;
 
   /// Robust weights and gains follow slowly: where steps go on in the same direction, as far as
@@ -84,6 +82,7 @@ class DirectAlignment {
   float find_scale();
   void weigh(float scale);
   Equations add_up() const;
+  float cost() const;
 
   Projection projection_;
   Settings level_;
