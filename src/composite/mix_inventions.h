@@ -19,7 +19,7 @@ struct EarlierInventions {
 
 /// Neighbours in a row, whose places in the last frame lie evenly.
 struct InventionRun {
-  static constexpr int most = 16;
+  static constexpr int most = 32;
   Eigen::Vector2f first;  ///< place of the first one; less than 2^22 pixels away
   Eigen::Vector2f step;   ///< to the next one's
   int count;              ///< at most `most`
