@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "analytic_scene.h"
@@ -127,6 +128,35 @@ TEST_F(Bars, APipeIsDrawnAsTheUserWouldSeeIt) {
   EXPECT_EQ(report.estimated_pixels, drawn + count(provenance::estimated, false));
   EXPECT_EQ(report.valid_pixels, report.estimated_pixels);
   EXPECT_EQ(report.valid_pixels + report.missing_pixels, report.mask_pixels);
+}
+
+// On vector instructions as one by one.
+TEST_F(Bars, PlacesOfManyPointsAreThoseOfEach) {
+  look();
+  find();
+  std::array<int, 4> counts{};
+  for (int y = 60; y < 180; y += 7) {
+    std::array<float, DepthView::few> ray_x, ray_y, z_m;
+    for (int i = 0; i < DepthView::few; ++i) {
+      const Eigen::Vector3f ray =
+          views->ray(Eigen::Vector2f(static_cast<float>(18 * i + 2), static_cast<float>(y)));
+      const auto at = static_cast<std::size_t>(i);
+      ray_x[at] = ray.x();
+      ray_y[at] = ray.y();
+      z_m[at] = i % 5 == 4 ? 0 : 0.85F + 0.05F * static_cast<float>(i % 3);
+    }
+    BarViews::Places places;
+    views->look_at({ray_x.data(), ray_y.data(), z_m.data(), DepthView::few}, places);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const Eigen::Vector3f point(z_m[i] * ray_x[i], z_m[i] * ray_y[i], z_m[i]);
+      EXPECT_EQ(places[i], views->look_at(point)) << i << " in row " << y;
+      ++counts[static_cast<std::size_t>(places[i])];
+    }
+  }
+  for (const auto place :
+       {BarViews::Place::bare, BarViews::Place::seen, BarViews::Place::unknown}) {
+    EXPECT_GT(counts[static_cast<std::size_t>(place)], 0);
+  }
 }
 
 TEST_F(Bars, WhatDepthSensorsSeeIsNone) {
