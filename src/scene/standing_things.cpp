@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 
 #include "core/conditions.h"
@@ -54,10 +55,14 @@ struct StandingThings::View {
   float depth_m(int x, int y) const { return input.reconstruction.depth_m(x, y); }
   /// Whether something at this depth hides what was drawn at a pixel.
   bool hides(int x, int y, float z_m) const {
-    if (input.masks.color(x, y) == 0) return false;
-    const float drawn = depth_m(x, y);
+    return input.masks.color(x, y) != 0 &&
+           hides_at(y * std::ptrdiff_t{input.reconstruction.depth_m.width()} + x, z_m);
+  }
+  /// The same of a pixel of the mask. at: y * width + x.
+  bool hides_at(std::ptrdiff_t at, float z_m) const {
+    const float drawn = input.reconstruction.depth_m.data()[at];
     if (drawn == 0) return true;
-    const std::uint8_t source = input.reconstruction.source(x, y);
+    const std::uint8_t source = input.reconstruction.source.data()[at];
     return drawn > z_m + thing_step_m && source != provenance::witnessed &&
            source != provenance::remembered;
   }
@@ -153,17 +158,22 @@ void StandingThings::lower(const View& view, int x, int y, Surfaces& surfaces) c
   const float at_top = 1 / top.z();
   const float to_foot = 1 / foot.z() - at_top;
   bool is_checked = false;
+  // All images are the picture's size.
+  const std::ptrdiff_t width = surfaces.label.width();
+  const std::uint8_t* const mask = view.input.masks.color.data();
   for (int i = 1; i <= steps; ++i) {
     const float share = static_cast<float>(i) / static_cast<float>(steps);
     const auto& [column, row] = nearest_pixel(start + share * way);
     if (!view.part.contains(column, row)) return;
+    const std::ptrdiff_t at = row * width + column;
+    if (mask[at] == 0) continue;
     const float z = 1 / (at_top + share * to_foot);
-    if (!view.hides(column, row, z)) continue;
+    if (!view.hides_at(at, z)) continue;
     if (!is_checked && !is_solid(view, top, height_m)) return;
     is_checked = true;
-    float& standing = surfaces.standing_depth_m(column, row);
+    float& standing = surfaces.standing_depth_m.data()[at];
     if (standing == 0 || z < standing) standing = z;
-    surfaces.label(column, row) = surface_label::standing;
+    surfaces.label.data()[at] = surface_label::standing;
   }
 }
 
