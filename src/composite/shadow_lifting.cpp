@@ -126,7 +126,7 @@ void measure_in_row(const std::uint8_t* mask, int width, std::uint8_t* distances
                     std::vector<std::uint8_t>& padded) {
   // Nothing beyond the row is outside.
   constexpr int longest_step = 5;
-  padded.assign(static_cast<std::size_t>(width) + 2 * longest_step, fading_px);
+  padded.assign(static_cast<std::size_t>(width) + std::size_t{2} * longest_step, fading_px);
   std::uint8_t* last = padded.data() + longest_step;
   for (int x = 0; x < width; ++x) distances[x] = mask[x] != 0 ? fading_px : 0;
   // Every distance is a sum of some of these steps.
