@@ -1,5 +1,6 @@
 #include "membrane/filling_rows.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 
@@ -128,7 +129,8 @@ void Round(const Color* colors, int count, Bgr* pixels) {
     std::uint8_t levels[4 * at_once];
     hn::StoreU(hn::DemoteTo(bytes, TruncateSmall(color)), bytes, levels);
     for (int i = 0; i < at_once; ++i) {
-      std::memcpy(reinterpret_cast<std::uint8_t*>(pixels + x + i), levels + 4 * i, 4);
+      std::memcpy(reinterpret_cast<std::uint8_t*>(pixels + x + i), levels + std::ptrdiff_t{4} * i,
+                  4);
     }
   }
   if (x < count) plain::round(colors + x, count - x, pixels + x);
