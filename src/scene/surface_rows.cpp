@@ -16,7 +16,6 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 using diminish::HWY_NAMESPACE::ForEachVector;
-using diminish::HWY_NAMESPACE::most_lanes;
 using diminish::HWY_NAMESPACE::NoiseAt;
 using diminish::HWY_NAMESPACE::StoreBytes;
 using diminish::HWY_NAMESPACE::TruncateSmall;
