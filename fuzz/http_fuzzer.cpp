@@ -1,7 +1,4 @@
-// clang-format off
 #include "serve/web_routes.h"
-#include <httplib.h>  // whose macros spoil Eigen's headers: after them
-// clang-format on
 
 #include <cctype>
 #include <cstddef>
@@ -13,6 +10,7 @@
 #include "diminish/frame_source.h"
 #include "diminish/live.h"
 #include "fuzzed_folder.h"
+#include "serve/http.h"
 
 namespace {
 

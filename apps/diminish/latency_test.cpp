@@ -12,11 +12,9 @@
 #include "diminish/error.h"
 #include "diminish/web_server.h"
 #include "live_setup.h"
+#include "serve/http.h"
 #include "serve/picture_stream.h"
 #include "sink/distribution.h"
-
-// After Eigen, some of whose names it has macros for.
-#include <httplib.h>
 
 namespace diminish {
 namespace {

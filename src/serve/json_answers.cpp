@@ -1,6 +1,6 @@
 #include "serve/json_answers.h"
 
-#include <httplib.h>
+#include "serve/http.h"
 
 namespace diminish {
 

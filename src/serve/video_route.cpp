@@ -4,17 +4,15 @@
 
 #include "diminish/camera_source.h"
 #include "serve/access.h"
+#include "serve/http.h"
 #include "serve/json_answers.h"
 #include "serve/web_routes.h"
 #include "serve/webrtc_video.h"
 
-// After Eigen, some of whose names it has macros for.
-#include <httplib.h>
-
 namespace diminish {
 namespace {
 
-constexpr std::chrono::milliseconds picture_wait{200};
+constexpr std::chrono::milliseconds frame_wait{200};
 /// Every one of them compresses for itself.
 constexpr std::size_t most_videos = 4;
 /// So that a viewer whose machine is gone is noticed.
@@ -53,7 +51,7 @@ void WebRoutes::video(const httplib::Request& request, httplib::Response& respon
         }
         try {
           if (stopped_ || !video->is_watched()) return false;
-          const auto frame = session_.wait_for_frame(number, picture_wait);
+          const auto frame = session_.wait_for_frame(number, frame_wait);
           if (!frame) return true;
           number = frame->number;
           video->send(frame);

@@ -2,7 +2,6 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <httplib.h>
 #include <sys/resource.h>
 
 #include <thread>
@@ -10,6 +9,7 @@
 #include "diminish/error.h"
 #include "page_files.h"
 #include "serve/access.h"
+#include "serve/http.h"
 #include "serve/json_answers.h"
 #include "serve/settings.h"
 #include "serve/status_json.h"

@@ -1,12 +1,12 @@
 #include "diminish/web_server.h"
 
 #include <fmt/format.h>
-#include <httplib.h>
 
 #include <thread>
 
 #include "core/thread_name.h"
 #include "diminish/error.h"
+#include "serve/http.h"
 #include "serve/web_routes.h"
 
 namespace diminish {

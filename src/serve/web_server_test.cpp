@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
-#include <httplib.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -16,6 +15,7 @@
 #include "diminish/frame_source.h"
 #include "expect_error.h"
 #include "paths.h"
+#include "serve/http.h"
 #include "serve/picture_stream.h"
 #include "temporary_folder.h"
 

@@ -12,9 +12,7 @@
 #include "diminish/web_server.h"
 #include "expect_error.h"
 #include "paths.h"
-
-// After Eigen, some of whose names it has macros for.
-#include <httplib.h>
+#include "serve/http.h"
 
 namespace diminish {
 namespace {
