@@ -25,7 +25,7 @@ struct SyncCheckCommand {
 /// What a camera's thread found.
 struct Watched {
   std::string name;
-  std::vector<Motion> motion;
+  std::vector<MotionSample> motion;
   std::string problem;
 };
 
@@ -51,7 +51,7 @@ Watched watch(const LiveCamera& camera, const CameraRequest& request, double end
   return watched;
 }
 
-double frame_period_s(const std::vector<Motion>& motion) {
+double frame_period_s(const std::vector<MotionSample>& motion) {
   if (motion.size() < 2) return 1.0 / 30;
   return (motion.back().stamp_s - motion.front().stamp_s) / static_cast<double>(motion.size() - 1);
 }

@@ -129,7 +129,7 @@ class GstreamerCamera : public CameraSource {
   Owned<GstBus> bus_;
 };
 
-const bool registered = Registry<CameraSource>::add(
+const bool gstreamer_camera_registered = Registry<CameraSource>::add(
     "gst", {.open =
                 [](const CameraUri& uri, const CameraRequest& request) {
                   return std::make_unique<GstreamerCamera>(uri, request);

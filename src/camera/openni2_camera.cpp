@@ -215,7 +215,7 @@ std::vector<CameraDevice> list_devices() {
   return devices;
 }
 
-const bool registered = Registry<CameraSource>::add(
+const bool openni2_camera_registered = Registry<CameraSource>::add(
     "openni2",
     {.open =
          [](const CameraUri& uri, const CameraRequest& request) {

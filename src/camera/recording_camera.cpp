@@ -185,7 +185,7 @@ class RecordingCamera : public CameraSource {
   std::size_t dropped_ = 0;
 };
 
-const bool registered = Registry<CameraSource>::add(
+const bool recording_camera_registered = Registry<CameraSource>::add(
     "recording", {.open =
                       [](const CameraUri& uri, const CameraRequest& request) {
                         return std::make_unique<RecordingCamera>(uri, request);

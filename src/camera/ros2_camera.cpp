@@ -222,7 +222,7 @@ class Ros2Camera : public CameraSource {
   double pending_stamp_s_ = 0;
 };
 
-const bool registered = Registry<CameraSource>::add(
+const bool ros2_camera_registered = Registry<CameraSource>::add(
     "ros2",
     {.open =
          [](const CameraUri& uri, const CameraRequest& request) {

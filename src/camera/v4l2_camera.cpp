@@ -89,7 +89,7 @@ std::vector<CameraDevice> list_devices() {
   return devices;
 }
 
-const bool registered = Registry<CameraSource>::add(
+const bool v4l2_camera_registered = Registry<CameraSource>::add(
     "v4l2", {.open =
                  [](const CameraUri& uri, const CameraRequest& request) {
                    return std::make_unique<V4l2Camera>(uri, request);

@@ -85,7 +85,7 @@ constexpr std::array<MappedCorrection::Method, 4> methods{{
     {"affine_membrane", ColorMapModel::affine, true, "affine"},
     {"field_membrane", ColorMapModel::field, true, "affine"},
 }};
-const bool registered = [] {
+const bool mapped_correction_registered = [] {
   for (const MappedCorrection::Method& method : methods) {
     Registry<ColorCorrector>::add(method.name,
                                   [&method] { return std::make_unique<MappedCorrection>(method); });

@@ -20,7 +20,7 @@ class NoCorrection : public ColorCorrector {
   }
 };
 
-const bool registered =
+const bool none_correction_registered =
     Registry<ColorCorrector>::add("none", [] { return std::make_unique<NoCorrection>(); });
 
 }  // namespace

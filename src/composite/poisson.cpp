@@ -27,7 +27,7 @@ class PoissonCorrection : public ColorCorrector {
   Membrane membrane_;
 };
 
-const bool registered =
+const bool poisson_registered =
     Registry<ColorCorrector>::add("poisson", [] { return std::make_unique<PoissonCorrection>(); });
 
 }  // namespace

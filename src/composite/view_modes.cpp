@@ -111,8 +111,9 @@ template <class Mode>
 bool add(const char* name) {
   return Registry<ViewMode>::add(name, [] { return std::make_unique<Mode>(); });
 }
-const bool registered = add<Remove>("remove") && add<Half>("half") && add<XRay>("xray") &&
-                        add<Outline>("outline") && add<Provenance>("provenance");
+const bool view_modes_registered = add<Remove>("remove") && add<Half>("half") &&
+                                   add<XRay>("xray") && add<Outline>("outline") &&
+                                   add<Provenance>("provenance");
 
 }  // namespace
 }  // namespace diminish

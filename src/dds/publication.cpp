@@ -9,10 +9,10 @@ namespace {
 
 using namespace eprosima::fastdds::dds;
 
-constexpr int newest_depth = 2;
+constexpr int newest_sent = 2;
 /// Of what may have to be sent again.
-constexpr int reliable_depth = 8;
-constexpr int kept_depth = 16;
+constexpr int reliable_sent = 8;
+constexpr int kept_sent = 16;
 /// While somebody has not received all, it is asked this often what is missing.
 constexpr std::uint32_t repair_ns = 5'000'000;
 
@@ -23,9 +23,9 @@ DataWriterQos writer_qos(Delivery delivery) {
   qos.durability().kind =
       delivery == Delivery::kept ? TRANSIENT_LOCAL_DURABILITY_QOS : VOLATILE_DURABILITY_QOS;
   qos.history().kind = KEEP_LAST_HISTORY_QOS;
-  qos.history().depth = delivery == Delivery::kept       ? kept_depth
-                        : delivery == Delivery::reliable ? reliable_depth
-                                                         : newest_depth;
+  qos.history().depth = delivery == Delivery::kept       ? kept_sent
+                        : delivery == Delivery::reliable ? reliable_sent
+                                                         : newest_sent;
   // What is lost is missed, and sent again, within some milliseconds, not seconds.
   auto& times = qos.reliable_writer_qos().times;
   times.heartbeatPeriod = {0, repair_ns};

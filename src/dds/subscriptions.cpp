@@ -16,9 +16,9 @@ using namespace eprosima::fastdds::dds;
 using eprosima::fastrtps::types::ReturnCode_t;
 
 /// Messages that wait to be taken: of images the newest few, of what is sent once all.
-constexpr int newest_depth = 4;
-constexpr int reliable_depth = 8;
-constexpr int kept_depth = 100;
+constexpr int newest_received = 4;
+constexpr int reliable_received = 8;
+constexpr int kept_received = 100;
 
 /// What the readers tell the one thread that takes. Called by DDS's threads; it throws nothing.
 class Arrivals : public DataReaderListener {
@@ -55,9 +55,9 @@ DataReaderQos reader_qos(Delivery delivery) {
   qos.durability().kind =
       delivery == Delivery::kept ? TRANSIENT_LOCAL_DURABILITY_QOS : VOLATILE_DURABILITY_QOS;
   qos.history().kind = KEEP_LAST_HISTORY_QOS;
-  qos.history().depth = is_newest                    ? newest_depth
-                        : delivery == Delivery::kept ? kept_depth
-                                                     : reliable_depth;
+  qos.history().depth = is_newest                    ? newest_received
+                        : delivery == Delivery::kept ? kept_received
+                                                     : reliable_received;
   qos.reliable_reader_qos().times.heartbeatResponseDelay = {0, 0};
   qos.data_sharing().off();
   // What a message claims to be is not allocated: each has the room that the type says, which the

@@ -97,7 +97,7 @@ class ArticulatedOccluder final : public ShapeDetector {
   std::vector<Eigen::Vector3d> in_camera_;
 };
 
-std::shared_ptr<const OccluderSettings> read_settings(const Config& place) {
+std::shared_ptr<const OccluderSettings> read_articulated_settings(const Config& place) {
   place.expect_keys({"name", "detector", "chain", "angles", "base", "tolerance_s"});
   auto settings = std::make_shared<ArticulatedSettings>();
   settings->chain = place.at("chain").path();
@@ -111,10 +111,11 @@ std::shared_ptr<const OccluderSettings> read_settings(const Config& place) {
   return settings;
 }
 
-const bool registered = Registry<OccluderDetector>::add(
-    "articulated", {.read = read_settings, .make = [](const OccluderSpec& spec, const Rig& rig) {
-                      return std::make_unique<ArticulatedOccluder>(spec, rig);
-                    }});
+const bool articulated_occluder_registered = Registry<OccluderDetector>::add(
+    "articulated",
+    {.read = read_articulated_settings, .make = [](const OccluderSpec& spec, const Rig& rig) {
+       return std::make_unique<ArticulatedOccluder>(spec, rig);
+     }});
 
 }  // namespace
 

@@ -187,7 +187,7 @@ class BoxOccluder : public OccluderDetector {
   DiscDilation dilation_;
 };
 
-std::shared_ptr<const OccluderSettings> read_settings(const Config& place) {
+std::shared_ptr<const OccluderSettings> read_box_settings(const Config& place) {
   place.expect_keys({"name", "detector", "frame", "min", "max"});
   auto settings = std::make_shared<BoxSettings>();
   settings->frame = place.at("frame").text();
@@ -196,8 +196,8 @@ std::shared_ptr<const OccluderSettings> read_settings(const Config& place) {
   return settings;
 }
 
-const bool registered = Registry<OccluderDetector>::add(
-    "box", {.read = read_settings, .make = [](const OccluderSpec& spec, const Rig& rig) {
+const bool box_occluder_registered = Registry<OccluderDetector>::add(
+    "box", {.read = read_box_settings, .make = [](const OccluderSpec& spec, const Rig& rig) {
               return std::make_unique<BoxOccluder>(spec, rig);
             }});
 

@@ -60,7 +60,7 @@ class ColorBlobDetector : public OccluderDetector {
   std::vector<char> found_;  ///< by image; not std::vector<bool>, whose elements share bytes
 };
 
-std::shared_ptr<const OccluderSettings> read_settings(const Config& place) {
+std::shared_ptr<const OccluderSettings> read_color_blob_settings(const Config& place) {
   place.expect_keys({"name", "detector", "training", "shape"});
   auto settings = std::make_shared<ColorBlobSettings>();
   settings->training = place.at("training").path();
@@ -71,10 +71,11 @@ std::shared_ptr<const OccluderSettings> read_settings(const Config& place) {
   return settings;
 }
 
-const bool registered = Registry<OccluderDetector>::add(
-    "color_blob", {.read = read_settings, .make = [](const OccluderSpec& spec, const Rig& rig) {
-                     return std::make_unique<ColorBlobDetector>(spec, rig);
-                   }});
+const bool color_blob_registered = Registry<OccluderDetector>::add(
+    "color_blob",
+    {.read = read_color_blob_settings, .make = [](const OccluderSpec& spec, const Rig& rig) {
+       return std::make_unique<ColorBlobDetector>(spec, rig);
+     }});
 
 }  // namespace
 }  // namespace diminish

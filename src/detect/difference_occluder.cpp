@@ -137,7 +137,7 @@ class DifferenceOccluder : public OccluderDetector {
   Mask regions_;
 };
 
-std::shared_ptr<const OccluderSettings> read_settings(const Config& place) {
+std::shared_ptr<const OccluderSettings> read_difference_settings(const Config& place) {
   place.expect_keys({"name", "detector", "clearance"});
   auto settings = std::make_shared<DifferenceSettings>();
   const Config clearance = place.find("clearance");
@@ -145,10 +145,11 @@ std::shared_ptr<const OccluderSettings> read_settings(const Config& place) {
   return settings;
 }
 
-const bool registered = Registry<OccluderDetector>::add(
-    "difference", {.read = read_settings, .make = [](const OccluderSpec& spec, const Rig& rig) {
-                     return std::make_unique<DifferenceOccluder>(spec, rig);
-                   }});
+const bool difference_occluder_registered = Registry<OccluderDetector>::add(
+    "difference",
+    {.read = read_difference_settings, .make = [](const OccluderSpec& spec, const Rig& rig) {
+       return std::make_unique<DifferenceOccluder>(spec, rig);
+     }});
 
 }  // namespace
 }  // namespace diminish

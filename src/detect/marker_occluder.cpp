@@ -148,7 +148,7 @@ class MarkerOccluder : public ShapeDetector {
   std::vector<std::optional<RigidTransform>> camera_from_marker_;  ///< of each view
 };
 
-std::shared_ptr<const OccluderSettings> read_settings(const Config& place) {
+std::shared_ptr<const OccluderSettings> read_marker_settings(const Config& place) {
   place.expect_keys({"name", "detector", "marker", "vertices", "mesh"});
   auto settings = std::make_shared<MarkerSettings>();
   settings->marker = read_marker(place.at("marker"));
@@ -161,8 +161,8 @@ std::shared_ptr<const OccluderSettings> read_settings(const Config& place) {
   return settings;
 }
 
-const bool registered = Registry<OccluderDetector>::add(
-    "marker", {.read = read_settings, .make = [](const OccluderSpec& spec, const Rig& rig) {
+const bool marker_occluder_registered = Registry<OccluderDetector>::add(
+    "marker", {.read = read_marker_settings, .make = [](const OccluderSpec& spec, const Rig& rig) {
                  return std::make_unique<MarkerOccluder>(spec, rig);
                }});
 

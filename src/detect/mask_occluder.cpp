@@ -48,7 +48,7 @@ class MaskOccluder : public OccluderDetector {
 };
 
 /// Which keys are cameras' names, the rig tells (MaskSettings::check).
-std::shared_ptr<const OccluderSettings> read_settings(const Config& place) {
+std::shared_ptr<const OccluderSettings> read_mask_settings(const Config& place) {
   auto settings = std::make_shared<MaskSettings>();
   settings->color = place.at("color").path();
   for (const std::string& key : place.keys()) {
@@ -58,8 +58,8 @@ std::shared_ptr<const OccluderSettings> read_settings(const Config& place) {
   return settings;
 }
 
-const bool registered = Registry<OccluderDetector>::add(
-    "mask", {.read = read_settings, .make = [](const OccluderSpec& spec, const Rig&) {
+const bool mask_occluder_registered = Registry<OccluderDetector>::add(
+    "mask", {.read = read_mask_settings, .make = [](const OccluderSpec& spec, const Rig&) {
                return std::make_unique<MaskOccluder>(spec);
              }});
 

@@ -88,7 +88,7 @@ class OnnxOccluder : public OccluderDetector {
   std::vector<char> found_;  ///< by image; not std::vector<bool>, whose elements share bytes
 };
 
-std::shared_ptr<const OccluderSettings> read_settings(const Config& place) {
+std::shared_ptr<const OccluderSettings> read_onnx_settings(const Config& place) {
   place.expect_keys({"name", "detector", "model", "runtime", "size", "scale", "mean", "channels",
                      "layout", "classes", "threshold", "every", "steady"});
   auto settings = std::make_shared<OnnxSettings>();
@@ -132,8 +132,8 @@ std::shared_ptr<const OccluderSettings> read_settings(const Config& place) {
   return settings;
 }
 
-const bool registered = Registry<OccluderDetector>::add(
-    "onnx", {.read = read_settings, .make = [](const OccluderSpec& spec, const Rig& rig) {
+const bool onnx_occluder_registered = Registry<OccluderDetector>::add(
+    "onnx", {.read = read_onnx_settings, .make = [](const OccluderSpec& spec, const Rig& rig) {
                return std::make_unique<OnnxOccluder>(spec, rig);
              }});
 

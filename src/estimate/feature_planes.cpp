@@ -21,7 +21,7 @@ constexpr int features_of_picture = 1500;
 /// How much better than the second best a match has to be.
 constexpr float best_by = 0.8F;
 /// From an epipolar line, and from where a plane says.
-constexpr double tolerance_px = 2.5;
+constexpr double agreement_px = 2.5;
 constexpr std::size_t least_points = 12;
 constexpr int attempts = 400;
 /// Of all points, that may lie behind a plane.
@@ -72,7 +72,7 @@ std::optional<SeenPoint> triangulate(const Eigen::Vector2d& first, const Eigen::
   const Eigen::Vector2d z = sides.colPivHouseholderQr().solve(-second_from_first.translation);
   if (!(z.x() > 0.05 && z.y() > 0.05 && z.x() < 100)) return std::nullopt;
   const auto seen = b.lens.project(z.x() * u + second_from_first.translation);
-  if (!seen || (*seen - second).norm() > tolerance_px) return std::nullopt;
+  if (!seen || (*seen - second).norm() > agreement_px) return std::nullopt;
   return SeenPoint{ray, second, 1 / z.x()};
 }
 
@@ -102,7 +102,7 @@ bool is_on(const InversePlane& plane, const SeenPoint& point, const Lens& second
   const double inverse_depth = plane.inverse_depth(point.ray);
   if (!(inverse_depth > 0.01)) return false;
   const auto seen = second.project(second_from_first * (point.ray.homogeneous() / inverse_depth));
-  return seen && (*seen - point.in_second).norm() < tolerance_px;
+  return seen && (*seen - point.in_second).norm() < agreement_px;
 }
 
 /// The plane nearest to the points' inverse depths, in the sense of least squares.

@@ -74,7 +74,7 @@ class PlanesEstimator final : public DepthEstimator {
   std::vector<Lens> lenses_;
 };
 
-const bool registered =
+const bool planes_estimator_registered =
     Registry<DepthEstimator>::add("planes", [](const Rig& rig, const Scene& scene) {
       return std::make_unique<PlanesEstimator>(rig, scene);
     });

@@ -258,7 +258,7 @@ class StereoEstimator final : public DepthEstimator {
   std::vector<Camera> cameras_;
 };
 
-const bool registered = Registry<DepthEstimator>::add(
+const bool stereo_estimator_registered = Registry<DepthEstimator>::add(
     "stereo", [](const Rig& rig, const Scene&) { return std::make_unique<StereoEstimator>(rig); });
 
 }  // namespace

@@ -22,7 +22,7 @@ std::string blending_rules() {
          define("SMOOTHING", Grid::smoothing);
 }
 
-Program pass(const std::vector<std::string>& seen_files, const char* last) {
+Program blending_pass(const std::vector<std::string>& seen_files, const char* last) {
   std::vector<std::string> files = files_before(seen_files);
   files.insert(files.end(), {"blending.glsl", last});
   return compute_program(std::move(files), blending_rules());
@@ -35,7 +35,7 @@ Program color_pass(const std::vector<std::string>& seen_files) {
 }
 
 /// blending.glsl's grid_size().
-Rect cells_of(const Rect& region) {
+Rect blending_cells(const Rect& region) {
   return {0, 0, std::max(1, region.width / Grid::cell_px),
           std::max(1, region.height / Grid::cell_px)};
 }
@@ -57,16 +57,16 @@ std::vector<std::string> files_before(const std::vector<std::string>& seen_files
 }
 
 CameraBlending::CameraBlending(const Rig& rig, const std::vector<std::string>& seen_files)
-    : seen_(pass(seen_files, "blend_seen.comp")),
-      cells_(pass(seen_files, "blend_cells.comp")),
-      trust_(pass(seen_files, "blend_trust.comp")),
-      smooth_(pass(seen_files, "blend_smooth.comp")),
-      choose_(pass(seen_files, "blend_choose.comp")),
+    : seen_(blending_pass(seen_files, "blend_seen.comp")),
+      cells_(blending_pass(seen_files, "blend_cells.comp")),
+      trust_(blending_pass(seen_files, "blend_trust.comp")),
+      smooth_(blending_pass(seen_files, "blend_smooth.comp")),
+      choose_(blending_pass(seen_files, "blend_choose.comp")),
       color_(color_pass(seen_files)) {
   constexpr std::size_t cell_bytes = 4 * sizeof(float);
   const Rect whole = rig.color.bounds();
   seen_by_.reserve(pixels_of(whole) * sizeof(std::uint32_t));
-  cell_values_.reserve(blending::most_cameras * pixels_of(cells_of(whole)) * cell_bytes);
+  cell_values_.reserve(blending::most_cameras * pixels_of(blending_cells(whole)) * cell_bytes);
 }
 
 void CameraBlending::pack(FrameUpload& upload) {
@@ -79,7 +79,7 @@ void CameraBlending::pack(FrameUpload& upload) {
 
 void CameraBlending::run(const FrameUpload& upload, const Rect& region, const Buffer& work,
                          PassTimer& timer) {
-  const Rect cells = cells_of(region);
+  const Rect cells = blending_cells(region);
   const std::size_t most_turns =
       std::min(static_cast<std::size_t>(upload.cameras()), blending::most_cameras);
   const auto finish = [] { glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT); };

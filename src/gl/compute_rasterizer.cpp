@@ -114,7 +114,7 @@ Reconstructor::Suited suited() {
   return is_hardware_there ? Suited::with_hardware : Suited::when_named;
 }
 
-const bool registered = Registry<Reconstructor>::add("gl", {make, suited});
+const bool compute_rasterizer_registered = Registry<Reconstructor>::add("gl", {make, suited});
 
 }  // namespace
 }  // namespace diminish::gl

@@ -11,7 +11,7 @@
 namespace diminish::gl {
 namespace {
 
-Program pass(std::vector<std::string> files, const char* define = "") {
+Program composition_pass(std::vector<std::string> files, const char* define = "") {
   files.insert(files.begin(), {"frame.glsl", "composition.glsl"});
   return compute_program(std::move(files), composition_rules() + define);
 }
@@ -80,20 +80,21 @@ std::size_t FrameCompositor::most_added_bytes(const Rig& rig) {
 }
 
 FrameCompositor::FrameCompositor(const Rig& rig)
-    : label_(pass({"rays.glsl", "label.comp"})),
-      light_(pass({"rays.glsl", "light.comp"})),
-      sort_(pass({"sort.comp"})),
-      membrane_sums_(pass({"membrane_nodes.glsl", "color_map.glsl", "membrane_sums.comp"})),
-      membrane_solve_(pass({"membrane_nodes.glsl", "membrane_solve.comp"})),
-      map_colors_(pass({"membrane_nodes.glsl", "color_map.glsl", "map_colors.comp"})),
-      mix_second_(pass({"membrane_nodes.glsl", "color_map.glsl", "map_colors.comp"},
-                       "#define SECOND_VIEW\n")),
-      lift_(pass({"lift.comp"})),
-      smooth_guide_(pass({"smoothing.glsl", "smooth_guide.comp"})),
-      smooth_colors_(pass({"smoothing.glsl", "smooth_colors.comp"})),
-      row_distances_(pass({"row_distances.comp"})),
-      restore_(pass({"restore.comp"})),
-      rim_(pass({"rim.comp"})) {
+    : label_(composition_pass({"rays.glsl", "label.comp"})),
+      light_(composition_pass({"rays.glsl", "light.comp"})),
+      sort_(composition_pass({"sort.comp"})),
+      membrane_sums_(
+          composition_pass({"membrane_nodes.glsl", "color_map.glsl", "membrane_sums.comp"})),
+      membrane_solve_(composition_pass({"membrane_nodes.glsl", "membrane_solve.comp"})),
+      map_colors_(composition_pass({"membrane_nodes.glsl", "color_map.glsl", "map_colors.comp"})),
+      mix_second_(composition_pass({"membrane_nodes.glsl", "color_map.glsl", "map_colors.comp"},
+                                   "#define SECOND_VIEW\n")),
+      lift_(composition_pass({"lift.comp"})),
+      smooth_guide_(composition_pass({"smoothing.glsl", "smooth_guide.comp"})),
+      smooth_colors_(composition_pass({"smoothing.glsl", "smooth_colors.comp"})),
+      row_distances_(composition_pass({"row_distances.comp"})),
+      restore_(composition_pass({"restore.comp"})),
+      rim_(composition_pass({"rim.comp"})) {
   const Rect whole = rig.color.bounds();
   for (Buffer* buffer : {&picture_, &values_, &state_, &surface_, &distances_}) {
     buffer->reserve(pixels_of(whole) * sizeof(std::uint32_t));
@@ -252,7 +253,7 @@ void FrameCompositor::finish(const FrameInputs& inputs, const FrameUpload& uploa
 const Program& FrameCompositor::show(const std::string& file) {
   const auto found = shows_.find(file);
   if (found != shows_.end()) return found->second;
-  return shows_.emplace(file, pass({file, "show.comp"})).first->second;
+  return shows_.emplace(file, composition_pass({file, "show.comp"})).first->second;
 }
 
 }  // namespace diminish::gl

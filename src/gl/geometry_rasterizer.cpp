@@ -125,11 +125,12 @@ class GeometryRasterizer : public Rasterizer {
   Name<&glDeleteVertexArrays> no_attributes_;
 };
 
-const bool registered = Registry<Reconstructor>::add("gl_geometry", [](const Rig& rig) {
-  return std::make_unique<GlReconstructor>(rig, [](const Rig& r, const FrameUpload& upload) {
-    return std::make_unique<GeometryRasterizer>(r, upload);
-  });
-});
+const bool geometry_rasterizer_registered =
+    Registry<Reconstructor>::add("gl_geometry", [](const Rig& rig) {
+      return std::make_unique<GlReconstructor>(rig, [](const Rig& r, const FrameUpload& upload) {
+        return std::make_unique<GeometryRasterizer>(r, upload);
+      });
+    });
 
 }  // namespace
 }  // namespace diminish::gl

@@ -223,7 +223,7 @@ void GpuMaskDrawer::draw(std::span<MaskDrawing> drawings) {
 
 namespace {
 
-const bool registered =
+const bool mask_drawer_registered =
     Registry<MaskDrawer>::add("gl", [] { return std::make_unique<GpuMaskDrawer>(); });
 
 }  // namespace

@@ -58,15 +58,15 @@ std::string rules() {
       SmoothFilling::coarser.half_sweeps, factors(SmoothFilling::coarser));
 }
 
-Program pass(std::vector<std::string> files, const std::string& defines = {}) {
+Program filling_pass(std::vector<std::string> files, const std::string& defines = {}) {
   files.insert(files.begin(), "fill.glsl");
   return compute_program(std::move(files), rules() + defines);
 }
 
 Program refining(const SmoothFilling::Relaxation& relaxation, const char* defines) {
-  return pass({"fill_layers.glsl", "fill_refine.comp"},
-              fmt::format("{}#define HALF_SWEEPS {}\nconst float FACTORS[] = {};\n", defines,
-                          relaxation.half_sweeps, factors(relaxation)));
+  return filling_pass({"fill_layers.glsl", "fill_refine.comp"},
+                      fmt::format("{}#define HALF_SWEEPS {}\nconst float FACTORS[] = {};\n",
+                                  defines, relaxation.half_sweeps, factors(relaxation)));
 }
 
 Rect coarser(const Rect& rect) {
@@ -87,7 +87,7 @@ void barrier() {
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
 }
 
-Rect cells_of(const Rect& region) {
+Rect filling_cells(const Rect& region) {
   constexpr int cell = PlaneColors::cell;
   return {0, 0, (region.width + cell - 1) / cell, (region.height + cell - 1) / cell};
 }
@@ -95,13 +95,13 @@ Rect cells_of(const Rect& region) {
 }  // namespace
 
 SurfaceFilling::SurfaceFilling()
-    : states_(pass({"fill_states.comp"})),
-      plane_colors_(pass({"fill_plane_colors.comp"})),
-      unite_(pass({"fill_parts.glsl", "fill_unite.comp"})),
-      rims_(pass({"fill_parts.glsl", "fill_rims.comp"})),
-      gather_(pass({"fill_gather.comp"})),
-      coarsen_(pass({"fill_layers.glsl", "fill_coarsen.comp"})),
-      coarsest_(pass({"fill_layers.glsl", "fill_coarsest.comp"})),
+    : states_(filling_pass({"fill_states.comp"})),
+      plane_colors_(filling_pass({"fill_plane_colors.comp"})),
+      unite_(filling_pass({"fill_parts.glsl", "fill_unite.comp"})),
+      rims_(filling_pass({"fill_parts.glsl", "fill_rims.comp"})),
+      gather_(filling_pass({"fill_gather.comp"})),
+      coarsen_(filling_pass({"fill_layers.glsl", "fill_coarsen.comp"})),
+      coarsest_(filling_pass({"fill_layers.glsl", "fill_coarsest.comp"})),
       refine_(refining(SmoothFilling::coarser, "")),
       finest_(refining(SmoothFilling::finest, "#define FINEST\n")) {
   work_.reserve(flags_bytes + most_steps * dispatch_bytes);
@@ -146,7 +146,7 @@ void SurfaceFilling::fill(const Buffers& buffers, const Rect& stored, const Rect
                           const Rect& window, PassTimer& timer) {
   if (window.empty()) return;
   lay_out(window);
-  const Rect cells = cells_of(region);
+  const Rect cells = filling_cells(region);
   pixels_.reserve(sizeof(GLuint) * pixels_of(window));
   parts_.reserve(3 * sizeof(GLuint) * pixels_of(window));
   plane_sums_.reserve(2 * sizeof(GLuint) * PlaneColors::planes * (pixels_of(cells) + 1));
@@ -173,7 +173,7 @@ void SurfaceFilling::find_holes(const Rect& region, const Rect& window) const {
     program.use();
     glDispatchCompute(groups(window.width, 64), static_cast<GLuint>(window.height), 1);
   };
-  const Rect cells = cells_of(region);
+  const Rect cells = filling_cells(region);
   if (!region.empty()) {
     plane_colors_.use();
     glDispatchCompute(groups(cells.width, 16), groups(cells.height, 16), 1);

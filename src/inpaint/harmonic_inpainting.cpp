@@ -20,7 +20,7 @@ class HarmonicInpainting : public Inpainter {
   Membrane membrane_;
 };
 
-const bool registered =
+const bool harmonic_inpainting_registered =
     Registry<Inpainter>::add("harmonic", [] { return std::make_unique<HarmonicInpainting>(); });
 
 }  // namespace

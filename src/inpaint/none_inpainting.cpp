@@ -19,7 +19,7 @@ class NoInpainting : public Inpainter {
   }
 };
 
-const bool registered =
+const bool none_inpainting_registered =
     Registry<Inpainter>::add("none", [] { return std::make_unique<NoInpainting>(); });
 
 }  // namespace

@@ -26,7 +26,7 @@ class StructureInpainting : public Inpainter {
   LinePainting painting_;
 };
 
-const bool registered =
+const bool structure_inpainting_registered =
     Registry<Inpainter>::add("structure", [] { return std::make_unique<StructureInpainting>(); });
 
 }  // namespace

@@ -345,7 +345,7 @@ class SurfaceInpainting : public Inpainter {
   FarSide far_side_;
 };
 
-const bool registered = Registry<Inpainter>::add(
+const bool surface_inpainting_registered = Registry<Inpainter>::add(
     "surfaces", [] { return make_surface_inpainting(FillFrom::all_sides); });
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "camera/sender_clock.h"
 #include "core/mat.h"
+#include "live/image_pairs.h"
 #include "ros/camera_info.h"
 #include "ros/compressed_depth.h"
 #include "ros/pixel_encodings.h"
@@ -13,8 +14,6 @@
 namespace diminish {
 namespace {
 
-/// Two sensors' images so far apart are of one moment.
-constexpr double moment_s = 0.02;
 constexpr const char* color_frame = "color_optical_frame";
 constexpr const char* depth_frame = "depth_optical_frame";
 

@@ -13,6 +13,9 @@
 
 namespace diminish {
 
+/// Two sensors' images so far apart are of one moment.
+inline constexpr double moment_s = 0.02;
+
 /// A camera's last images, two of a moment together. The camera's thread puts them in, another
 /// takes pairs out: the same two images are always the same pair.
 class ImagePairs {

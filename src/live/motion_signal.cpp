@@ -33,14 +33,15 @@ void thin(ImageView<Bgr> image, Image<std::uint8_t>& thinned) {
 }
 
 /// Resamples a signal at even steps by linear interpolation.
-std::vector<double> resample(const std::vector<Motion>& signal, double begin_s, std::size_t count) {
+std::vector<double> resample(const std::vector<MotionSample>& signal, double begin_s,
+                             std::size_t count) {
   std::vector<double> even(count);
   std::size_t next = 1;
   for (std::size_t i = 0; i < count; ++i) {
     const double time_s = begin_s + step_s * static_cast<double>(i);
     while (next + 1 < signal.size() && signal[next].stamp_s < time_s) ++next;
-    const Motion& a = signal[next - 1];
-    const Motion& b = signal[next];
+    const MotionSample& a = signal[next - 1];
+    const MotionSample& b = signal[next];
     const double share = std::clamp((time_s - a.stamp_s) / (b.stamp_s - a.stamp_s), 0.0, 1.0);
     even[i] = (1 - share) * a.amount + share * b.amount;
   }
@@ -66,9 +67,9 @@ double correlation(const double* a, const double* b, std::size_t count) {
 
 }  // namespace
 
-std::optional<Motion> MotionMeter::add(ImageView<Bgr> image, double stamp_s) {
+std::optional<MotionSample> MotionMeter::add(ImageView<Bgr> image, double stamp_s) {
   thin(image, thinned_);
-  std::optional<Motion> motion;
+  std::optional<MotionSample> motion;
   if (last_.width() == thinned_.width() && last_.height() == thinned_.height()) {
     double sum = 0;
     for (std::size_t i = 0; i < last_.size(); ++i) {
@@ -85,8 +86,8 @@ std::optional<Motion> MotionMeter::add(ImageView<Bgr> image, double stamp_s) {
   return motion;
 }
 
-std::optional<SyncOffset> estimate_sync_offset(const std::vector<Motion>& first,
-                                               const std::vector<Motion>& second,
+std::optional<SyncOffset> estimate_sync_offset(const std::vector<MotionSample>& first,
+                                               const std::vector<MotionSample>& second,
                                                double largest_s) {
   if (first.size() < 2 || second.size() < 2) return std::nullopt;
   // The first signal without its ends, so that the second can be shifted against it.

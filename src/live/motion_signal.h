@@ -8,7 +8,7 @@
 namespace diminish {
 
 /// How much moved in a camera's picture at a time.
-struct Motion {
+struct MotionSample {
   double stamp_s = 0;  ///< halfway between two images
   double amount = 0;   ///< mean absolute difference of brightness, levels
 };
@@ -17,7 +17,7 @@ struct Motion {
 class MotionMeter {
  public:
   /// Nothing for the first image.
-  std::optional<Motion> add(ImageView<Bgr> image, double stamp_s);
+  std::optional<MotionSample> add(ImageView<Bgr> image, double stamp_s);
 
  private:
   Image<std::uint8_t> last_, thinned_;
@@ -32,8 +32,8 @@ struct SyncOffset {
 /// The time shift at which two cameras' motion agrees best: the peak of the normalised
 /// cross-correlation, to a fraction of a frame. Both in the order of time. Nothing if too little
 /// moves or the motions differ. Cost: 0.1 ms per second of signal and 0.1 s of `largest_s`.
-std::optional<SyncOffset> estimate_sync_offset(const std::vector<Motion>& first,
-                                               const std::vector<Motion>& second,
+std::optional<SyncOffset> estimate_sync_offset(const std::vector<MotionSample>& first,
+                                               const std::vector<MotionSample>& second,
                                                double largest_s = 0.5);
 
 }  // namespace diminish

@@ -14,10 +14,10 @@ double waving(double time_s) {
 }
 
 /// The motion as a camera with another clock, frame rate and view sees it, with noise.
-std::vector<Motion> seen(double offset_s, double rate, double gain, unsigned seed) {
+std::vector<MotionSample> seen(double offset_s, double rate, double gain, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> noise(0, 0.1);
-  std::vector<Motion> signal;
+  std::vector<MotionSample> signal;
   for (double time_s = 0.3 / rate; time_s < 10; time_s += 1 / rate) {
     signal.push_back({time_s + offset_s, gain * waving(time_s) + noise(random)});
   }
@@ -40,11 +40,11 @@ TEST(SyncOffset, CamerasMayHaveDifferentRates) {
 }
 
 TEST(SyncOffset, StillnessAndOtherMotionSayNothing) {
-  const std::vector<Motion> wave = seen(0, 30, 1, 1);
+  const std::vector<MotionSample> wave = seen(0, 30, 1, 1);
   EXPECT_FALSE(estimate_sync_offset(wave, seen(0, 30, 0, 2)));
-  std::vector<Motion> other = seen(0, 30, 1, 3);
+  std::vector<MotionSample> other = seen(0, 30, 1, 3);
   std::mt19937 random(5);
-  for (Motion& motion : other) motion.amount = std::normal_distribution<double>(3, 2)(random);
+  for (MotionSample& motion : other) motion.amount = std::normal_distribution<double>(3, 2)(random);
   EXPECT_FALSE(estimate_sync_offset(wave, other));
   EXPECT_FALSE(estimate_sync_offset(wave, {}));
   EXPECT_FALSE(estimate_sync_offset(wave, seen(1.6, 30, 1, 4)))

@@ -29,7 +29,7 @@ namespace {
 constexpr std::size_t cameras_with_all_samples = 2;
 /// A node that said nothing for this long is not waited for, until it speaks.
 constexpr double patience_s = 0.5;
-constexpr double silent_after_s = 1;
+constexpr double unanswered_after_s = 1;
 constexpr std::size_t most_asked = 8;
 
 RemoteSettings parse_settings(const CameraUri& uri) {
@@ -164,7 +164,7 @@ struct RemoteCamera::Implementation {
     double offset_s = 0;
     {
       const std::lock_guard lock(mutex);
-      const bool was_silent = received.arrival_s > last_answer_s + silent_after_s;
+      const bool was_silent = received.arrival_s > last_answer_s + unanswered_after_s;
       if (was_silent && last_answer_s > 0) ++status.reconnects;
       last_answer_s = received.arrival_s;
       if (answer.head.topic == NodeTopic::glance) {
@@ -207,11 +207,11 @@ struct RemoteCamera::Implementation {
     CameraStatus now = status;
     now.images_per_second = arrivals_s.rate();
     const double age_s = monotonic_now_s() - last_answer_s;
-    now.state = last_answer_s == 0       ? CameraState::opening
-                : age_s < silent_after_s ? CameraState::running
-                                         : CameraState::silent;
+    now.state = last_answer_s == 0           ? CameraState::opening
+                : age_s < unanswered_after_s ? CameraState::running
+                                             : CameraState::silent;
     if (now.state == CameraState::silent) {
-      now.problem = fmt::format("no answer for {} s", silent_after_s);
+      now.problem = fmt::format("no answer for {} s", unanswered_after_s);
     }
     now.dropped = answers->lost();
     now.remote = remote;

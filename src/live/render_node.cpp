@@ -20,8 +20,6 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// Two sensors' images so far apart are of one moment.
-constexpr double moment_s = 0.02;
 /// How often questions that wait for images are looked at.
 constexpr milliseconds short_wait(1);
 constexpr milliseconds long_wait(5);

@@ -10,11 +10,11 @@
 namespace diminish {
 namespace {
 
-constexpr int cell_px = 16;
+constexpr int node_px = 16;
 /// Cells around which others say something.
-constexpr int reach = 2;
+constexpr int light_reach = 2;
 /// A binomial.
-constexpr std::array<float, 2 * reach + 1> weights{1 / 6.F, 4 / 6.F, 1, 4 / 6.F, 1 / 6.F};
+constexpr std::array<float, 2 * light_reach + 1> weights{1 / 6.F, 4 / 6.F, 1, 4 / 6.F, 1 / 6.F};
 
 /// A channel that is nearly black or white does not say how much light there was.
 bool is_exposed(const Eigen::Array3f& levels) {
@@ -28,9 +28,9 @@ std::uint8_t scaled(std::uint8_t level, float ratio) {
 }  // namespace
 
 void LightRatio::begin(const Rect& part) {
-  part_ = grow(part, reach * cell_px);
-  width_ = part_.width / cell_px + 2;
-  height_ = part_.height / cell_px + 2;
+  part_ = grow(part, light_reach * node_px);
+  width_ = part_.width / node_px + 2;
+  height_ = part_.height / node_px + 2;
   cells_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), Cell());
   any_ = false;
 }
@@ -38,8 +38,8 @@ void LightRatio::begin(const Rect& part) {
 void LightRatio::add(std::span<const Pair> pairs) {
   for (const Pair& pair : pairs) {
     if (!is_exposed(pair.now) || !is_exposed(pair.then)) continue;
-    const int x = (pair.x - part_.x + cell_px / 2) / cell_px;
-    const int y = (pair.y - part_.y + cell_px / 2) / cell_px;
+    const int x = (pair.x - part_.x + node_px / 2) / node_px;
+    const int y = (pair.y - part_.y + node_px / 2) / node_px;
     Cell& cell = cells_[static_cast<std::size_t>(y * width_ + x)];
     cell.now.head<3>() += pair.now;
     cell.then.head<3>() += pair.then;
@@ -54,9 +54,10 @@ void LightRatio::blur(int stride) {
   for (int i = 0; i < count; ++i) {
     const int place = stride == 1 ? i % width_ : i / width_;
     Cell sum;
-    for (int k = std::max(-reach, -place); k <= std::min(reach, length - 1 - place); ++k) {
+    for (int k = std::max(-light_reach, -place); k <= std::min(light_reach, length - 1 - place);
+         ++k) {
       const Cell& other = cells_[static_cast<std::size_t>(i + k * stride)];
-      const float weight = weights[static_cast<std::size_t>(k + reach)];
+      const float weight = weights[static_cast<std::size_t>(k + light_reach)];
       sum.now += weight * other.now;
       sum.then += weight * other.then;
     }
@@ -85,8 +86,8 @@ void LightRatio::apply(const Mask& objects, Reconstruction& reconstruction) cons
   const bool has_second = !reconstruction.second.share.empty();
   for_rows(drawn.height, [&](Rows rows) {
     for (int y = drawn.y + rows.first; y < drawn.y + rows.last; ++y) {
-      const int row = (y - part_.y) / cell_px;
-      const auto down = static_cast<float>((y - part_.y) % cell_px) / cell_px;
+      const int row = (y - part_.y) / node_px;
+      const auto down = static_cast<float>((y - part_.y) % node_px) / node_px;
       const Channels* const above = ratios_.data() + row * width_;
       const auto at = [&](int column) {
         return Channels(above[column] + down * (above[column + width_] - above[column]));
@@ -94,13 +95,13 @@ void LightRatio::apply(const Mask& objects, Reconstruction& reconstruction) cons
       const std::uint8_t* const masked = objects.row(y);
       const std::uint8_t* const source = reconstruction.source.row(y);
       for (int first = drawn.x; first < drawn.right();) {
-        const int column = (first - part_.x) / cell_px;
-        const int node = part_.x + column * cell_px;
-        const int last = std::min(drawn.right(), node + cell_px);
+        const int column = (first - part_.x) / node_px;
+        const int node = part_.x + column * node_px;
+        const int last = std::min(drawn.right(), node + node_px);
         const Channels left = at(column);
-        const Channels slope = (at(column + 1) - left) / cell_px;
+        const Channels slope = (at(column + 1) - left) / node_px;
         const bool is_same = ((left - 1).abs() < invisible).head<3>().all() &&
-                             ((left + cell_px * slope - 1).abs() < invisible).head<3>().all();
+                             ((left + node_px * slope - 1).abs() < invisible).head<3>().all();
         for (int x = is_same ? last : first; x < last; ++x) {
           if (masked[x] == 0 || source[x] == 0 || source[x] >= provenance::witnessed) continue;
           const Channels ratio = left + static_cast<float>(x - node) * slope;

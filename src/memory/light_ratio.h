@@ -42,7 +42,7 @@ class LightRatio {
   /// Blurs along rows (1) or columns (the width).
   void blur(int stride);
 
-  Rect part_;  ///< cell (x, y) is around its pixel (x, y) * cell_px
+  Rect part_;  ///< cell (x, y) is around its pixel (x, y) * node_px
   int width_ = 0, height_ = 0;
   bool any_ = false;
   std::vector<Cell> cells_, blurred_;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double always = -std::numeric_limits<double>::infinity();
 /// Grid places that another one may be taken for, by errors of the poses.
-constexpr int reach = 2;
+constexpr int novelty_reach = 2;
 constexpr int color_tolerance = 25;
 
 /// Whether a colour is not between two others.
@@ -33,11 +33,11 @@ void Novelty::filter(bool is_uncertain, Keyframe& keyframe) {
   const bool is_first = depth_m_.empty();
   const FloatTransform then_from_now(
       is_first ? RigidTransform() : color_from_world_ * keyframe.color_from_world.inverse());
-  const Rect inside = grow(keyframe.depth.bounds(), -reach);
+  const Rect inside = grow(keyframe.depth.bounds(), -novelty_reach);
   now_depth_m_.resize(width, height);
   grid_.sample(keyframe.picture, now_color_);
   now_since_s_.resize(width, height);
-  if (!is_first) around_.find(depth_m_, color_, reach, inside);
+  if (!is_first) around_.find(depth_m_, color_, novelty_reach, inside);
   const double unseen_before_s = is_uncertain ? keyframe.stamp_s : always;
   const auto since_s = [&](const Bgr& color, float z_m, std::int32_t place) {
     if (place < 0) return unseen_before_s;

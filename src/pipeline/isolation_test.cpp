@@ -34,7 +34,7 @@ class TestedPoses : public PoseSource {
  private:
   std::unique_ptr<PoseSource> source_;
 };
-const bool registered = Registry<PoseSource>::add(
+const bool isolation_test_registered = Registry<PoseSource>::add(
     "isolation_test",
     [](const Rig& rig, const Scene& scene) { return std::make_unique<TestedPoses>(rig, scene); });
 

@@ -13,7 +13,7 @@ namespace diminish {
 namespace {
 
 constexpr float nearest_m = 1e-3F;
-constexpr std::size_t fewest_points = 150;
+constexpr std::size_t fewest_seen = 150;
 /// Neighbouring samples' errors are not independent: they count for less than their number.
 constexpr float independent_share = 0.1F;
 
@@ -252,7 +252,7 @@ bool DirectAlignment::iterate(int iterations, Estimate& estimate) {
   float scale = 0;
   for (int iteration = 0;; ++iteration) {
     const std::size_t seen = linearise(estimate.correction);
-    if (seen < fewest_points) return false;
+    if (seen < fewest_seen) return false;
     if (iteration == 0) {
       for (Points& points : points_) points.weight = points.is_seen;
     } else {

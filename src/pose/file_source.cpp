@@ -53,7 +53,7 @@ class FileSource : public PoseSource {
   std::vector<std::vector<StampedPose>> depth_;
 };
 
-const bool registered = Registry<PoseSource>::add(
+const bool file_source_registered = Registry<PoseSource>::add(
     "file", [](const Rig& rig, const Scene&) { return std::make_unique<FileSource>(rig); });
 
 }  // namespace

@@ -58,9 +58,9 @@ class FixedSource : public PoseSource {
   bool world_needed_ = false;
 };
 
-const bool registered = Registry<PoseSource>::add("fixed", [](const Rig& rig, const Scene& scene) {
-  return std::make_unique<FixedSource>(rig, scene);
-});
+const bool fixed_source_registered = Registry<PoseSource>::add(
+    "fixed",
+    [](const Rig& rig, const Scene& scene) { return std::make_unique<FixedSource>(rig, scene); });
 
 }  // namespace
 }  // namespace diminish

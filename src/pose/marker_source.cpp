@@ -109,9 +109,9 @@ class MarkerSource : public PoseSource {
   std::map<int, double> other_marker_sizes_;
 };
 
-const bool registered = Registry<PoseSource>::add("marker", [](const Rig& rig, const Scene& scene) {
-  return std::make_unique<MarkerSource>(rig, scene);
-});
+const bool marker_source_registered = Registry<PoseSource>::add(
+    "marker",
+    [](const Rig& rig, const Scene& scene) { return std::make_unique<MarkerSource>(rig, scene); });
 
 }  // namespace
 }  // namespace diminish

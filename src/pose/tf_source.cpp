@@ -101,7 +101,7 @@ class TfSource : public PoseSource {
   std::shared_ptr<TransformListener> listener_;
 };
 
-const bool registered = Registry<PoseSource>::add(
+const bool tf_source_registered = Registry<PoseSource>::add(
     "tf", [](const Rig& rig, const Scene&) { return std::make_unique<TfSource>(rig); });
 
 }  // namespace

@@ -273,7 +273,7 @@ std::unique_ptr<Reconstructor> make(const Rig& rig) {
   return std::make_unique<VectorizedReconstructor>(rig);
 }
 
-const bool registered =
+const bool cpu_registered =
     Registry<Reconstructor>::add("cpu", {make, [] { return Reconstructor::Suited::always; }});
 
 }  // namespace

@@ -71,7 +71,7 @@ class ReferenceReconstructor : public Reconstructor {
   std::vector<BlendedLayer> blended_;
 };
 
-const bool registered = Registry<Reconstructor>::add(
+const bool reference_registered = Registry<Reconstructor>::add(
     "reference", [](const Rig& rig) { return std::make_unique<ReferenceReconstructor>(rig); });
 
 }  // namespace

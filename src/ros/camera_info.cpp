@@ -11,7 +11,7 @@
 namespace diminish::ros {
 namespace {
 
-void fail(const std::string& what) {
+void refuse(const std::string& what) {
   throw Error(Error::input, "camera_info: " + what);
 }
 
@@ -20,7 +20,7 @@ void set_distortion(const CameraInfoMessage& info, Intrinsics& camera) {
   if (has_none && info.distortion_model != "equidistant") return;
   const auto model = find_lens_model(info.distortion_model);
   if (!model) {
-    fail(
+    refuse(
         fmt::format("expected the distortion_model plumb_bob, rational_polynomial or "
                     "equidistant, got '{}'",
                     printable(info.distortion_model)));
@@ -31,8 +31,8 @@ void set_distortion(const CameraInfoMessage& info, Intrinsics& camera) {
     if (i < known) {
       camera.distortion[i] = info.d[i];
     } else if (info.d[i] != 0) {
-      fail(fmt::format("expected {} coefficients of {}, got {}", known,
-                       printable(info.distortion_model), info.d.size()));
+      refuse(fmt::format("expected {} coefficients of {}, got {}", known,
+                         printable(info.distortion_model), info.d.size()));
     }
   }
 }
@@ -65,7 +65,7 @@ Intrinsics intrinsics_of(const CameraInfoMessage& info, bool is_rectified) {
   camera.fy /= down;
   camera.cy /= down;
   if (!(camera.fx > 0) || !(camera.fy > 0)) {
-    fail(
+    refuse(
         fmt::format("expected focal lengths above 0, got {:g} and {:g}: the camera is not "
                     "calibrated",
                     camera.fx, camera.fy));

@@ -3,7 +3,7 @@
 namespace diminish::ros {
 namespace {
 
-constexpr std::size_t most_frames = 1000;
+constexpr std::size_t most_children = 1000;
 
 }  // namespace
 
@@ -14,7 +14,7 @@ std::string plain_frame(const std::string& frame) {
 void FrameTree::add(const TfMessage& message) {
   for (const TransformStamped& transform : message.transforms) {
     const std::string child = plain_frame(transform.child);
-    if (parents_.size() >= most_frames && !parents_.contains(child)) continue;
+    if (parents_.size() >= most_children && !parents_.contains(child)) continue;
     parents_[child] = {plain_frame(transform.header.frame_id), transform.parent_from_child};
   }
 }

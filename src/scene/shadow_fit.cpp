@@ -10,7 +10,7 @@
 namespace diminish {
 namespace {
 
-constexpr int passes = 6;
+constexpr int passes_of_fit = 6;
 constexpr int lenient_passes = 3;
 constexpr float largest_shadow = 0.9F;
 /// Each pass starts with the shares of the last one.
@@ -18,7 +18,7 @@ constexpr int sweeps = 8;
 /// Pulls shares that few points determine towards 0.
 constexpr float ridge = 2;
 /// Below this a direction explains hardly anything and gets no share.
-constexpr float least_share = 0.007F;
+constexpr float smallest_share = 0.007F;
 /// The largest share of the squared error in the shadow that a fit may leave.
 constexpr float most_unexplained = 0.6F;
 /// ... together with the share that is a colour. On the recordings it is at most .37 of shadows,
@@ -68,7 +68,7 @@ bool ShadowFit::fit() {
   sort_by_direction();
   // The field starts from the points that nothing can hide.
   for (Point& point : points_) point.weight = point.first_hidden == point.last_hidden ? 1.F : 0.1F;
-  for (int pass = 0; pass < passes; ++pass) {
+  for (int pass = 0; pass < passes_of_fit; ++pass) {
     fit_field(brightness);
     weigh(pass < lenient_passes ? largest_shadow : 0);
     fit_shares(brightness);
@@ -202,7 +202,7 @@ void ShadowFit::fit_shares(int channel) {
   }
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     for (Eigen::Index d = 0; d < count; ++d) {
-      const float next = std::max(0.F, shares[d] + gradient_[d] / diagonal_[d] - least_share);
+      const float next = std::max(0.F, shares[d] + gradient_[d] / diagonal_[d] - smallest_share);
       const float change = next - shares[d];
       if (change == 0) continue;
       change_by(d, change);

@@ -9,7 +9,7 @@
 namespace diminish {
 namespace {
 
-constexpr int usual_columns = 320;
+constexpr int columns_for_delay = 320;
 constexpr double bin_s = 1 / 30.;
 constexpr double longest_s = 0.3;
 /// Between moments that are compared.
@@ -25,8 +25,8 @@ constexpr double fewest = 100;
 constexpr double least_late_s = 0.05;
 /// The error at the true lag, of that now. With good cameras, now has the least; in a single frame
 /// an earlier moment may by chance have .82 of it.
-constexpr double least_share = 0.93;
-constexpr double least_share_at_once = 0.75;
+constexpr double still_as_good = 0.93;
+constexpr double still_as_good_at_once = 0.75;
 
 int level_of(const Bgr& color) {
   return color.b + 2 * color.g + color.r;
@@ -55,7 +55,7 @@ class Relation {
 }  // namespace
 
 StreamDelay::StreamDelay(const Intrinsics& color)
-    : projection_(Lens(color)), shrinkage_(std::max(1, color.width / usual_columns)) {}
+    : projection_(Lens(color)), shrinkage_(std::max(1, color.width / columns_for_delay)) {}
 
 void StreamDelay::find(const Inputs& inputs, std::vector<std::optional<double>>& late_s) {
   const Turn::Held turn = turn_.hold(shared_->turns);
@@ -74,8 +74,8 @@ void StreamDelay::find(const Inputs& inputs, std::vector<std::optional<double>>&
       errors.count[bin] += now.count[bin];
     }
     // A stream that has just become late has a past without fault.
-    late_s[k] = delay_of(now, least_share_at_once);
-    if (!late_s[k]) late_s[k] = delay_of(errors, least_share);
+    late_s[k] = delay_of(now, still_as_good_at_once);
+    if (!late_s[k]) late_s[k] = delay_of(errors, still_as_good);
     begin = last;
   }
 }

@@ -23,16 +23,16 @@ namespace {
 
 constexpr std::size_t most_pictures = 8;
 
-using Figure = std::function<std::optional<double>(const FrameScore&)>;
+using FrameFigure = std::function<std::optional<double>(const FrameScore&)>;
 
 std::string plots(const std::vector<FrameScore>& frames) {
   const auto quality = [](std::optional<Quality> FrameScore::*part,
-                          double Quality::*figure) -> Figure {
+                          double Quality::*figure) -> FrameFigure {
     return [=](const FrameScore& frame) {
       return frame.*part ? std::optional((*(frame.*part)).*figure) : std::nullopt;
     };
   };
-  std::vector<std::pair<std::string, Figure>> figures = {
+  std::vector<std::pair<std::string, FrameFigure>> figures = {
       {"PSNR inside, dB", quality(&FrameScore::inside, &Quality::psnr_db)},
       {"SSIM inside", quality(&FrameScore::inside, &Quality::ssim)},
       {"PSNR of seen pixels, dB", quality(&FrameScore::valid, &Quality::psnr_db)},

@@ -12,9 +12,7 @@
 namespace diminish {
 namespace {
 
-using Json = nlohmann::json;
-
-const std::string& text_at(const Json& json, const char* key) {
+const std::string& text_at(const nlohmann::json& json, const char* key) {
   const auto found = json.find(key);
   if (found == json.end() || !found->is_string()) {
     throw Error(std::string("webrtc: ") + key + ": expected a text");
@@ -78,7 +76,7 @@ void read_description(std::string_view sdp, WebRtcOffer& offer) {
 }  // namespace
 
 WebRtcOffer parse_webrtc_offer(const std::string& body) {
-  const Json json = Json::parse(body, nullptr, false);
+  const nlohmann::json json = nlohmann::json::parse(body, nullptr, false);
   if (!json.is_object()) throw Error(R"(webrtc: expected {"type": "offer", "sdp": "..."})");
   if (text_at(json, "type") != "offer") throw Error("webrtc: type: expected offer");
   WebRtcOffer offer;

@@ -23,7 +23,7 @@ class ClockCamera : public CameraSource {
   std::unique_ptr<CameraSource> camera_;
 };
 
-const bool registered = Registry<CameraSource>::add(
+const bool clock_camera_registered = Registry<CameraSource>::add(
     "clock", {.open =
                   [](const CameraUri& uri, const CameraRequest& request) {
                     return std::make_unique<ClockCamera>(open_camera(uri.target, request));

@@ -93,7 +93,7 @@ class FaultCamera : public CameraSource {
   std::size_t dropped_ = 0;
 };
 
-const bool registered = Registry<CameraSource>::add(
+const bool fault_camera_registered = Registry<CameraSource>::add(
     "faults",
     {.open =
          [](const CameraUri& uri, const CameraRequest& request) {

@@ -27,7 +27,7 @@ class CpuMaskDrawer : public MaskDrawer {
   std::vector<Tools> tools_;  ///< one per image
 };
 
-const bool registered =
+const bool cpu_mask_drawer_registered =
     Registry<MaskDrawer>::add("cpu", [] { return std::make_unique<CpuMaskDrawer>(); });
 
 }  // namespace

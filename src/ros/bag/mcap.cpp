@@ -9,11 +9,11 @@
 namespace diminish::ros {
 namespace {
 
-using enum mcap::Op;
-
 constexpr std::size_t record_head_bytes = 9;
 
 class Mcap : public BagReader {
+  using enum mcap::Op;
+
  public:
   explicit Mcap(std::unique_ptr<std::istream> stream) : stream_(std::move(stream)) {
     expect_begin(*stream_, mcap::magic, "an MCAP file of version 0");

@@ -26,7 +26,7 @@ constexpr double most_moved_by_marker_m = 0.024;
 constexpr double least_standard_errors = 3;
 
 /// What brings back less of the agreement than this share of the best is not the cause.
-constexpr double least_share = 0.5;
+constexpr double worth_naming = 0.5;
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;  ///< rotation vector, translation
 
@@ -130,7 +130,7 @@ void check_pose_bias(Diagnosis& setup) {
   bool may_be_lens = best.is_lens();
   for (std::size_t i = 1; i < explanations.size(); ++i) {
     const double gained = mean_agreement(explanations[i].agreements) - as_is;
-    if (is_better(best, explanations[i]) || gained < least_share * best_gained) continue;
+    if (is_better(best, explanations[i]) || gained < worth_naming * best_gained) continue;
     cause += " or " + name_of(explanations[i].kind);
     (explanations[i].is_lens() ? may_be_lens : may_be_pose) = true;
   }

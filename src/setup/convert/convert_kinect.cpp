@@ -20,7 +20,7 @@ extern "C" {
 namespace diminish {
 namespace {
 
-constexpr std::size_t most_problems = 5;
+constexpr std::size_t most_told = 5;
 
 struct CloseInput {
   void operator()(AVFormatContext* context) const { avformat_close_input(&context); }
@@ -123,7 +123,7 @@ class Copy {
       } catch (const Error& error) {
         if (error.category() != Error::input) throw;
         ++conversion_.left_out;
-        if (conversion_.problems.size() < most_problems) {
+        if (conversion_.problems.size() < most_told) {
           conversion_.problems.emplace_back(error.what());
         }
       }
