@@ -26,6 +26,7 @@ struct Options {
   bool complete_sides = true;
   bool draw_bars = true;
   bool lift_shadows = true;
+  bool refine_shadows = true;
   bool remove_shadows = false;
   double discontinuity_threshold_m = 0.05;
   double discontinuity_reach_m = 2;
@@ -122,6 +123,9 @@ void for_each_option(AnyOptions& options, Visit&& visit) {
   visit(
       OptionInfo{"lift_shadows", "", "Remove the shadows that the objects cast on what they hide"},
       options.lift_shadows);
+  visit(OptionInfo{"refine_shadows", "",
+                   "Make these shadows as deep, sharp and coloured as the picture shows them"},
+        options.refine_shadows);
   visit(OptionInfo{"remove_shadows", "",
                    "Also remove the shadows that the objects cast outside their masks"},
         options.remove_shadows);

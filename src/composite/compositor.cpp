@@ -103,8 +103,10 @@ void Compositor::correct_colors(const Inputs& inputs, ColorMapsBySource maps,
 void Compositor::lift_shadows(const Inputs& inputs, std::span<const CastShadows::Shadow> shadows,
                               const SceneSamples& samples, DiminishedFrame& result) {
   if (!result.surfaces.light.empty()) {
-    shadow_gain_.apply({result.picture, result.provenance, shadows, samples.surfaces},
-                       result.surfaces);
+    if (inputs.options.refine_shadows) {
+      shadow_gain_.apply({result.picture, result.provenance, shadows, samples.surfaces},
+                         result.surfaces);
+    }
     shadow_lifting_.lift(result.surfaces, result.picture);
   }
   if (result.report.witnessed_pixels + result.report.remembered_pixels > 0) {

@@ -156,7 +156,8 @@ bool ShadowGain::gather(const Inputs& inputs, const Surfaces& surfaces, std::uin
   const Rect& region = surfaces.region;
   Scale& fine = scales_.front();
   fine.resize(region.width / cell_px, region.height / cell_px);
-  constexpr float parts = cell_px / part_px * (cell_px / part_px);
+  constexpr int in_row = cell_px / part_px;
+  constexpr float parts = in_row * in_row;
   constexpr float full = 255 * part_px * part_px;
   const auto add = [&](int left, int top, int column, int row) {
     const std::uint8_t origin = inputs.provenance(left, top);
