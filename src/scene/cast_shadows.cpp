@@ -32,11 +32,11 @@ constexpr DepthNoise noise;
 
 /// In cells; cell centres are at whole numbers.
 Eigen::Vector2f to_cells(const Eigen::Vector2f& place) {
-  return place / cell_m + Eigen::Vector2f::Constant(grid_cells / 2);
+  return place / cell_m + Eigen::Vector2f::Constant(grid_cells / 2.F);
 }
 Eigen::Vector2f to_place(int x, int y) {
   return cell_m * (Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y)) -
-                   Eigen::Vector2f::Constant(grid_cells / 2));
+                   Eigen::Vector2f::Constant(grid_cells / 2.F));
 }
 /// The cell that contains a place, as a rectangle. It may lie outside the grid.
 Rect cell_of(const Eigen::Vector2f& place) {
@@ -196,7 +196,7 @@ void CastShadows::Search::find_hidden(const ByDirection& slopes_u, const ByDirec
     std::uint64_t* const column = struck_in_column_.row(0);
     unite(struck_.row(y + rim - 1), struck_.row(y + rim), struck_.row(y + rim + 1), struck_.width(),
           column);
-    const std::uint64_t* const first = column + words * rim;
+    const std::uint64_t* const first = column + std::ptrdiff_t{words} * rim;
     unite(first - words, first, first + words, hidden_.width(), hidden_.row(y));
   }
 }
