@@ -46,7 +46,8 @@ class ShadowGain {
     std::span<const CastShadows::Shadow> shadows;
     const std::vector<SceneSample>& samples;
   };
-  /// Changes `surfaces.light` in its region. Cost: 0.4 ms for a region of 500 x 500 pixels.
+  /// Changes `surfaces.light` in its region. Cost: 12 million instructions for the calendar (500 by
+  /// 400 pixels, half of them shaded).
   void apply(const Inputs& inputs, Surfaces& surfaces);
 
  private:
