@@ -78,15 +78,12 @@ void Compositor::hide_behind_sides(const Inputs& inputs, DiminishedFrame& result
   for (int y = part.y; y < part.bottom(); ++y) {
     const std::uint8_t* const label = result.surfaces.label.row(y);
     std::uint8_t* const origin = result.provenance.row(y);
-    for (int last = part.x;;) {
-      const int first = find_equal(label, last, part.right(), surface_label::standing);
-      if (first >= part.right()) break;
-      last = find_other(label, first, part.right(), surface_label::standing);
+    for_each_run(label, part.x, part.right(), surface_label::standing, [&](int first, int last) {
       hidden += static_cast<std::size_t>(last - first) -
                 static_cast<std::size_t>(
                     std::count(origin + first, origin + last, provenance::inpainted));
       std::fill(origin + first, origin + last, provenance::inpainted);
-    }
+    });
   }
   result.report.missing_pixels += hidden;
   result.report.valid_pixels -= hidden;

@@ -3,8 +3,8 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
+#include "core/bilinear.h"
 #include "core/robust.h"
 #include "core/runs.h"
 #include "diminish/diminished_frame.h"
@@ -39,15 +39,8 @@ constexpr float least_texture = 0.02F;
 constexpr std::uint8_t one = 64;
 constexpr auto most_dark = static_cast<std::uint16_t>(255 * (1 - least_light));
 
-/// Whether four bytes have one value.
-bool is_even(const std::uint8_t* bytes, std::uint8_t value) {
-  std::uint32_t word = 0;
-  std::memcpy(&word, bytes, sizeof word);
-  return word == 0x01010101U * value;
-}
-
-/// The sum of a square's colours.
-Eigen::Array4i sum_of(const Image<Bgr>& image, int left, int top, int size) {
+/// The mean colour of a part of a cell, 0 to 1.
+Levels mean_of_part(const Image<Bgr>& image, int left, int top, int size) {
   int b = 0;
   int g = 0;
   int r = 0;
@@ -59,7 +52,7 @@ Eigen::Array4i sum_of(const Image<Bgr>& image, int left, int top, int size) {
       r += row[x].r;
     }
   }
-  return {b, g, r, 0};
+  return Eigen::Array4i(b, g, r, 0).cast<float>() / static_cast<float>(255 * size * size);
 }
 
 /// Means of two by two cells. Beyond the border is 0.
@@ -81,17 +74,10 @@ void halve(const Image<Value>& fine, Image<Value>& coarse) {
   }
 }
 
-/// The cells beside a place, and how near it is to the second.
-struct Between {
-  int first, second;
-  float share;
-};
-/// place: counted in pixels `step` times as fine as the cells.
-Between between(int place, int step, int cells) {
-  const float at = std::clamp((static_cast<float>(place) + 0.5F) / static_cast<float>(step) - 0.5F,
-                              0.F, static_cast<float>(cells - 1));
-  const int first = static_cast<int>(at);
-  return {first, std::min(first + 1, cells - 1), at - static_cast<float>(first)};
+/// A place, counted in pixels `step` times as fine as cells, between cells' centres.
+float in_cells(int place, int step, int cells) {
+  return std::clamp((static_cast<float>(place) + 0.5F) / static_cast<float>(step) - 0.5F, 0.F,
+                    static_cast<float>(cells - 1));
 }
 
 /// From gains at the centres of cells to those of a row of channels; 1 where the label is another.
@@ -158,17 +144,16 @@ bool ShadowGain::gather(const Inputs& inputs, const Surfaces& surfaces, std::uin
   fine.resize(region.width / cell_px, region.height / cell_px);
   constexpr int in_row = cell_px / part_px;
   constexpr float parts = in_row * in_row;
-  constexpr float full = 255 * part_px * part_px;
   const auto add = [&](int left, int top, int column, int row) {
     const std::uint8_t origin = inputs.provenance(left, top);
     if (origin >= provenance::witnessed) return false;
     for (int y = top; y < top + part_px; ++y) {
-      if (!is_even(surfaces.label.row(y) + left, label)) return false;
-      if (!is_even(inputs.provenance.row(y) + left, origin)) return false;
+      if (!all_equal<part_px>(surfaces.label.row(y) + left, label)) return false;
+      if (!all_equal<part_px>(inputs.provenance.row(y) + left, origin)) return false;
     }
     const float weight = (origin == provenance::camera ? 1 : seen_weight) / parts;
-    const Levels color = sum_of(inputs.picture, left, top, part_px).cast<float>() / full;
-    const Levels dark = 1 - sum_of(surfaces.light, left, top, part_px).cast<float>() / full;
+    const Levels color = mean_of_part(inputs.picture, left, top, part_px);
+    const Levels dark = 1 - mean_of_part(surfaces.light, left, top, part_px);
     fine.weight(column, row) += weight;
     fine.color(column, row) += weight * color;
     fine.dark(column, row) += weight * dark;
@@ -209,13 +194,12 @@ void ShadowGain::gather_samples(const Inputs& inputs, const CastShadows::Shadow&
     if (intersect(part, whole) != part || shadow.light_at(sample.point_m) < lit) continue;
     bool is_camera = true;
     for (int y = part.y; y < part.bottom(); ++y) {
-      is_camera &= is_even(inputs.provenance.row(y) + part.x, provenance::camera);
+      is_camera &= all_equal<part_px>(inputs.provenance.row(y) + part.x, provenance::camera);
     }
     if (!is_camera) continue;
-    constexpr float full = 255 * part_px * part_px;
     const Eigen::Vector2f place = (sample.pixel - Eigen::Vector2f(region.x, region.y)) / cell_px;
     cells_.push_back({monomials(place.x(), place.y()),
-                      sum_of(inputs.picture, part.x, part.y, part_px).cast<float>() / full, 1, 1});
+                      mean_of_part(inputs.picture, part.x, part.y, part_px), 1, 1});
   }
   sample_count_ = cells_.size();
 }
@@ -325,14 +309,12 @@ void ShadowGain::find_gains(std::size_t finest) {
 /// Between the four nearest cells of the next coarser scale.
 ShadowGain::Levels ShadowGain::coarser_gain(std::size_t scale, int column, int row) const {
   const Image<Levels>& gain = scales_[scale + 1].gain;
-  const Between columns = between(column, 2, gain.width());
-  const Between rows = between(row, 2, gain.height());
-  const auto in_row = [&](int y) -> Levels {
-    const Levels& left = gain(columns.first, y);
-    return left + columns.share * (gain(columns.second, y) - left);
-  };
-  const Levels above = in_row(rows.first);
-  return above + rows.share * (in_row(rows.second) - above);
+  const int last_column = gain.width() - 1;
+  const int last_row = gain.height() - 1;
+  return bilinear(in_cells(column, 2, gain.width()), in_cells(row, 2, gain.height()),
+                  [&](int x, int y) -> Levels {
+                    return gain(std::min(x, last_column), std::min(y, last_row));
+                  });
 }
 
 /// Two means along rows, then along columns. Beyond the border is 0.
@@ -374,11 +356,13 @@ void ShadowGain::scale_light(std::uint8_t label, Surfaces& surfaces) {
     for (int y = region.y + rows.first; y < region.y + rows.last; ++y) {
       auto* const levels = reinterpret_cast<std::uint8_t*>(surfaces.light.row(y) + region.x);
       if (find_other(levels, 0, count, 255) == count) continue;
-      const Between beside = between(y - region.y, cell_px, gain.height());
-      const Levels* const above = gain.row(beside.first);
-      const Levels* const below = gain.row(beside.second);
+      const float at = in_cells(y - region.y, cell_px, gain.height());
+      const int row = static_cast<int>(at);
+      const float share = at - static_cast<float>(row);
+      const Levels* const above = gain.row(row);
+      const Levels* const below = gain.row(std::min(row + 1, gain.height() - 1));
       for (int i = 0; i < cells; ++i) {
-        const Levels here = above[i] + beside.share * (below[i] - above[i]);
+        const Levels here = above[i] + share * (below[i] - above[i]);
         by_cell[static_cast<std::size_t>(i)] = (here * one).cast<int>();
       }
       spread(by_cell, surfaces.label.row(y) + region.x, label, region.width, by_channel.data());

@@ -50,7 +50,12 @@ inline int find_equal(const std::uint8_t* bytes, int x, int end, std::uint8_t va
 /// Whether `count` bytes are all `value`; for counts known to the compiler.
 template <int count>
 bool all_equal(const std::uint8_t* bytes, std::uint8_t value) {
-  static_assert(count % runs_detail::word_bytes == 0);
+  if constexpr (count == sizeof(std::uint32_t)) {
+    std::uint32_t word;
+    std::memcpy(&word, bytes, sizeof(word));
+    return word == static_cast<std::uint32_t>(value * runs_detail::every_byte);
+  }
+  static_assert(count == sizeof(std::uint32_t) || count % runs_detail::word_bytes == 0);
   std::uint64_t any = 0;
   for (int i = 0; i < count; i += runs_detail::word_bytes) {
     any |= runs_detail::differences(bytes + i, value);
@@ -67,17 +72,30 @@ void for_each_set(const std::uint8_t* bytes, int count, const Visit& visit) {
 /// The pixels of a mask that are not 0, or those that are 0.
 enum class Pixels { set, clear };
 
-/// Calls visit(first, last) for each maximal run [first, last) of such bytes in [begin, end), in
-/// order.
+/// Calls visit(first, last) for each maximal run [first, last) of bytes in [begin, end) that are
+/// `value`, in order.
+template <class Visit>
+void for_each_run(const std::uint8_t* bytes, int begin, int end, std::uint8_t value,
+                  const Visit& visit) {
+  for (int last = begin; last < end;) {
+    const int first = find_equal(bytes, last, end, value);
+    if (first == end) return;
+    last = find_other(bytes, first, end, value);
+    visit(first, last);
+  }
+}
+/// The same of a mask's pixels.
 template <class Visit>
 void for_each_run(const std::uint8_t* bytes, int begin, int end, Pixels pixels,
                   const Visit& visit) {
+  if (pixels == Pixels::clear) {
+    for_each_run(bytes, begin, end, std::uint8_t{0}, visit);
+    return;
+  }
   for (int last = begin; last < end;) {
-    const int first =
-        pixels == Pixels::set ? find_other(bytes, last, end, 0) : find_equal(bytes, last, end, 0);
+    const int first = find_other(bytes, last, end, 0);
     if (first == end) return;
-    last =
-        pixels == Pixels::set ? find_equal(bytes, first, end, 0) : find_other(bytes, first, end, 0);
+    last = find_equal(bytes, first, end, 0);
     visit(first, last);
   }
 }

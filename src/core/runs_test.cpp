@@ -51,6 +51,12 @@ TEST(Runs, OfBytesAreThoseFoundByteByByte) {
         }
         for (const auto value : {std::uint8_t{0}, std::uint8_t{1}, std::uint8_t{255}}) {
           const auto from = bytes.begin() + begin;
+          std::vector<FirstLast> runs;
+          for_each_run(bytes.data(), begin, count, value,
+                       [&](int first, int last) { runs.emplace_back(first, last); });
+          EXPECT_EQ(runs, plain_runs(begin, count, [&](int x) {
+                      return bytes[static_cast<std::size_t>(x)] == value;
+                    }));
           EXPECT_EQ(find_equal(bytes.data(), begin, count, value),
                     std::find(from, bytes.end(), value) - bytes.begin());
           EXPECT_EQ(find_other(bytes.data(), begin, count, value),
@@ -103,6 +109,7 @@ TEST(Runs, AllEqualLooksAtEachByte) {
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     bytes[i] = 71;
     EXPECT_EQ(all_equal<48>(bytes.data() + 1, 7), i == 0 || i == 49) << i;
+    EXPECT_EQ(all_equal<4>(bytes.data() + 1, 7), i == 0 || i > 4) << i;
     bytes[i] = 7;
   }
 }

@@ -276,10 +276,7 @@ class SurfaceInpainting : public Inpainter {
     for (int y = box.y; y < box.bottom(); ++y) {
       constexpr state::Code open_side = state::open | state::standing;
       SmoothFilling::Kind* const own = kinds.row(y - box.y + 1);
-      for (int last = box.x;;) {
-        const int first = find_equal(state_row(y), last, box.right(), open_side);
-        if (first >= box.right()) break;
-        last = find_other(state_row(y), first, box.right(), open_side);
+      for_each_run(state_row(y), box.x, box.right(), open_side, [&](int first, int last) {
         std::fill(own + first - box.x + 1, own + last - box.x + 1, SmoothFilling::open);
         // A pixel of the thing, and the side's pixel beside it.
         const auto border_on = [&](int column, int row, int x) {
@@ -296,7 +293,7 @@ class SurfaceInpainting : public Inpainter {
             border_on(x, row, x);
           }
         }
-      }
+      });
     }
   }
 

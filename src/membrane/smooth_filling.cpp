@@ -36,11 +36,9 @@ void SmoothFilling::Grid::find_open() {
   for (int y = 0; y < box.height; ++y) {
     row_begin.push_back(runs.size());
     const Kind* const row_kinds = kinds.row(y + 1) + 1;
-    int last = 0;
-    for (int first; (first = find_equal(row_kinds, last, box.width, open)) < box.width;) {
-      last = find_other(row_kinds, first, box.width, open);
+    diminish::for_each_run(row_kinds, 0, box.width, open, [&](int first, int last) {
       runs.push_back({box.x + first, box.x + last});
-    }
+    });
   }
   row_begin.push_back(runs.size());
 }
@@ -103,7 +101,7 @@ void SmoothFilling::Grid::coarsen(const Grid& fine) {
     for (int x = 0; x < fine_width; ++x) both[x] = std::max(upper[x], lower[x]);
     const Kind* const pairs = row.data();
     const int width = kinds.width();
-    for (int x = 0; x < width; ++x) here[x] = std::max(pairs[2 * x], pairs[2 * x + 1]);
+    for (std::ptrdiff_t x = 0; x < width; ++x) here[x] = std::max(pairs[2 * x], pairs[2 * x + 1]);
   }
   find_open();
   colors.fill(Color::Zero());

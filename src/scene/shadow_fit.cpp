@@ -75,7 +75,6 @@ bool ShadowFit::fit() {
     find_light();
   }
   if (!explains()) return false;
-  for (Point& point : points_) point.relative.setZero();
   for (int c = 0; c < brightness; ++c) {
     fit_field(c);
     fit_shares(c);

@@ -249,12 +249,8 @@ void StandingThings::drop_loose(const View& view, Surfaces& surfaces) {
   const int end = view.part.right();
   for (int y = view.part.y; y < view.part.bottom(); ++y) {
     const std::uint8_t* const label = surfaces.label.row(y);
-    for (int last = view.part.x; last < end;) {
-      const int first = find_equal(label, last, end, surface_label::standing);
-      if (first == end) break;
-      last = find_other(label, first, end, surface_label::standing);
-      regions_.add(y, first, last);
-    }
+    for_each_run(label, view.part.x, end, surface_label::standing,
+                 [&](int first, int last) { regions_.add(y, first, last); });
   }
   regions_.connect(Connectivity::four);
   const auto touches = [&](int x, int y, float z_m) {
