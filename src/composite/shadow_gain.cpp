@@ -34,12 +34,16 @@ constexpr int passes = 3;
 constexpr int robust_passes = 3;
 /// How many times the texture's variance the prior weighs.
 constexpr float prior_by_texture = 2;
+/// A shadow changes its colour less than its depth: how many times the prior weighs for a channel's
+/// gain beside the brightness's.
+constexpr float prior_of_channels = 4;
 constexpr float least_texture = 0.02F;
+constexpr float least_gain = 0.1F;
 /// A gain in fixed point: the largest one, times the largest level, fits 16 bits.
 constexpr std::uint8_t one = 64;
 constexpr auto most_dark = static_cast<std::uint16_t>(255 * (1 - least_light));
 
-/// The mean colour of a part of a cell, 0 to 1.
+/// The mean colour of a part of a cell and its brightness, 0 to 1.
 Levels mean_of_part(const Image<Bgr>& image, int left, int top, int size) {
   int b = 0;
   int g = 0;
@@ -52,7 +56,8 @@ Levels mean_of_part(const Image<Bgr>& image, int left, int top, int size) {
       r += row[x].r;
     }
   }
-  return Eigen::Array4i(b, g, r, 0).cast<float>() / static_cast<float>(255 * size * size);
+  return Eigen::Array4i(3 * b, 3 * g, 3 * r, b + g + r).cast<float>() /
+         static_cast<float>(3 * 255 * size * size);
 }
 
 /// Means of two by two cells. Beyond the border is 0.
@@ -157,7 +162,7 @@ bool ShadowGain::gather(const Inputs& inputs, const Surfaces& surfaces, std::uin
     fine.weight(column, row) += weight;
     fine.color(column, row) += weight * color;
     fine.dark(column, row) += weight * dark;
-    return dark.head<3>().mean() > 1 - lit;
+    return dark[brightness] > 1 - lit;
   };
   const int shaded = sum_over_rows(fine.weight.height(), [&](Rows rows) {
     int count = 0;
@@ -218,8 +223,8 @@ ShadowGain::Terms ShadowGain::monomials(std::size_t scale, int column, int row) 
                    cells * (static_cast<float>(row) + 0.5F));
 }
 
-/// Robust least squares over the cells of one scale: at first those without a shadow, then all,
-/// without the shadow that is known by then. Also measures the texture.
+/// Robust least squares over the cells of one scale: at first those without a shadow, which also
+/// give the hue, then all, without the shadow that is known by then. Also measures the texture.
 bool ShadowGain::fit_field(bool only_lit) {
   const Scale& scale = scales_[field_scale];
   cells_.resize(sample_count_);
@@ -228,20 +233,25 @@ bool ShadowGain::fit_field(bool only_lit) {
       const float weight = scale.weight(column, row);
       if (weight < least_weight) continue;
       const Levels dark = scale.dark(column, row) / weight;
-      if (only_lit && dark.head<3>().mean() > 1 - lit) continue;
+      if (only_lit && dark[brightness] > 1 - lit) continue;
       const Levels light = (1 - scale.gain(column, row) * dark).max(least_light);
       cells_.push_back({monomials(field_scale, column, row),
                         scale.color(column, row) / weight / light, weight, 1});
     }
   }
   if (cells_.size() < fewest_cells) return false;
+  if (only_lit) {
+    Levels sum = Levels::Zero();
+    for (const Cell& cell : cells_) sum += cell.weight * cell.color;
+    hue_ = sum / std::max(sum[brightness], least_field);
+  }
   for (int pass = 0; pass < robust_passes; ++pass) {
     Eigen::Matrix<float, terms, terms> squares = 1e-4F * Terms::Ones().asDiagonal().toDenseMatrix();
-    Eigen::Matrix<float, terms, 4> products = Eigen::Matrix<float, terms, 4>::Zero();
+    Terms products = Terms::Zero();
     for (const Cell& cell : cells_) {
       const Terms weighted = cell.weight * cell.trust * cell.monomials;
       squares += weighted * cell.monomials.transpose();
-      products += weighted * cell.color.matrix().transpose();
+      products += cell.color[brightness] * weighted;
     }
     field_ = squares.ldlt().solve(products);
     residuals_.clear();
@@ -252,14 +262,27 @@ bool ShadowGain::fit_field(bool only_lit) {
   return true;
 }
 
-ShadowGain::Levels ShadowGain::field_at(const Terms& monomials) const {
-  return (field_.transpose() * monomials).array().max(least_field);
+/// The brightness of the plane without a shadow.
+float ShadowGain::field_at(const Terms& monomials) const {
+  return std::max(field_.dot(monomials), least_field);
 }
 
 /// Of the brightness, relative to the field.
 float ShadowGain::residual(const Cell& cell) const {
-  const float field = field_at(cell.monomials).head<3>().mean();
-  return std::abs(cell.color.head<3>().mean() / field - 1);
+  return std::abs(cell.color[brightness] / field_at(cell.monomials) - 1);
+}
+
+/// The brightness's gain, and those of the channels: the coarser scale says how they differ.
+ShadowGain::Levels ShadowGain::gain_of(const Levels& agreement, const Levels& square,
+                                       const Levels& coarse, float prior) {
+  const float common = std::clamp(
+      (agreement[brightness] + prior * coarse[brightness]) / (square[brightness] + prior), 0.F,
+      most);
+  const Levels expected = coarse * (common / std::max(coarse[brightness], least_gain));
+  const float weight = prior_of_channels * prior;
+  Levels gain = ((agreement + weight * expected) / (square + weight)).max(0.F).min(most);
+  gain[brightness] = common;
+  return gain;
 }
 
 /// From the coarsest scale to `finest`.
@@ -275,7 +298,7 @@ void ShadowGain::find_gains(std::size_t finest) {
         square.setZero();
         continue;
       }
-      const Levels field = field_at(monomials(finest, column, row));
+      const Levels field = hue_ * field_at(monomials(finest, column, row));
       const Levels missing = 1 - (from.color(column, row) / weight / field).min(most_bright);
       const Levels dark = from.dark(column, row);
       agreement = dark * missing;
@@ -298,9 +321,7 @@ void ShadowGain::find_gains(std::size_t finest) {
         const Levels coarse =
             i + 1 < scales ? coarser_gain(i, column, row) : Levels(Levels::Ones());
         scale.gain(column, row) =
-            ((scale.agreement(column, row) + prior * coarse) / (scale.square(column, row) + prior))
-                .max(0.F)
-                .min(most);
+            gain_of(scale.agreement(column, row), scale.square(column, row), coarse, prior);
       }
     }
   }

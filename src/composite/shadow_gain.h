@@ -19,15 +19,16 @@ namespace diminish {
 ///
 /// The light was found from few samples and few directions: its shadows are blurred, and too faint
 /// where they should be deep. Each plane's colour in the picture is taken for a smooth field times
-/// the light, channel by channel,
+/// the light,
 ///
 ///   Y(p) = F(p) (1 - g(p) (1 - light(p))),
 ///
-/// F a quadratic of the pixel and g a gain that changes slowly where little is seen of a shadow,
-/// and within a few pixels where it is deep. g is found from coarse to fine: at each scale it is
-/// the weighted least-squares gain of the neighbourhood, with the next coarser scale's as its
-/// prior. The prior weighs as much as the plane's texture, measured in the frame, can mislead. A
-/// shadow that the picture does not show gets a gain of 0.
+/// F a quadratic of the pixel times the plane's hue, and g a gain that changes slowly where little
+/// is seen of a shadow, and within a few pixels where it is deep. g is found from coarse to fine:
+/// at each scale it is the weighted least-squares gain of the neighbourhood, with the next coarser
+/// scale's as its prior. The prior weighs as much as the plane's texture, measured in the frame,
+/// can mislead. The gains of the channels are held to that of the brightness. A shadow that the
+/// picture does not show gets a gain of 0.
 class ShadowGain {
  public:
   /// Pixels of a cell, in which colours are averaged.
@@ -59,8 +60,9 @@ class ShadowGain {
   static constexpr int part_px = 4;
   static constexpr int terms = 6;
   using Terms = Eigen::Matrix<float, terms, 1>;
-  /// By channel: blue, green, red, and one of no meaning.
+  /// By channel: blue, green, red and the brightness, which is their mean.
   using Levels = Eigen::Array4f;
+  static constexpr int brightness = 3;
 
   /// Means over cells, from 0 to 1. All but the gain are products with the weight.
   struct Scale {
@@ -84,9 +86,11 @@ class ShadowGain {
   Terms monomials(float x, float y) const;
   Terms monomials(std::size_t scale, int column, int row) const;
   bool fit_field(bool only_lit);
-  Levels field_at(const Terms& monomials) const;
+  float field_at(const Terms& monomials) const;
   float residual(const Cell& cell) const;
   void find_gains(std::size_t finest);
+  static Levels gain_of(const Levels& agreement, const Levels& square, const Levels& coarse,
+                        float prior);
   void blur(int reach, Image<Levels>& image);
   Levels coarser_gain(std::size_t scale, int column, int row) const;
   void scale_light(std::uint8_t label, Surfaces& surfaces);
@@ -94,7 +98,8 @@ class ShadowGain {
   std::array<Scale, scales> scales_;
   std::vector<Cell> cells_;
   std::size_t sample_count_ = 0;  ///< the first cells are samples without a shadow
-  Eigen::Matrix<float, terms, 4> field_;
+  Terms field_;
+  Levels hue_;         ///< of the plane, relative to its brightness
   float texture_ = 0;  ///< relative to the field, one standard deviation
   std::vector<float> residuals_;
   Image<Levels> padded_;
