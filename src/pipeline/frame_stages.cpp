@@ -100,7 +100,7 @@ bool FrameStages::looks_at_scene() const {
 
 Background::Wanted FrameStages::wanted_background() const {
   const bool shadows = options.lift_shadows || options.remove_shadows;
-  return {shadows || methods.inpainting.uses_surfaces, shadows};
+  return {shadows || methods.inpainting.uses_surfaces, shadows, options.refine_shadows};
 }
 
 bool FrameStages::completes_sides() const {

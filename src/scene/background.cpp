@@ -4,6 +4,7 @@ namespace diminish {
 
 void Background::find(const Rect& objects, const SceneSamples& samples, const Wanted& wanted) {
   has_planes_ = wanted.planes;
+  has_things_ = wanted.things;
   shadows_.clear();
   if (!wanted.planes) return;
   planes_.find(objects, samples.surfaces);
@@ -21,6 +22,9 @@ void Background::label(const Reconstruction& reconstruction, Surfaces& surfaces)
   }
   if (shadows_.any()) {
     shadows_.shade(reconstruction, surfaces);
+    if (has_things_) {
+      thing_light_.shade(shadows_.shadows(), shadows_.rays(), reconstruction.depth_m, surfaces);
+    }
   } else {
     surfaces.light.resize(0, 0);
   }

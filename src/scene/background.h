@@ -10,6 +10,7 @@
 #include "diminish/surfaces.h"
 #include "scene/background_planes.h"
 #include "scene/cast_shadows.h"
+#include "scene/thing_light.h"
 
 namespace diminish {
 
@@ -20,6 +21,7 @@ class Background {
 
   struct Wanted {
     bool planes, shadows;  ///< shadows only with planes
+    bool things;           ///< also shadows on what stands in front of the planes
   };
   /// Finds the planes and shadows. objects: their box in the colour camera's picture.
   void find(const Rect& objects, const SceneSamples& samples, const Wanted& wanted);
@@ -43,6 +45,8 @@ class Background {
  private:
   BackgroundPlanes planes_;
   CastShadows shadows_;
+  ThingLight thing_light_;
+  bool has_things_ = false;
   bool has_planes_ = false;
 };
 

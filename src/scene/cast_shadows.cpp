@@ -25,6 +25,8 @@ constexpr std::size_t fewest_lit = 150;
 constexpr std::size_t most_lit = 800;
 constexpr std::size_t fewest_blockers = 15;
 constexpr std::size_t most_blockers = 400;
+/// Beams with a smaller share change nothing that is seen.
+constexpr float smallest_beam = CastShadows::invisible;
 /// With less light than this a shadow is visible.
 constexpr float shadow = 0.97F;
 
@@ -66,6 +68,15 @@ float CastShadows::Shadow::light_at(const Eigen::Vector3f& point_m) const {
   return light.bounds().contains(cell.x, cell.y) ? light(cell.x, cell.y).mean() : 1.F;
 }
 
+/// The cell on the point's line away from the light: what hides the cell hides the point, unless it
+/// is lower.
+bool CastShadows::Shadow::is_hidden(const Eigen::Vector3f& point_m, const Beam& beam) const {
+  const float height_m = ground.plane.height_m(point_m);
+  const Rect cell = cell_of(ground.coordinates(point_m - height_m * beam.toward));
+  return light.bounds().contains(cell.x, cell.y) &&
+         step_m * static_cast<float>(beam.height(cell.x, cell.y)) > height_m;
+}
+
 CastShadows::CastShadows(const Intrinsics& color) : lens_(color), rays_(color) {
   constexpr float degree = std::numbers::pi_v<float> / 180;
   Eigen::Index d = 0;
@@ -92,9 +103,9 @@ void CastShadows::find(const std::vector<BackgroundPlane>& planes,
     const Ground ground(planes[k], middle);
     search.choose_blockers(ground, planes, object_points_m);
     search.choose_lit(ground, samples);
+    search.found.ground = ground;
     search.is_found = search.find(slopes_u_, slopes_v_);
     if (!search.is_found) return;
-    search.found.ground = ground;
     search.found.label = static_cast<std::uint8_t>(surface_label::first_plane + k);
   });
   for (Search& search : searches_) {
@@ -149,6 +160,7 @@ bool CastShadows::Search::find(const ByDirection& slopes_u, const ByDirection& s
   if (blockers_.size() < fewest_blockers || lit_.size() < fewest_lit) return false;
   find_hidden(slopes_u, slopes_v);
   if (!fit()) return false;
+  keep_beams(slopes_u, slopes_v);
   draw_light();
   return true;
 }
@@ -214,6 +226,35 @@ bool CastShadows::Search::fit() {
     fit_.add(lit.place, lit.levels, hidden_from_);
   }
   return fit_.fit();
+}
+
+void CastShadows::Search::keep_beams(const ByDirection& slopes_u, const ByDirection& slopes_v) {
+  const Ground& ground = found.ground;
+  float top_m = 0;
+  for (const Blocker& blocker : blockers_) top_m = std::max(top_m, blocker.height_m);
+  found.step_m = top_m / 255;
+  found.beam_count_ = 0;
+  for (std::size_t d = 0; d < directions; ++d) {
+    const Eigen::Array3f share = fit_.share(d);
+    if (share.mean() < smallest_beam) continue;
+    if (found.beams_.size() == found.beam_count_) found.beams_.emplace_back();
+    Beam& beam = found.beams_[found.beam_count_++];
+    const auto i = static_cast<Eigen::Index>(d);
+    const Eigen::Vector2f slope(slopes_u[i], slopes_v[i]);
+    beam.toward = ground.plane.normal + slope.x() * ground.along_u + slope.y() * ground.along_v;
+    beam.share = share;
+    beam.height.resize(grid_cells, grid_cells, 0);
+    for (const Blocker& blocker : blockers_) {
+      const auto height = static_cast<std::uint8_t>(blocker.height_m / found.step_m);
+      const Rect struck = intersect(grow(cell_of(blocker.place - blocker.height_m * slope), 1),
+                                    beam.height.bounds());
+      for (int y = struck.y; y < struck.bottom(); ++y) {
+        for (int x = struck.x; x < struck.right(); ++x) {
+          beam.height(x, y) = std::max(beam.height(x, y), height);
+        }
+      }
+    }
+  }
 }
 
 /// Adds up the hidden light, cell by cell.

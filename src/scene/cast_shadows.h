@@ -33,15 +33,33 @@ class CastShadows {
     Eigen::Vector2f coordinates(const Eigen::Vector3f& point_m) const;
     Eigen::Vector3f point_m(const Eigen::Vector2f& place) const;
   };
+  /// Light from one direction.
+  struct Beam {
+    /// Where it comes from; its length along the plane's normal is 1.
+    Eigen::Vector3f toward;
+    Eigen::Array3f share;  ///< of the plane's light, by channel
+    /// By cell: up to which height above the plane an object hides it, in steps.
+    Image<std::uint8_t> height;
+  };
   /// The light on a plane, in cells around the ground's origin. Cell centres are at whole numbers.
   struct Shadow {
     Ground ground;
     std::uint8_t label = 0;       ///< the plane's, as in Surfaces::label
     Image<Eigen::Array3f> light;  ///< the share that is left, by cell
+    float step_m = 1;             ///< of the beams' heights
 
+    /// Those that matter.
+    std::span<const Beam> beams() const { return {beams_.data(), beam_count_}; }
+    /// Whether an object is between a point, anywhere above the plane, and the light.
+    bool is_hidden(const Eigen::Vector3f& point_m, const Beam& beam) const;
     /// The share of the light that is left at a point of the plane, of all channels: that of the
     /// nearest cell; 1 beyond the grid.
     float light_at(const Eigen::Vector3f& point_m) const;
+
+   private:
+    friend class CastShadows;
+    std::vector<Beam> beams_;  ///< the first beam_count_ are this frame's
+    std::size_t beam_count_ = 0;
   };
   static constexpr float cell_m = 0.02F;
   static constexpr int grid_cells = 128;
@@ -70,6 +88,7 @@ class CastShadows {
   /// Fills `surfaces.light`; the labels are there. Shadows end where something stands on their
   /// plane.
   void shade(const Reconstruction& reconstruction, Surfaces& surfaces);
+  const RayGrid& rays() const { return rays_; }
 
  private:
   static constexpr std::size_t bits_a_word = 64;
@@ -104,6 +123,7 @@ class CastShadows {
    private:
     void find_hidden(const ByDirection& slopes_u, const ByDirection& slopes_v);
     bool fit();
+    void keep_beams(const ByDirection& slopes_u, const ByDirection& slopes_v);
     void draw_light();
 
     std::vector<Blocker> blockers_;
