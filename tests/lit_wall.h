@@ -14,9 +14,7 @@ struct LitWall {
   LitWall() {
     plane = {(color_from_world.rotation * Eigen::Vector3d::UnitZ()).cast<float>(), 0};
     plane.distance_m = plane.normal.dot(color_from_world.translation.cast<float>());
-    for (int x = 0; x < 45; ++x) {
-      for (int y = 0; y < 35; ++y) add_sample({0.04 * x - 0.9, 0.04 * y - 0.7, 0});
-    }
+    sample_wall();
     const Eigen::Vector3d size = scene.box_max - scene.box_min;
     for (int i = 0; i <= 10; ++i) {
       for (int j = 0; j <= 10; ++j) {
@@ -46,6 +44,13 @@ struct LitWall {
       }
     }
     return light;
+  }
+  /// Call it again when the lamps have changed.
+  void sample_wall() {
+    samples.clear();
+    for (int x = 0; x < 45; ++x) {
+      for (int y = 0; y < 35; ++y) add_sample({0.04 * x - 0.9, 0.04 * y - 0.7, 0});
+    }
   }
   void add_sample(const Eigen::Vector3d& point) {
     SceneSample sample;

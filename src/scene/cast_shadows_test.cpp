@@ -58,10 +58,7 @@ TEST_F(Lamps, WithoutLampsOrObjectThereIsNone) {
   shadows.find({plane}, samples, {});
   EXPECT_FALSE(shadows.any());
   lamps[0].second = lamps[1].second = 0;
-  samples.clear();
-  for (double x = -0.9; x < 0.9; x += 0.04) {
-    for (double y = -0.7; y < 0.7; y += 0.04) add_sample({x, y, 0});
-  }
+  sample_wall();
   shadows.find({plane}, samples, box_points);
   EXPECT_FALSE(shadows.any());
   EXPECT_TRUE(shadows.bounds().empty());

@@ -1,20 +1,19 @@
 #include "scene/thing_light.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-
-#include "core/bilinear.h"
 
 namespace diminish {
 namespace {
 
 constexpr int block_px = ThingLight::block_px;
 /// Blocks to each side that may belong to the same surface.
-constexpr int reach = 2;
+constexpr int reach = 1;
 /// Of the depth, between blocks of one surface.
 constexpr float largest_step = 0.02F;
-constexpr int fewest_blocks = 6;
+constexpr int fewest_blocks = 5;
 /// A thing gets light from its surroundings that the plane does not get, from the plane itself
 /// above all. So what the beams lose counts less. Between .5 and .75 scores hardly differ.
 constexpr float share_of_beams = 2 / 3.F;
@@ -139,27 +138,40 @@ void ThingLight::smooth() {
   }
 }
 
+/// Bilinear between the blocks' centres.
 void ThingLight::apply(Surfaces& surfaces) const {
   const Rect& region = surfaces.region;
   const int last_column = smooth_.width() - 1;
   const int last_row = smooth_.height() - 1;
-  const auto in_blocks = [](int place, int last) {
-    return std::clamp((static_cast<float>(place) + 0.5F) / block_px - 0.5F, 0.F,
-                      static_cast<float>(last));
-  };
   for_rows(region.height, [&](Rows rows) {
     for (int y = rows.first; y < rows.last; ++y) {
       const std::uint8_t* const label = surfaces.label.row(region.y + y) + region.x;
       Bgr* const light = surfaces.light.row(region.y + y) + region.x;
-      for (int x = 0; x < region.width; ++x) {
-        if (label[x] != surface_label::foreground) continue;
-        const Levels here = bilinear(
-            in_blocks(x, last_column), in_blocks(y, last_row), [&](int column, int row) -> Levels {
-              return smooth_(std::min(column, last_column), std::min(row, last_row));
-            });
-        const Eigen::Array4i levels = (255 * here + 0.5F).cast<int>();
-        light[x] = {static_cast<std::uint8_t>(levels[0]), static_cast<std::uint8_t>(levels[1]),
-                    static_cast<std::uint8_t>(levels[2])};
+      const int above = (y + block_px / 2) / block_px - 1;
+      const float below =
+          (static_cast<float>(y) + 0.5F) / block_px - 0.5F - static_cast<float>(above);
+      const auto between = [&](int column) -> Levels {
+        const int x = std::clamp(column, 0, last_column);
+        const Levels& upper = smooth_(x, std::clamp(above, 0, last_row));
+        return upper + below * (smooth_(x, std::min(above + 1, last_row)) - upper);
+      };
+      Levels left = between(-1);
+      for (int column = -1; column <= last_column; ++column) {
+        const Levels right = between(column + 1);
+        const int first = block_px * column + block_px / 2;
+        const int end = column == last_column ? region.width : first + block_px;
+        if (left.min(right).head<3>().minCoeff() < 1 - CastShadows::invisible) {
+          const Levels step = 255 * (right - left) / block_px;
+          Levels level = 255 * left + 0.5F * step + 0.5F;
+          for (int x = first; x < end; ++x, level += step) {
+            if (x < 0 || label[x] != surface_label::foreground) continue;
+            const Eigen::Array4i rounded = level.cast<int>();
+            light[x] = {static_cast<std::uint8_t>(rounded[0]),
+                        static_cast<std::uint8_t>(rounded[1]),
+                        static_cast<std::uint8_t>(rounded[2])};
+          }
+        }
+        left = right;
       }
     }
   });

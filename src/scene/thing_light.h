@@ -24,10 +24,10 @@ namespace diminish {
 class ThingLight {
  public:
   /// Light and directions are found for blocks of so many pixels a side.
-  static constexpr int block_px = 4;
+  static constexpr int block_px = 8;
 
-  /// Lowers `surfaces.light` where the label is `foreground`. Cost: a million instructions for the
-  /// calendar.
+  /// Lowers `surfaces.light` where the label is `foreground`. Cost: 4 million instructions
+  /// for the calendar.
   void shade(std::span<const CastShadows::Shadow> shadows, const RayGrid& rays,
              const Image<float>& depth_m, Surfaces& surfaces);
 

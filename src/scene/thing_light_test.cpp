@@ -61,9 +61,9 @@ class ShadedThing : public ::testing::Test, protected testing::LitWall {
   Eigen::Vector3d darkest(double height_m) const {
     Eigen::Vector3d found(0, 0, height_m);
     double least = 2;
-    for (double x = -0.6; x < 0.6; x += 0.05) {
-      for (double y = -0.5; y < 0.5; y += 0.05) {
-        const Eigen::Vector3d point(x, y, height_m);
+    for (int x = -12; x < 12; ++x) {
+      for (int y = -10; y < 10; ++y) {
+        const Eigen::Vector3d point(0.05 * x, 0.05 * y, height_m);
         if (!is_beside_box(point) || light_at(point) >= least) continue;
         least = light_at(point);
         found = point;
@@ -91,10 +91,7 @@ TEST_F(ShadedThing, LosesTheLightThatTheRayCasterSays) {
 TEST_F(ShadedThing, KeepsItsLightWhereItFacesAwayFromTheLamp) {
   lamps[0] = {{1.3, 1.4, 1}, 0.5};
   lamps[1].second = 0;
-  samples.clear();
-  for (double x = -0.9; x < 0.9; x += 0.04) {
-    for (double y = -0.7; y < 0.7; y += 0.04) add_sample({x, y, 0});
-  }
+  sample_wall();
   shadows_.find({plane}, samples, box_points);
   ASSERT_TRUE(shadows_.any());
   const Eigen::Vector3d middle = darkest(0.05);
