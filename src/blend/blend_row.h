@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -14,7 +15,7 @@ struct BlendedRow : SurfaceRow {
   float depth_slope = 1, depth_step = 0, depth_offset_m = 0;
   const float* confidence = nullptr;  ///< of each pixel
 
-  using SurfaceRow::SurfaceRow;
+  explicit BlendedRow(const SurfaceRow& surface) : SurfaceRow(surface) {}
 };
 
 /// What choose_two writes for each pixel of a row.
@@ -24,6 +25,15 @@ struct TwoSources {
   std::uint8_t* second_source;
   float* second_depth_m;
   std::uint8_t* share;
+
+  TwoSources from(int column) const {
+    return {source + column, depth_m + column, second_source + column, second_depth_m + column,
+            share + column};
+  }
+  void clear(int width) const {
+    for (std::uint8_t* const bytes : {source, second_source, share}) std::fill_n(bytes, width, 0);
+    for (float* const depths : {depth_m, second_depth_m}) std::fill_n(depths, width, 0.F);
+  }
 };
 
 /// Which cameras see the nearest surface: bit k of `seen` stands for the k-th row. lone: 255 where

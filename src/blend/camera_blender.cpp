@@ -24,7 +24,7 @@ float depth_m(const BlendedRow& row, int x) {
 
 }  // namespace
 
-void CameraBlender::begin(std::vector<Surface>& surfaces, const Rect& region,
+void CameraBlender::begin(std::vector<Surface>& surfaces, const TiledRegion& region,
                           const Intrinsics& color, float agreement_m) {
   surfaces_ = &surfaces;
   region_ = region;
@@ -50,13 +50,23 @@ void CameraBlender::begin(std::vector<Surface>& surfaces, const Rect& region,
   for_tasks(surfaces.size(), [&](std::size_t k) { grid_.finish(k, surfaces[k].place); });
 }
 
-/// y: relative to the region's corner, here and below.
-void CameraBlender::gather(int y, std::vector<BlendedRow>& rows) const {
+/// Calls visit(first, last) for the runs of a row's pixels that belong to the region. Places are
+/// relative to its corner, here and below.
+template <class Visit>
+void CameraBlender::for_each_run(int y, const Visit& visit) const {
+  region_.for_each_run(region_.y + y,
+                       [&](int first, int last) { visit(first - region_.x, last - region_.x); });
+}
+
+/// Rows from pixel (x, y) on.
+void CameraBlender::gather(int x, int y, std::vector<BlendedRow>& rows) const {
   rows.clear();
   const Eigen::Vector3f ray =
-      pinhole_ray(color_, static_cast<float>(region_.x), static_cast<float>(region_.y + y));
+      pinhole_ray(color_, static_cast<float>(region_.x + x), static_cast<float>(region_.y + y));
   for (const Surface& surface : *surfaces_) {
-    BlendedRow row(*surface.rows[static_cast<std::size_t>(y)], region_.y + y, surface.source);
+    BlendedRow row(
+        SurfaceRow(*surface.rows[static_cast<std::size_t>(y)], region_.y + y, surface.source)
+            .from(x));
     const Eigen::Vector3f& forward = surface.place.forward;
     row.depth_slope = forward.dot(ray);
     row.depth_step = forward.x() / static_cast<float>(color_.fx);
@@ -66,18 +76,21 @@ void CameraBlender::gather(int y, std::vector<BlendedRow>& rows) const {
 }
 
 void CameraBlender::look_at_row(int y, Scratch& scratch, std::vector<Sliver>& slivers) {
-  gather(y, scratch.rows);
   scratch.bytes.resize(static_cast<std::size_t>(region_.width));
-  find_seen(scratch.rows, agreement_m_, region_.width, seen_.row(y), scratch.bytes.data());
-  const std::uint8_t* const lone = scratch.bytes.data();
-  for (int x = 0; (x = find_equal(lone, x, region_.width, 255)) < region_.width; ++x) {
-    const auto camera = static_cast<std::size_t>(std::countr_zero(seen_(x, y)));
-    const float noise_m = DepthNoise().at(depth_m(scratch.rows[camera], x));
-    if (is_sliver((*surfaces_)[camera], x, y,
-                  agreement_tolerance_m(agreement_m_, noise_m, noise_m))) {
-      slivers.push_back({camera, x, y});
+  std::uint8_t* const lone = scratch.bytes.data();
+  std::fill_n(seen_.row(y), region_.width, std::uint8_t{0});
+  for_each_run(y, [&](int first, int last) {
+    gather(first, y, scratch.rows);
+    find_seen(scratch.rows, agreement_m_, last - first, seen_.row(y) + first, lone + first);
+    for (int x = first; (x = find_equal(lone, x, last, 255)) < last; ++x) {
+      const auto camera = static_cast<std::size_t>(std::countr_zero(seen_(x, y)));
+      const float noise_m = DepthNoise().at(depth_m(scratch.rows[camera], x - first));
+      if (is_sliver((*surfaces_)[camera], x, y,
+                    agreement_tolerance_m(agreement_m_, noise_m, noise_m))) {
+        slivers.push_back({camera, x, y});
+      }
     }
-  }
+  });
 }
 
 bool CameraBlender::is_sliver(const Surface& surface, int x, int y, float tolerance_m) const {
@@ -111,12 +124,7 @@ void CameraBlender::remove(const Sliver& sliver) {
   SurfaceBuffer& buffer = *(*surfaces_)[sliver.camera].rows[static_cast<std::size_t>(sliver.y)];
   buffer.inverse_z[static_cast<std::size_t>(buffer.row(region_.y + sliver.y) + sliver.x)] = 0;
   std::vector<BlendedRow>& rows = scratch_[0].rows;
-  gather(sliver.y, rows);
-  for (BlendedRow& row : rows) {
-    // One pixel of each row.
-    row.depth_slope += row.depth_step * static_cast<float>(sliver.x);
-    row.inverse_z += sliver.x;
-  }
+  gather(sliver.x, sliver.y, rows);
   std::uint8_t lone = 0;
   find_seen(rows, agreement_m_, 1, &seen_(sliver.x, sliver.y), &lone);
 }
@@ -159,15 +167,20 @@ void CameraBlender::measure_cells(int cell_row, Scratch& scratch) {
 const std::vector<BlendedRow>& CameraBlender::choose(int y, const TwoSources& out,
                                                      Scratch& scratch) const {
   const int row = y - region_.y;
-  gather(row, scratch.rows);
   const auto width = static_cast<std::size_t>(region_.width);
-  scratch.confidences.resize(scratch.rows.size() * width);
-  for (std::size_t k = 0; k < scratch.rows.size(); ++k) {
-    float* const confidence = scratch.confidences.data() + k * width;
-    grid_.row(k, row, scratch.nodes, confidence);
-    scratch.rows[k].confidence = confidence;
+  scratch.confidences.resize(surfaces_->size() * width);
+  for (std::size_t k = 0; k < surfaces_->size(); ++k) {
+    grid_.row(k, row, scratch.nodes, scratch.confidences.data() + k * width);
   }
-  choose_two(scratch.rows, region_.width, seen_.row(row), out);
+  out.clear(region_.width);
+  for_each_run(row, [&](int first, int last) {
+    gather(first, row, scratch.rows);
+    for (std::size_t k = 0; k < scratch.rows.size(); ++k) {
+      scratch.rows[k].confidence = scratch.confidences.data() + k * width + first;
+    }
+    choose_two(scratch.rows, last - first, seen_.row(row) + first, out.from(first));
+  });
+  gather(0, row, scratch.rows);
   return scratch.rows;
 }
 

@@ -9,6 +9,7 @@
 #include "core/rows.h"
 #include "diminish/intrinsics.h"
 #include "diminish/reconstruction.h"
+#include "diminish/tiled_region.h"
 
 namespace diminish {
 
@@ -27,7 +28,7 @@ class CameraBlender {
 
   /// Removes slivers from the surfaces and finds out how far each camera is trusted. `surfaces`, at
   /// most blending::most_cameras, must stay valid until the region's rows are done.
-  void begin(std::vector<Surface>& surfaces, const Rect& region, const Intrinsics& color,
+  void begin(std::vector<Surface>& surfaces, const TiledRegion& region, const Intrinsics& color,
              float agreement_m);
 
   /// Memory for one row.
@@ -45,14 +46,16 @@ class CameraBlender {
     int x, y;
   };
 
-  void gather(int y, std::vector<BlendedRow>& rows) const;
+  template <class Visit>
+  void for_each_run(int y, const Visit& visit) const;
+  void gather(int x, int y, std::vector<BlendedRow>& rows) const;
   void look_at_row(int y, Scratch& scratch, std::vector<Sliver>& slivers);
   bool is_sliver(const Surface& surface, int x, int y, float tolerance_m) const;
   void remove(const Sliver& sliver);
   void measure_cells(int cell_row, Scratch& scratch);
 
   std::vector<Surface>* surfaces_ = nullptr;
-  Rect region_;
+  TiledRegion region_;
   Intrinsics color_;
   float agreement_m_ = 0;
   Image<std::uint8_t> seen_;  ///< which cameras see the nearest surface, one bit each

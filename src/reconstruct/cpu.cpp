@@ -145,12 +145,14 @@ class VectorizedReconstructor : public Reconstructor {
 
   /// Orders the cameras: the one that sees most of the region first, like merge_layers. Cameras
   /// that see nothing of it are left out.
-  void sort_by_coverage(const Rect& region) {
+  void sort_by_coverage(const TiledRegion& region) {
     for (Drawn& drawn : drawn_) {
       drawn.pixels = sum_over_rows(region.height, [&](Rows rows) {
         int pixels = 0;
         for (int y = region.y + rows.first; y < region.y + rows.last; ++y) {
-          pixels += count_drawn(meshes_[drawn.camera].surface(y), y);
+          region.for_each_run(y, [&](int first, int last) {
+            pixels += count_drawn(meshes_[drawn.camera].surface(y), y, first, last);
+          });
         }
         return pixels;
       });
@@ -161,7 +163,7 @@ class VectorizedReconstructor : public Reconstructor {
     while (drawn_.size() > 1 && drawn_.back().pixels == 0) drawn_.pop_back();
   }
 
-  void begin_blending(const Poses& poses, const Rect& region, float agreement_m) {
+  void begin_blending(const Poses& poses, const TiledRegion& region, float agreement_m) {
     blended_.resize(drawn_.size());
     for (std::size_t i = 0; i < drawn_.size(); ++i) {
       const std::size_t k = drawn_[i].camera;

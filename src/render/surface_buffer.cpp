@@ -18,10 +18,10 @@ void SurfaceBuffer::clear(const Rect& part, const TiledRegion& wanted) {
   }
 }
 
-int count_drawn(const SurfaceBuffer& surface, int y) {
-  const float* const z = surface.inverse_z.data() + surface.row(y);
+int count_drawn(const SurfaceBuffer& surface, int y, int first, int last) {
+  const float* const z = surface.inverse_z.data() + surface.row(y) - surface.region.x;
   int count = 0;
-  for (int i = 0; i < surface.region.width; ++i) count += z[i] > 0 ? 1 : 0;
+  for (int x = first; x < last; ++x) count += z[x] > 0 ? 1 : 0;
   return count;
 }
 

@@ -24,7 +24,7 @@ struct SurfaceBuffer {
   std::ptrdiff_t row(int y) const { return (y - region.y) * pitch; }
 };
 
-/// The number of pixels of a row that are drawn.
-int count_drawn(const SurfaceBuffer& surface, int y);
+/// The number of pixels that are drawn of [first, last) of a row, columns of the picture.
+int count_drawn(const SurfaceBuffer& surface, int y, int first, int last);
 
 }  // namespace diminish
