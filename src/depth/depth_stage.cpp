@@ -12,9 +12,10 @@ constexpr int refinement_margin_px = 24;
 
 void CameraDepth::clean(const RgbdFrame& images,
                         const std::optional<RigidTransform>& color_from_depth, const Masks& masks,
-                        const Rect& drawn, const Options& options, Image<std::uint16_t>& depth) {
+                        const TiledRegion& drawn, const Options& options,
+                        Image<std::uint16_t>& depth) {
   if (color_from_depth) {
-    visible_.find(images.depth, *color_from_depth, grow(drawn, refinement_margin_px));
+    visible_.find(images.depth, *color_from_depth, drawn, refinement_margin_px);
   } else {
     visible_.clear();
   }
@@ -27,7 +28,7 @@ DepthStage::DepthStage(const Rig& rig) : depths_(rig.rgbd.size()) {
 }
 
 void DepthStage::clean(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks,
-                       const Rect& drawn, const Options& options) {
+                       const TiledRegion& drawn, const Options& options) {
   for_tasks(depths_.size(), [&](std::size_t k) {
     if (!frame.rgbd[k].available()) return;
     cameras_[k].clean(frame.rgbd[k], poses.color_from_depth[k],

@@ -11,6 +11,7 @@
 #include "diminish/poses.h"
 #include "diminish/reconstructor.h"
 #include "diminish/rig.h"
+#include "diminish/tiled_region.h"
 
 namespace diminish {
 
@@ -27,7 +28,7 @@ class CameraDepth {
   };
   /// Cleans what may be visible in the colour camera's picture; see DepthStage::clean.
   void clean(const RgbdFrame& images, const std::optional<RigidTransform>& color_from_depth,
-             const Masks& masks, const Rect& drawn, const Options& options,
+             const Masks& masks, const TiledRegion& drawn, const Options& options,
              Image<std::uint16_t>& depth);
 
  private:
@@ -44,7 +45,7 @@ class DepthStage {
 
   /// poses: as measured. drawn: the part of the picture that will be drawn after poses are refined.
   void clean(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks,
-             const Rect& drawn, const Options& options);
+             const TiledRegion& drawn, const Options& options);
   /// Unspecified for cameras without images or without a pose.
   const DepthImages& depths() const { return depths_; }
 

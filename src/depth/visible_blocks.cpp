@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/rows.h"
+#include "geometry/point_projection.h"
 #include "geometry/ray_table.h"
 #include "geometry/shared_table.h"
 
@@ -87,6 +88,7 @@ Rect with_neighbours(int column, int row, const Rect& image) {
 
 VisibleBlocks::VisibleBlocks(const RgbdCamera& camera, const Intrinsics& color)
     : color_(color),
+      projection_(color_),
       unit_m_(static_cast<float>(camera.depth_unit_m)),
       image_width_(camera.depth.width),
       image_height_(camera.depth.height) {
@@ -117,6 +119,7 @@ VisibleBlocks::BlockRays::BlockRays(const Intrinsics& depth) {
 
 void VisibleBlocks::begin(const RigidTransform& color_from_depth, const Rect& region) {
   color_from_depth_ = color_from_depth;
+  to_color_ = FloatTransform(color_from_depth);
   sides_ = {};
   for (const int axis : {0, 1}) add_sides(region, axis, sides_);
 }
@@ -136,8 +139,11 @@ void VisibleBlocks::find(float nearest_m, float farthest_m, const RigidTransform
 }
 
 void VisibleBlocks::find(ImageView<std::uint16_t> depth, const RigidTransform& color_from_depth,
-                         const Rect& region) {
-  begin(color_from_depth, region);
+                         const TiledRegion& region, int further_px) {
+  begin(color_from_depth, grow(region, further_px));
+  // Where nearly all tiles are kept, few blocks would be left out for them.
+  const std::vector<std::uint8_t>& tiles = region.kept_tiles();
+  const bool has_gaps = 4 * std::count(tiles.begin(), tiles.end(), 0) > std::ssize(tiles);
   const auto pitch = depth.stride() / std::ptrdiff_t{sizeof(std::uint16_t)};
   for_rows(image_height_, [&](Rows rows) {
     Depths& depths = depths_[rows.band];
@@ -157,10 +163,10 @@ void VisibleBlocks::find(ImageView<std::uint16_t> depth, const RigidTransform& c
         const std::uint16_t farthest = std::max(depths.farthest[first], depths.farthest[second]);
         Range& depth_m = depth_m_[visible_.index(column, row)];
         depth_m = {static_cast<float>(nearest) * unit_m_, static_cast<float>(farthest) * unit_m_};
-        visible_(column, row) =
-            farthest > 0 && is_inside(sides_, rays_->of_block[visible_.index(column, row)], depth_m)
-                ? 1
-                : 0;
+        const Rays& rays = rays_->of_block[visible_.index(column, row)];
+        const bool is_visible = farthest > 0 && is_inside(sides_, rays, depth_m) &&
+                                (!has_gaps || touches(region, further_px, rays, depth_m));
+        visible_(column, row) = is_visible ? 1 : 0;
       }
     }
   });
@@ -210,6 +216,42 @@ bool VisibleBlocks::is_inside(const Sides& sides, const Rays& rays, const Range&
     if (slope * (slope > 0 ? depth_m.least : depth_m.greatest) + side.offset > 0) return false;
   }
   return true;
+}
+
+/// Whether the body's box in the picture may touch the region.
+bool VisibleBlocks::touches(const TiledRegion& region, int further_px, const Rays& rays,
+                            const Range& depth_m) const {
+  Eigen::Array2f least = Eigen::Array2f::Constant(farthest_px);
+  Eigen::Array2f greatest = -least;
+  for (const float z : {depth_m.least, depth_m.greatest}) {
+    for (const float x : {rays.x.least, rays.x.greatest}) {
+      for (const float y : {rays.y.least, rays.y.greatest}) {
+        const Eigen::Vector3f point = transform(to_color_, {x * z, y * z, z});
+        if (!(point.z() > nearest_seen_m)) return true;
+        const Eigen::Array2f ray = point.array().head<2>() / point.z();
+        least = least.min(ray);
+        greatest = greatest.max(ray);
+      }
+    }
+  }
+  Eigen::Array2f first = Eigen::Array2f::Constant(farthest_px);
+  Eigen::Array2f last = -first;
+  for (const float x : {least.x(), greatest.x()}) {
+    for (const float y : {least.y(), greatest.y()}) {
+      Eigen::Array2f at;
+      if (!projection_.distort(x, y, at.x(), at.y())) return true;
+      first = first.min(at);
+      last = last.max(at);
+    }
+  }
+  // Lenses bend the sides of long boxes.
+  constexpr float bend = 1.F / 16;
+  const float margin =
+      static_cast<float>(margin_px + further_px) + bend * (last - first).maxCoeff();
+  if (!(margin < farthest_px)) return true;
+  const Eigen::Array2i corner = (first - margin).cast<int>();
+  const Eigen::Array2i size = (last + margin).cast<int>() - corner;
+  return region.touches({corner.x(), corner.y(), size.x(), size.y()});
 }
 
 void VisibleBlocks::find_part() {

@@ -11,6 +11,8 @@
 #include "depth/depth_part.h"
 #include "diminish/image.h"
 #include "diminish/rig.h"
+#include "diminish/tiled_region.h"
+#include "geometry/projection.h"
 
 namespace diminish {
 
@@ -46,17 +48,18 @@ class BlockSet {
 /// The blocks of a depth image that may be visible in a region of the colour camera's picture. A
 /// block's rays, between its least and its greatest depth, span a convex body. The block is out of
 /// view if all of that body lies beyond one of the planes through the camera and the region's
-/// sides. Blocks that are left out show nothing there, and neither does a triangle with a vertex in
-/// one.
+/// sides, or within none of its tiles. Blocks that are left out show nothing there, and neither
+/// does a triangle with a vertex in one.
 class VisibleBlocks {
  public:
   static constexpr int width = BlockSet::width, height = BlockSet::height;
 
   VisibleBlocks(const RgbdCamera& camera, const Intrinsics& color);
 
-  /// color_from_depth: from the depth sensor's frame to the colour camera's. Cost: 1 ns per pixel.
+  /// color_from_depth: from the depth sensor's frame to the colour camera's. further_px: so much
+  /// further than the region reaches. Cost: 1 ns per pixel.
   void find(ImageView<std::uint16_t> depth, const RigidTransform& color_from_depth,
-            const Rect& region);
+            const TiledRegion& region, int further_px = 0);
   /// The same where each pixel may show anything between two depths.
   void find(float nearest_m, float farthest_m, const RigidTransform& color_from_depth,
             const Rect& region);
@@ -100,13 +103,17 @@ class VisibleBlocks {
   void add_sides(const Rect& rectangle, int axis, Sides& sides) const;
   void begin(const RigidTransform& color_from_depth, const Rect& region);
   static bool is_inside(const Sides& sides, const Rays& rays, const Range& depth_m);
+  bool touches(const TiledRegion& region, int further_px, const Rays& rays,
+               const Range& depth_m) const;
   void find_part();
 
   Lens color_;
+  Projection projection_;  ///< the same
   float unit_m_;
   int image_width_, image_height_;
   std::shared_ptr<const BlockRays> rays_;
   RigidTransform color_from_depth_;
+  FloatTransform to_color_{RigidTransform{}};  ///< the same
   Sides sides_;
   Depths depths_[most_bands];
   std::vector<Range> depth_m_;  ///< by block

@@ -36,9 +36,10 @@ Image<std::optional<Eigen::Vector2d>> project(const Image<std::uint16_t>& depth,
   return places;
 }
 
-bool contains(const Rect& region, const std::optional<Eigen::Vector2d>& place) {
+bool contains(const TiledRegion& region, const std::optional<Eigen::Vector2d>& place) {
   return place && place->x() >= region.x && place->x() < region.right() && place->y() >= region.y &&
-         place->y() < region.bottom();
+         place->y() < region.bottom() &&
+         region.keeps(static_cast<int>(place->x()), static_cast<int>(place->y()));
 }
 
 /// A block around a pixel.
@@ -88,11 +89,42 @@ TEST(VisibleBlocks, HoldWhateverIsSeen) {
   EXPECT_LT(kept, all / 5) << "most is out of view";
 }
 
+TEST(VisibleBlocks, HoldWhateverIsSeenInTiles) {
+  std::mt19937 random(4);
+  int kept = 0;
+  int kept_for_all = 0;
+  for (int trial = 0; trial < 9; ++trial) {
+    const AnalyticFrame frame(AnalyticScene(), {{-0.45, 0.3, 0.9}},
+                              testing::lens_models[trial % 3]);
+    Image<std::uint16_t> depth = testing::depths_of(frame.frame)[0];
+    for (std::uint16_t& value : depth) value = random() % 9 == 0 ? std::uint16_t{0} : value;
+    const RigidTransform& pose = *frame.poses.color_from_depth[0];
+    const Rect all = frame.rig.color.bounds();
+    VisibleBlocks blocks(frame.rig.rgbd[0], frame.rig.color);
+    blocks.find(depth, pose, all);
+    const BlockSet all_blocks = blocks.blocks();
+    TiledRegion region(all);
+    region.keep_if([&](const Rect&) { return random() % 40 == 0; });
+    blocks.find(depth, pose, region);
+    const auto places = project(depth, frame.rig, pose);
+    for (int y = 0; y < depth.height(); ++y) {
+      for (int x = 0; x < depth.width(); ++x) {
+        kept += is_visible(blocks, x, y) ? 1 : 0;
+        kept_for_all += all_blocks.row(y)[x / width] != 0 ? 1 : 0;
+        if (!contains(region, places(x, y))) continue;
+        ASSERT_TRUE(is_visible(blocks, x, y)) << trial << ": " << x << ' ' << y;
+      }
+    }
+  }
+  EXPECT_GT(kept, 1000);
+  EXPECT_LT(kept, kept_for_all * 3 / 4) << "other tiles are out of view";
+}
+
 TEST(VisibleBlocks, PartHoldsThemAndABlockAround) {
   const AnalyticFrame frame(AnalyticScene(), {{-0.45, 0.3, 0.9}});
   const Image<std::uint16_t> depth = testing::depths_of(frame.frame)[0];
   VisibleBlocks blocks(frame.rig.rgbd[0], frame.rig.color);
-  blocks.find(depth, *frame.poses.color_from_depth[0], {130, 100, 40, 50});
+  blocks.find(depth, *frame.poses.color_from_depth[0], Rect{130, 100, 40, 50});
   const Rect image = depth.bounds();
   int visible = 0;
   for (int y = 0; y < image.height; ++y) {

@@ -115,10 +115,15 @@ bool FrameStages::draws_bars() const {
 void FrameStages::choose_region() {
   region.set(surroundings());
   if (options.remove_shadows) {
-    region.set(join(region, background.shaded_part()));
+    region.set(rig.color.bounds());
   } else if (!options.whole_view) {
     region.keep_near(occluders.masks().color, options.surroundings_px);
   }
+}
+
+/// Shadows to remove may be anywhere until they are known.
+void FrameStages::narrow_region() {
+  if (options.remove_shadows) region.set(join(surroundings(), background.shaded_part()));
 }
 
 void FrameStages::spare_cameras(const FrameSet& frame, FrameReport& report) {
@@ -206,7 +211,6 @@ void FrameStages::process(const FrameSet& given, DiminishedFrame& result) {
       frame,  report.poses, masks,           objects,
       region, options,      report.in_doubt, estimation.own_planes(report.markers, report.poses)};
   const bool looks = looks_at_scene();
-  const auto drawn = [&] { return options.remove_shadows ? rig.color.bounds() : surroundings(); };
   const auto sample = [&] {
     stage(Stage::samples, [&] { sampler.sample(frame, measured_poses, masks, samples); });
     stage(Stage::refinement, [&] { refine_poses(frame, report.poses); });
@@ -255,12 +259,13 @@ void FrameStages::process(const FrameSet& given, DiminishedFrame& result) {
     });
   };
   // What is learnt of the scene may be needed only after the drawing: then both are done together.
-  if (looks) estimate(drawn());
+  choose_region();
+  if (looks) estimate(region);
   const bool learns_while_drawing = looks && backend.only_draws() && !options.remove_shadows;
   if (looks) {
     do_all(
         [&] {
-          stage(Stage::depth, [&] { depth.clean(frame, measured_poses, masks, drawn(), options); });
+          stage(Stage::depth, [&] { depth.clean(frame, measured_poses, masks, region, options); });
         },
         [&] {
           sample();
@@ -271,7 +276,7 @@ void FrameStages::process(const FrameSet& given, DiminishedFrame& result) {
     if (looks) judge();
     recall();
   };
-  choose_region();
+  narrow_region();
   if (learns_while_drawing) {
     do_all(judge_and_recall, draw, learn, prepare);
   } else {

@@ -49,6 +49,7 @@ struct FrameStages {
   bool completes_sides() const;
   bool draws_bars() const;
   void choose_region();
+  void narrow_region();
   /// Those that add nothing to what is drawn get no pose.
   void spare_cameras(const FrameSet& frame, FrameReport& report);
   void refine_poses(const FrameSet& frame, Poses& poses);

@@ -19,8 +19,8 @@ LayerDrawer::LayerDrawer(const RgbdCamera& camera, const Intrinsics& color)
 
 void LayerDrawer::draw(const RgbdFrame& images, const RemoteDrawing& drawing, RemoteLayer& layer) {
   const Rect& region = drawing.region;
-  depth_.clean(images, drawing.color_from_depth, {drawing.rgbd_color, drawing.rgbd_depth}, region,
-               drawing.options, cleaned_);
+  depth_.clean(images, drawing.color_from_depth, {drawing.rgbd_color, drawing.rgbd_depth},
+               drawing.region, drawing.options, cleaned_);
   const CameraMesh::Input input{cleaned_,
                                 drawing.rgbd_depth,
                                 drawing.rgbd_color,

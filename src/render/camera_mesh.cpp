@@ -27,7 +27,7 @@ void draw_cells_between(const VertexRow& upper, const VertexRow& lower,
 
 void CameraMesh::begin(const Input& input) {
   begin(static_cast<const Rect&>(input.region));
-  visible_.find(input.depth, input.color_from_depth, region_);
+  visible_.find(input.depth, input.color_from_depth, input.region);
   const Rect blocks = visible_.bounds();
   first_row_ = blocks.y * BlockSet::height;
   row_count_ = std::min(blocks.bottom() * BlockSet::height, rows_.height()) - first_row_;
