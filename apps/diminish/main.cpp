@@ -1,3 +1,4 @@
+#include <malloc.h>
 #include <oneapi/tbb/global_control.h>
 
 #include <cstdio>
@@ -56,6 +57,11 @@ int run_command(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+#ifdef __GLIBC__
+  // Fixed: glibc would raise it to the largest image that was freed. Then images are made where
+  // others were, and cleared; else they take memory only where they are written.
+  mallopt(M_MMAP_THRESHOLD, 1 << 17);
+#endif
   int exit_code = failed;
   try {
     oneapi::tbb::task_scheduler_handle workers{oneapi::tbb::attach{}};
