@@ -110,8 +110,8 @@ Term term_of(ImageView<Bgr> camera, const Mask& occlusion, ImageView<Bgr> rgbd, 
 
 int smoothing_share(const Rig& rig, const FrameSet& frame, const Mask& occlusion,
                     const std::vector<SceneSample>& samples, ColorMapsBySource maps) {
-  constexpr std::size_t wanted = 300;
-  constexpr int fewest = 50;
+  constexpr std::size_t wanted = 150;
+  constexpr int fewest = 30;
   const std::size_t stride = std::max<std::size_t>(1, samples.size() / wanted);
   const std::size_t count = (samples.size() + stride - 1) / stride;
   std::array<Term, 2 * wanted> terms;

@@ -131,7 +131,7 @@ bool BackgroundPlanes::next_plane(BackgroundPlane& plane) {
       static_cast<std::size_t>(smallest_support * static_cast<double>(points_.size())));
   if (rest_.size() < std::max(fewest_points, wanted)) return false;
   Random random;
-  const std::size_t stride = std::max<std::size_t>(1, rest_.size() / 500);
+  const std::size_t stride = std::max<std::size_t>(1, rest_.size() / 300);
   some_.thin(points_, stride);
   some_of_rest_.thin(rest_, stride);
   int most = 0;
