@@ -158,8 +158,10 @@ bool refine_corners(ImageView<Bgr> image, const Lens& lens, int modules, const R
     // Blur rounds corners, so they say nothing about the sides.
     const double end = std::clamp(3.0 / length, 0.06, 0.25);
     const int count = std::clamp(static_cast<int>(length), 8, pass.profiles);
+    const double fewest = min_support * count;
     Points points;
     for (int i = 0; i < count; ++i) {
+      if (static_cast<double>(points.size()) + count - i < fewest) return false;
       const double t = end + (1 - 2 * end) * (i + 0.5) / count;
       if (const auto step = find_step(image, from + t * along, outward, reach_px, pass.step_px)) {
         points.add(lens.undistort(*step));
@@ -168,7 +170,7 @@ bool refine_corners(ImageView<Bgr> image, const Lens& lens, int modules, const R
     if (pass.expect_outliers) {
       keep_largest_line(points, near_px / std::max(1.0, lens.intrinsics().fx));
     }
-    if (static_cast<double>(points.size()) >= min_support * count) sides[side] = fit_line(points);
+    if (static_cast<double>(points.size()) >= fewest) sides[side] = fit_line(points);
     if (!sides[side]) return false;
   }
   std::array<Vector2d, 4> refined;
