@@ -110,6 +110,12 @@ bool ThingLight::find_light(std::span<const CastShadows::Shadow> shadows, const 
         const int y = region.y + row * block_px + block_px / 2;
         const RayGrid::Segment segment = rays.segment(x, y, x + 1);
         const Eigen::Vector3f point_m = segment.first.homogeneous() / inverse_depth;
+        const auto is_shaded = [&](const CastShadows::Shadow& shadow) {
+          return std::any_of(shadow.beams().begin(), shadow.beams().end(), [&](const auto& beam) {
+            return shadow.is_hidden(point_m, beam);
+          });
+        };
+        if (std::none_of(shadows.begin(), shadows.end(), is_shaded)) continue;
         const Eigen::Vector3f normal =
             facing(inverse_depth_, column, row, segment.first, block_px * segment.slope.x());
         for (const CastShadows::Shadow& shadow : shadows) {
