@@ -85,6 +85,7 @@ soak: deps
 	scripts/soak
 
 sbom: build
+	scripts/build "" diminish
 	scripts/sbom build/release > build/release/sbom.json
 
 reproducible: deps
