@@ -166,6 +166,8 @@ test("the token leaves the address, and the page still works", async () => {
 test("a screenshot for the docs", { skip: !process.env.DIMINISH_SCREENSHOT }, async () => {
   const page = await open();
   await page.locator("#before-after").fill("50");
+  await page.locator("#before-after").blur();
+  await eventually(async () => /%/.test(await page.locator("#seen").textContent()), "the first figures");
   await page.waitForTimeout(8000);
   await page.screenshot({ path: process.env.DIMINISH_SCREENSHOT, type: "jpeg", quality: 85 });
   await page.close();
