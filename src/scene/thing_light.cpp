@@ -8,7 +8,6 @@
 namespace diminish {
 namespace {
 
-constexpr int block_px = ThingLight::block_px;
 /// Blocks to each side that may belong to the same surface.
 constexpr int reach = 1;
 /// Of the depth, between blocks of one surface.
@@ -111,9 +110,8 @@ bool ThingLight::find_light(std::span<const CastShadows::Shadow> shadows, const 
         const RayGrid::Segment segment = rays.segment(x, y, x + 1);
         const Eigen::Vector3f point_m = segment.first.homogeneous() / inverse_depth;
         const auto is_shaded = [&](const CastShadows::Shadow& shadow) {
-          return std::any_of(shadow.beams().begin(), shadow.beams().end(), [&](const auto& beam) {
-            return shadow.is_hidden(point_m, beam);
-          });
+          return std::any_of(shadow.beams().begin(), shadow.beams().end(),
+                             [&](const auto& beam) { return shadow.is_hidden(point_m, beam); });
         };
         if (std::none_of(shadows.begin(), shadows.end(), is_shaded)) continue;
         const Eigen::Vector3f normal =
