@@ -26,7 +26,7 @@ class ThingLight {
   /// Light and directions are found for blocks of so many pixels a side.
   static constexpr int block_px = 8;
 
-  /// Lowers `surfaces.light` where the label is `foreground`. Cost: 4 million instructions
+  /// Lowers `surfaces.light` where the label is `foreground`. Cost: 6 million instructions
   /// for the calendar.
   void shade(std::span<const CastShadows::Shadow> shadows, const RayGrid& rays,
              const Image<float>& depth_m, Surfaces& surfaces);
