@@ -45,12 +45,29 @@ struct Context::State {
   Driver driver;
   /// Shared by all contexts that share objects.
   std::shared_ptr<const int> group = std::make_shared<int>();
+  OwnThread thread;
 
   State() = default;
   State(const State&) = delete;
   State& operator=(const State&) = delete;
   ~State() {
-    if (context != EGL_NO_CONTEXT) eglDestroyContext(display, context);
+    if (context == EGL_NO_CONTEXT) return;
+    thread.run([&] {
+      eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+      eglReleaseThread();
+    });
+    eglDestroyContext(display, context);
+  }
+
+  /// In the thread.
+  void begin() {
+    if (eglBindAPI(EGL_OPENGL_API) != EGL_TRUE ||
+        eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) != EGL_TRUE) {
+      throw Error(Error::device, fmt::format("gl: the context cannot be used ({})",
+                                             egl_error_name(eglGetError())));
+    }
+    driver.name = text(GL_RENDERER);
+    driver.version = text(GL_VERSION);
   }
 };
 
@@ -74,9 +91,7 @@ std::unique_ptr<Context::State> make_state(const Display& display,
 }  // namespace
 
 Context::Context(std::unique_ptr<State> state) : state_(std::move(state)) {
-  const Current current(*this);
-  state_->driver.name = text(GL_RENDERER);
-  state_->driver.version = text(GL_VERSION);
+  state_->thread.run([&] { state_->begin(); });
 }
 Context::Context() : Context(make_state(chosen_display())) {}
 
@@ -113,6 +128,10 @@ const Driver& Context::driver() const {
   return state_->driver;
 }
 
+OwnThread& Context::thread() const {
+  return state_->thread;
+}
+
 bool Context::shares_with(const Context& other) const {
   return state_->group == other.state_->group;
 }
@@ -126,28 +145,6 @@ void Context::check(const char* doing) const {
   if (error == GL_NO_ERROR) return;
   throw Error(Error::device,
               fmt::format("gl: {}: {} ({})", doing, gl_error_name(error), driver().name));
-}
-
-Current::Current(const Context& context)
-    : display_(context.state_->display),
-      previous_display_(eglGetCurrentDisplay()),
-      previous_context_(eglGetCurrentContext()),
-      previous_draw_(eglGetCurrentSurface(EGL_DRAW)),
-      previous_read_(eglGetCurrentSurface(EGL_READ)) {
-  eglBindAPI(EGL_OPENGL_API);
-  if (eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context.state_->context) !=
-      EGL_TRUE) {
-    throw Error(Error::device,
-                fmt::format("gl: the context cannot be used ({})", egl_error_name(eglGetError())));
-  }
-}
-
-Current::~Current() {
-  if (previous_context_ == EGL_NO_CONTEXT) {
-    eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
-  } else {
-    eglMakeCurrent(previous_display_, previous_draw_, previous_read_, previous_context_);
-  }
 }
 
 bool has_hardware_driver() {

@@ -5,6 +5,7 @@
 
 #include "diminish/error.h"
 #include "diminish/gl_texture.h"
+#include "gl/own_thread.h"
 
 namespace diminish::gl {
 
@@ -16,7 +17,9 @@ struct Driver {
 };
 
 /// An OpenGL 4.5 core context without a window, through EGL: on Mesa's surfaceless platform, else
-/// on a device of the device platform. Prefers a hardware driver.
+/// on a device of the device platform. Prefers a hardware driver. It stays current in a thread of
+/// its own: hardware drivers take tens of milliseconds for the first call in a thread, and frames
+/// are processed by whichever thread is free.
 class Context {
  public:
   /// Throws Error that says what is missing.
@@ -33,46 +36,24 @@ class Context {
   /// Whether two contexts share their objects.
   bool shares_with(const Context& other) const;
 
-  /// Throws Error if a call since the last check failed or the context was lost. doing: the step
-  /// that the message names.
+  /// Does `work`, whose OpenGL calls go to this context, in the context's thread, and waits for it.
+  /// Throws what it throws. The calling thread's own context, if it has one, is left alone.
+  template <class Work>
+  void run(const Work& work) const {
+    thread().run(work);
+  }
+
+  /// In the context's thread. Throws Error if a call since the last check failed or the context was
+  /// lost. doing: the step that the message names.
   void check(const char* doing) const;
 
   struct State;
 
  private:
-  friend class Current;
   explicit Context(std::unique_ptr<State> state);
+  OwnThread& thread() const;
   std::unique_ptr<State> state_;
 };
-
-/// While it lives, this thread's OpenGL calls go to the context; afterwards to the one before. Code
-/// that may run another frame on this thread (a TBB loop) must not be inside.
-class Current {
- public:
-  /// Throws Error if the context cannot be used.
-  explicit Current(const Context& context);
-  ~Current();
-  Current(const Current&) = delete;
-  Current& operator=(const Current&) = delete;
-
- private:
-  void* display_;
-  void* previous_display_;
-  void* previous_context_;
-  void* previous_draw_;
-  void* previous_read_;
-};
-
-/// Deletes what was created in the context. If the context is gone, everything in it is gone too.
-template <class Resources>
-void delete_in(const Context& context, std::unique_ptr<Resources>& resources) {
-  try {
-    const Current current(context);
-    resources.reset();
-  } catch (const Error&) {
-    static_cast<void>(resources.release());
-  }
-}
 
 /// Whether a context can be created and hardware draws.
 bool has_hardware_driver();

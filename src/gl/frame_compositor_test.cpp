@@ -71,7 +71,10 @@ class Composition : public ::testing::Test, protected testing::DiminishedWall {
     clear_outside(frame.rig.color, region, result.reconstruction);
     resize_second(!expected.reconstruction.second.share.empty(), frame.rig.color,
                   result.reconstruction.second);
-    const gl::Current current(context);
+    context.run([&] { compose_in_context(inputs); });
+  }
+
+  void compose_in_context(const FrameInputs& inputs) {
     if (!on_gpu) {
       on_gpu.emplace(frame.rig);
       upload.emplace(frame.rig, gl::FrameCompositor::most_added_bytes(frame.rig));
@@ -122,9 +125,10 @@ class Composition : public ::testing::Test, protected testing::DiminishedWall {
   }
 
   void TearDown() override {
-    const gl::Current current(context);
-    on_gpu.reset();
-    upload.reset();
+    context.run([&] {
+      on_gpu.reset();
+      upload.reset();
+    });
   }
 
   static constexpr std::size_t most_others = 100;

@@ -196,23 +196,25 @@ void GpuMaskDrawer::Resources::read(std::span<MaskDrawing> drawings) const {
 }
 
 GpuMaskDrawer::GpuMaskDrawer() {
-  const Current current(context_);
-  resources_ = std::make_unique<Resources>();
-  context_.check("making the programs that draw masks");
+  context_.run([&] {
+    resources_ = std::make_unique<Resources>();
+    context_.check("making the programs that draw masks");
+  });
 }
 
 GpuMaskDrawer::~GpuMaskDrawer() {
-  delete_in(context_, resources_);
+  context_.run([&] { resources_.reset(); });
 }
 
 void GpuMaskDrawer::draw(std::span<MaskDrawing> drawings) {
   resources_->list(drawings);
   if (resources_->words > 0) {
-    const Current current(context_);
-    resources_->upload(drawings);
-    resources_->run();
-    wait_until_done();
-    context_.check("drawing masks");
+    context_.run([&] {
+      resources_->upload(drawings);
+      resources_->run();
+      wait_until_done();
+      context_.check("drawing masks");
+    });
   }
   if (resources_->words > 0) resources_->read(drawings);
   for (const MaskDrawing& drawing : drawings) {

@@ -54,24 +54,26 @@ PictureTextures::PictureTextures(const GlSharing& application, const Intrinsics&
   if (application.textures < 1) {
     throw Error(fmt::format("textures: expected at least 1, got {}", application.textures));
   }
-  const Current current(context_);
-  resources_ = std::make_unique<Resources>(color, application.textures);
-  // Objects created in one context are there for the others when that is done.
-  wait_until_done();
-  context_.check("making textures");
+  context_.run([&] {
+    resources_ = std::make_unique<Resources>(color, application.textures);
+    // Objects created in one context are there for the others when that is done.
+    wait_until_done();
+    context_.check("making textures");
+  });
 }
 
 PictureTextures::~PictureTextures() {
-  delete_in(context_, resources_);
+  context_.run([&] { resources_.reset(); });
 }
 
 void PictureTextures::upload(ImageView<Bgr> picture) {
   pack(picture);
-  const Current current(context_);
-  draw_packed();
-  wait_until_done();
-  context_.check("uploading a picture");
-  publish();
+  context_.run([&] {
+    draw_packed();
+    wait_until_done();
+    context_.check("uploading a picture");
+    publish();
+  });
 }
 
 void PictureTextures::pack(ImageView<Bgr> picture) {

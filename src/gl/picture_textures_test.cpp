@@ -266,8 +266,9 @@ TEST_F(Textures, OfAnApplicationThatCannotBeSharedWithAreAnError) {
   EXPECT_THAT(error({right.egl_display, &nothing}), HasSubstr("EGL_BAD_CONTEXT"));
   EXPECT_THAT(error(application.sharing(0)), HasSubstr("expected at least 1, got 0"));
   eglBindAPI(EGL_OPENGL_ES_API);
+  constexpr EGLint second[] = {EGL_CONTEXT_MAJOR_VERSION, 2, EGL_NONE};
   const EGLContext embedded =
-      eglCreateContext(right.egl_display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, nullptr);
+      eglCreateContext(right.egl_display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, second);
   ASSERT_NE(embedded, EGL_NO_CONTEXT);
   EXPECT_THAT(error({right.egl_display, embedded}), HasSubstr("OpenGL, got another API"));
   eglDestroyContext(right.egl_display, embedded);

@@ -89,19 +89,20 @@ GlReconstructor::GlReconstructor(const Rig& rig, const MakeRasterizer& make_rast
 }
 
 GlReconstructor::~GlReconstructor() {
-  delete_in(context_, resources_);
+  context_.run([&] { resources_.reset(); });
 }
 
 void GlReconstructor::make_resources() {
-  const Current current(context_);
-  resources_ = std::make_unique<Resources>(context_, rig_, make_rasterizer_);
-  context_.check("making programs and buffers");
+  context_.run([&] {
+    resources_ = std::make_unique<Resources>(context_, rig_, make_rasterizer_);
+    context_.check("making programs and buffers");
+  });
 }
 
 /// A context cannot begin to share: it is made anew.
 void GlReconstructor::share_with(const Context& other) {
   if (context_.shares_with(other)) return;
-  delete_in(context_, resources_);
+  context_.run([&] { resources_.reset(); });
   context_ = Context::sharing_with(other);
   device_ = context_.driver().name;
   make_resources();
@@ -125,8 +126,7 @@ void GlReconstructor::reconstruct(const FrameSet& frame, const DepthImages& dept
   Resources& r = *resources_;
   prepare_blending();
   const std::size_t second_at = end_of_first(region);
-  {
-    const Current current(context_);
+  context_.run([&] {
     r.downloaded.reserve((blends ? 2 : 1) * end_of_first(rig_.color.bounds()));
     draw(region);
     r.timer.measure("download", [&] {
@@ -138,7 +138,7 @@ void GlReconstructor::reconstruct(const FrameSet& frame, const DepthImages& dept
     wait_until_done();
     context_.check("reconstruction");
     r.timer.read(passes_);
-  }
+  });
   const std::byte* const from = r.downloaded.data();
   unpack(reinterpret_cast<const ResultPixel*>(from),
          reinterpret_cast<const SecondPixel*>(from + second_at), r.upload, reconstruction);
@@ -169,25 +169,24 @@ void GlReconstructor::compose(const FrameInputs& inputs, Stage last, DiminishedF
     return;
   }
   if (!r.compositor) {
-    const Current current(context_);
-    r.compositor.emplace(rig_);
-    context_.check("making the compositor's programs and buffers");
+    context_.run([&] {
+      r.compositor.emplace(rig_);
+      context_.check("making the compositor's programs and buffers");
+    });
   }
   r.upload.pack(inputs.frame, inputs.depths, inputs.poses, inputs.masks, region, inputs.options);
   resize_second(r.upload.blends() && FrameCompositor::gives_reconstruction(inputs, last),
                 rig_.color, result.reconstruction.second);
   prepare_blending();
   r.compositor->pack(inputs, last, r.upload);
-  {
-    const Current current(context_);
+  context_.run([&] {
     draw(region);
     r.compositor->run(inputs, r.upload, r.result, r.timer);
     glFlush();
-  }
+  });
   // While the GPU works.
   show_camera(inputs, textures, result);
-  {
-    const Current current(context_);
+  context_.run([&] {
     if (textures) {
       r.timer.measure("texture", [&] {
         textures->draw_packed();
@@ -198,7 +197,7 @@ void GlReconstructor::compose(const FrameInputs& inputs, Stage last, DiminishedF
     context_.check("composing a frame");
     if (textures) textures->publish();
     r.timer.read(passes_);
-  }
+  });
   r.compositor->read(inputs, r.upload, result);
 }
 
@@ -207,10 +206,11 @@ void GlReconstructor::prepare_blending() {
   Resources& r = *resources_;
   if (!r.upload.blends()) return;
   if (!r.blending) {
-    const Current current(context_);
-    r.blending.emplace(rig_, r.rasterizer->seen_files());
-    r.result.second.reserve(pixels_of(rig_.color.bounds()) * sizeof(SecondPixel));
-    context_.check("making the blending's programs and buffers");
+    context_.run([&] {
+      r.blending.emplace(rig_, r.rasterizer->seen_files());
+      r.result.second.reserve(pixels_of(rig_.color.bounds()) * sizeof(SecondPixel));
+      context_.check("making the blending's programs and buffers");
+    });
   }
   r.blending->pack(r.upload);
 }

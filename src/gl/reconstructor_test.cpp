@@ -261,26 +261,25 @@ TEST(GlReconstructor, DrawsLargeCells) {
 
 TEST(GlProgram, ErrorsNameTheShadersFileAndLine) {
   const gl::Context context;
-  const gl::Current current(context);
+  const auto error_with = [&](const std::vector<std::string>& files) {
+    return error_of([&] { context.run([&] { gl::compute_program(files); }); });
+  };
   // vertices.comp calls what the files before it define.
-  const std::string message = error_of([] {
-    gl::compute_program({"frame.glsl", "vertices.comp"});
-  });
+  const std::string message = error_with({"frame.glsl", "vertices.comp"});
   EXPECT_THAT(message, ::testing::StartsWith("gl: shader vertices.comp:1"));
   EXPECT_THAT(message, ::testing::HasSubstr("find_vertex"));
-  EXPECT_THAT(error_of([] { gl::compute_program({"none.comp"}); }),
-              ::testing::HasSubstr("'none.comp'"));
+  EXPECT_THAT(error_with({"none.comp"}), ::testing::HasSubstr("'none.comp'"));
 }
 
 TEST(GlContext, FailedCallsAreErrorsThatSayWhereAndOnWhat) {
   const gl::Context context;
-  const gl::Current current(context);
-  EXPECT_NO_THROW(context.check("nothing"));
-  glBindBuffer(GL_TEXTURE_2D, 0);
-  const std::string message = error_of([&] { context.check("a test"); });
+  const auto check = [&](const char* doing) { context.run([&] { context.check(doing); }); };
+  EXPECT_NO_THROW(check("nothing"));
+  context.run([] { glBindBuffer(GL_TEXTURE_2D, 0); });
+  const std::string message = error_of([&] { check("a test"); });
   EXPECT_THAT(message, ::testing::StartsWith("gl: a test: GL_INVALID_ENUM"));
   EXPECT_THAT(message, ::testing::HasSubstr(context.driver().name));
-  EXPECT_NO_THROW(context.check("reported once"));
+  EXPECT_NO_THROW(check("reported once"));
 }
 
 }  // namespace

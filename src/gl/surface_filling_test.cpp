@@ -49,15 +49,22 @@ struct Task {
 class Gpu {
  public:
   Gpu() {
-    const gl::Current current(context_);
-    resources_ = std::make_unique<Resources>(context_.driver().software);
-    context_.check("a test");
+    context_.run([&] {
+      resources_ = std::make_unique<Resources>(context_.driver().software);
+      context_.check("a test");
+    });
   }
-  ~Gpu() { gl::delete_in(context_, resources_); }
+  ~Gpu() {
+    context_.run([&] { resources_.reset(); });
+  }
 
   /// Fills the task's picture; its provenance becomes what the GPU makes of it.
   void fill(Task& task) {
-    const gl::Current current(context_);
+    context_.run([&] { fill_in_context(task); });
+  }
+
+ private:
+  void fill_in_context(Task& task) {
     Resources& r = *resources_;
     const Rect whole = task.picture.bounds();
     const bool has_surfaces = !task.surfaces.label.empty();
@@ -98,7 +105,6 @@ class Gpu {
     }
   }
 
- private:
   struct Resources {
     explicit Resources(bool software) : timer(software) {}
     gl::SurfaceFilling filling;
