@@ -43,6 +43,8 @@ class DIMINISH_EXPORT Inpainter {
     bool uses_surfaces = false;
     /// Whether it uses `Holes::lines`.
     bool uses_lines = false;
+    /// Whether what it fills on planes is to get their grain afterwards. Needs `uses_surfaces`.
+    bool wants_grain = false;
     /// The rule that it follows, if it is one of these. Another implementation (on a GPU) may then
     /// replace it.
     enum class Rule {

@@ -10,7 +10,7 @@ namespace {
 class StructureInpainting : public Inpainter {
  public:
   Declaration declaration() const override {
-    return {.uses_surfaces = true, .uses_lines = true, .simpler = "surfaces"};
+    return {.uses_surfaces = true, .uses_lines = true, .wants_grain = true, .simpler = "surfaces"};
   }
 
   bool inpaint(const Holes& holes, const Options& options, Image<Bgr>& picture) override {

@@ -73,7 +73,8 @@ FrameStages::FrameStages(const Rig& rig_, const Scene& scene_)
       standing_things(rig),
       backend(rig),
       memory(rig),
-      steady_inventions(rig.color) {}
+      steady_inventions(rig.color),
+      plane_texture(rig.color) {}
 
 void FrameStages::set_options(const Options& wanted) {
   check(wanted, rig, scene);
@@ -340,6 +341,11 @@ void FrameStages::process(const FrameSet& given, DiminishedFrame& result) {
     if (methods.remembers) {
       steady_inventions.steady(
           {frame.stamp_s, report.poses.color_from_world, objects, background.planes()}, result);
+    }
+    if (methods.inpainting.wants_grain && background.planes() && report.missing_pixels > 0) {
+      plane_texture.add({frame.color, masks.color, objects, *background.planes(), samples.surfaces,
+                         report.poses.color_from_world},
+                        result);
     }
   });
   stage(Stage::finish, [&] { compositor.finish(inputs, *mode, result); });

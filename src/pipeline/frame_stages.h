@@ -9,6 +9,7 @@
 #include "bars/bar_search.h"
 #include "bars/bar_views.h"
 #include "composite/compositor.h"
+#include "composite/plane_texture.h"
 #include "composite/steady_inventions.h"
 #include "depth/camera_choice.h"
 #include "depth/depth_stage.h"
@@ -108,6 +109,7 @@ struct FrameStages {
   MemoryStage memory;
   Compositor compositor;
   SteadyInventions steady_inventions;
+  PlaneTexture plane_texture;
   bool wants_reconstruction = true;
   Doubt doubt;
   FrameTexture texture;

@@ -1,0 +1,321 @@
+#include "composite/plane_texture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/channels.h"
+#include "core/runs.h"
+#include "geometry/point_projection.h"
+
+namespace diminish {
+namespace {
+
+/// Of a brick in the picture, about. It must hold a few ripples of a grain, and the example must
+/// have places that large.
+constexpr float brick_px = 36;
+/// How far from the objects the example is looked for.
+constexpr int example_reach_px = 96;
+/// Fewer invented pixels are left smooth.
+constexpr int fewest_pixels = 200;
+/// Every fourth pixel tells which bricks are wanted.
+constexpr int look_step = 4;
+/// A plane seen so flatly that it has more bricks is left smooth.
+constexpr int most_bricks = 1 << 12;
+/// Places of the example: the luckiest. Nobody sees that a grain comes back so often.
+constexpr std::size_t most_blocks = 12;
+/// A place whose pixels are so much smaller or larger on the plane shows another grain.
+constexpr float most_scale = 2.5F;
+/// Levels: a place whose mean differs so much from the brick's colour is as unwelcome as the least
+/// lucky place.
+constexpr float color_part = 12;
+/// Of the grain: half of its energy. A grain in the wrong place is an error, too.
+constexpr float strength = 0.7F;
+/// Along so many pixels of a row, places on the plane lie evenly.
+constexpr int segment = 16;
+/// For differences of places on the plane, bricks.
+constexpr float step = 0.5F;
+
+std::uint32_t scramble(std::uint32_t value) {
+  value = (value ^ (value >> 16)) * 0x7feb352dU;
+  value = (value ^ (value >> 15)) * 0x846ca68bU;
+  return value ^ (value >> 16);
+}
+/// From 0 to 1, as good as random, the same wherever it is asked.
+float luck_of(int i, int j, int k = 0, int l = 0) {
+  std::uint32_t value = 0;
+  for (const int key : {i, j, k, l}) {
+    value = scramble(value * 0x9e3779b9U + static_cast<std::uint32_t>(key) + 1);
+  }
+  return static_cast<float>(value) / static_cast<float>(std::numeric_limits<std::uint32_t>::max());
+}
+
+/// Without SSE4, std::floor is a call.
+int floor_of(float value) {
+  const auto whole = static_cast<int>(value);
+  return whole - (static_cast<float>(whole) > value ? 1 : 0);
+}
+
+}  // namespace
+
+void PlaneTexture::add(const Inputs& inputs, DiminishedFrame& result) {
+  if (result.surfaces.label.empty()) return;
+  part_ = intersect(inputs.objects, result.surfaces.region);
+  for (std::size_t k = 0; k < inputs.planes.size(); ++k) {
+    const BackgroundPlane& plane = inputs.planes[k];
+    const auto label = static_cast<std::uint8_t>(surface_label::first_plane + k);
+    const std::optional<float> depth_m = mean_depth_m(result, plane, label);
+    if (!depth_m) continue;
+    // In steps of half an octave: from frame to frame it stays the same.
+    const float wanted_m = brick_px * *depth_m / lens_.fx;
+    const Axes axes = axes_of(inputs, plane, std::exp2(std::round(2 * std::log2(wanted_m)) / 2));
+    example_.find(inputs.camera, inputs.occlusion, grow(part_, example_reach_px), inputs.samples,
+                  plane);
+    find_blocks(axes);
+    if (blocks_.empty() || !lay_bricks(axes, result, label)) continue;
+    for (const Brick& brick : bricks_) make_tile(axes, brick, inputs, result.picture);
+    for_rows(part_.height, [&](Rows rows) { add_rows(axes, label, rows, result); });
+  }
+}
+
+/// Of what is invented on a plane; nothing if that is little.
+std::optional<float> PlaneTexture::mean_depth_m(const DiminishedFrame& result,
+                                                const BackgroundPlane& plane,
+                                                std::uint8_t label) const {
+  int count = 0;
+  float sum_m = 0;
+  for (int y = part_.y; y < part_.bottom(); y += look_step) {
+    for (int x = part_.x; x < part_.right(); x += look_step) {
+      if (!is_open(result, label, x, y)) continue;
+      const Eigen::Vector2f ray = (*rays_)(x, y);
+      const float inverse = plane.inverse_depth(ray.x(), ray.y());
+      if (!(inverse > 0)) continue;
+      sum_m += 1 / inverse;
+      ++count;
+    }
+  }
+  if (count * look_step * look_step < fewest_pixels) return std::nullopt;
+  return sum_m / static_cast<float>(count);
+}
+
+/// From the world's origin along one of its axes, so that they stay where they are.
+PlaneTexture::Axes PlaneTexture::axes_of(const Inputs& inputs, const BackgroundPlane& plane,
+                                         float size_m) {
+  const RigidTransform world = inputs.color_from_world.value_or(RigidTransform{});
+  const Eigen::Vector3f origin = world.translation.cast<float>();
+  const Eigen::Matrix3f turn = world.rotation.cast<float>();
+  Eigen::Index axis = 0;
+  (turn.transpose() * plane.normal).cwiseAbs().minCoeff(&axis);
+  const Eigen::Vector3f along = turn.col(axis);
+  Axes axes{plane, origin - plane.height_m(origin) * plane.normal, {}, {}, size_m};
+  axes.u = (along - plane.normal.dot(along) * plane.normal).normalized();
+  axes.v = plane.normal.cross(axes.u);
+  return axes;
+}
+
+/// What of the plane is seen at a pixel.
+std::optional<Eigen::Vector2f> PlaneTexture::coordinates(const Axes& axes, int x, int y) const {
+  constexpr float farthest = 1e6F;
+  const Eigen::Vector2f ray = (*rays_)(x, y);
+  const float inverse = axes.plane.inverse_depth(ray.x(), ray.y());
+  if (!(inverse > 0)) return std::nullopt;
+  const Eigen::Vector3f from_origin = Eigen::Vector3f(ray.x(), ray.y(), 1) / inverse - axes.origin;
+  const Eigen::Vector2f at =
+      Eigen::Vector2f(from_origin.dot(axes.u), from_origin.dot(axes.v)) / axes.size_m;
+  if (!(at.cwiseAbs().maxCoeff() < farthest)) return std::nullopt;
+  return at;
+}
+
+/// Where it is in the picture.
+std::optional<Eigen::Vector2f> PlaneTexture::place(const Axes& axes, float a, float b) const {
+  return project_exactly(lens_, axes.origin + axes.size_m * (a * axes.u + b * axes.v));
+}
+
+/// Also how far a brick's sides along u and v reach there.
+std::optional<Eigen::Vector2f> PlaneTexture::place(const Axes& axes, float a, float b,
+                                                   Eigen::Matrix2f& sides) const {
+  const auto middle = place(axes, a, b);
+  const auto right = place(axes, a + step, b);
+  const auto up = place(axes, a, b + step);
+  if (!middle || !right || !up) return std::nullopt;
+  sides << *right - *middle, *up - *middle;
+  sides /= step;
+  return middle;
+}
+
+PlaneTexture::Brick PlaneTexture::brick_at(const Eigen::Vector2f& at) {
+  const int j = floor_of(at.y());
+  return {floor_of(at.x() + (j % 2 == 0 ? 0 : 0.5F)), j};
+}
+
+/// Finds the bricks of what is invented. False if there are too many.
+bool PlaneTexture::lay_bricks(const Axes& axes, const DiminishedFrame& result, std::uint8_t label) {
+  bricks_.clear();
+  for (int y = part_.y; y < part_.bottom(); y += look_step) {
+    for (int x = part_.x; x < part_.right(); x += look_step) {
+      if (!is_open(result, label, x, y)) continue;
+      if (const auto at = coordinates(axes, x, y)) bricks_.push_back(brick_at(*at));
+    }
+  }
+  if (bricks_.empty()) return false;
+  Brick last = first_ = bricks_.front();
+  for (const Brick& brick : bricks_) {
+    first_ = {std::min(first_.i, brick.i), std::min(first_.j, brick.j)};
+    last = {std::max(last.i, brick.i), std::max(last.j, brick.j)};
+  }
+  const int columns = last.i - first_.i + 1;
+  const int rows = last.j - first_.j + 1;
+  if (columns > most_bricks || rows > most_bricks || columns * rows > most_bricks) return false;
+  tiles_.resize(columns, rows);
+  tiles_.fill(tiles_.bounds(), Tile{});
+  std::erase_if(bricks_, [&](const Brick& brick) {
+    return std::exchange(tiles_(brick.i - first_.i, brick.j - first_.j).is_wanted, true);
+  });
+  return true;
+}
+
+/// Places whose surroundings, as large as a brick, are nearly all in the example.
+void PlaneTexture::find_blocks(const Axes& axes) {
+  blocks_.clear();
+  constexpr int cell = TextureExample::cell;
+  const Rect part = example_.part();
+  Eigen::Vector2f least = Eigen::Vector2f::Constant(std::numeric_limits<float>::max());
+  Eigen::Vector2f most = -least;
+  for (int y = part.y + cell / 2; y < part.bottom(); y += cell) {
+    for (int x = part.x + cell / 2; x < part.right(); x += cell) {
+      if (!example_.shows_plane(x, y)) continue;
+      const auto at = coordinates(axes, x, y);
+      if (!at) continue;
+      least = least.cwiseMin(*at);
+      most = most.cwiseMax(*at);
+    }
+  }
+  const Eigen::Vector2f size = most - least;
+  if (!(size.minCoeff() >= 0 && (size.x() + 1) * (size.y() + 1) < most_bricks)) return;
+  for (auto j = static_cast<int>(std::ceil(least.y())); static_cast<float>(j) <= most.y(); ++j) {
+    for (auto i = static_cast<int>(std::ceil(least.x())); static_cast<float>(i) <= most.x(); ++i) {
+      add_block(axes, i, j);
+    }
+  }
+  if (blocks_.size() <= most_blocks) return;
+  std::nth_element(blocks_.begin(), blocks_.begin() + most_blocks, blocks_.end(),
+                   [](const Block& a, const Block& b) { return a.luck > b.luck; });
+  blocks_.resize(most_blocks);
+}
+
+void PlaneTexture::add_block(const Axes& axes, int i, int j) {
+  constexpr int fewest_shown = 8;  // of 3 x 3 places
+  const auto a = static_cast<float>(i);
+  const auto b = static_cast<float>(j);
+  int shown = 0;
+  Eigen::Array3f sum = Eigen::Array3f::Zero();
+  for (const float db : {-0.5F, 0.F, 0.5F}) {
+    for (const float da : {-0.5F, 0.F, 0.5F}) {
+      const auto looked = place(axes, a + da, b + db);
+      if (!looked) return;
+      const Pixel pixel = nearest_pixel(*looked);
+      if (!example_.shows_plane(pixel.x, pixel.y)) continue;
+      sum += example_.mean(pixel.x, pixel.y);
+      ++shown;
+    }
+  }
+  Eigen::Matrix2f sides;
+  if (shown < fewest_shown || !place(axes, a, b, sides)) return;
+  blocks_.push_back(
+      {i, j, luck_of(i, j), sum / static_cast<float>(shown), std::abs(sides.determinant())});
+}
+
+/// The luckiest of those that look like the brick; null: none does.
+const PlaneTexture::Block* PlaneTexture::choose(Brick brick, const Eigen::Array3f& color,
+                                                float area_px) const {
+  const Block* best = nullptr;
+  float best_score = 0;
+  for (const Block& block : blocks_) {
+    if (block.area_px > most_scale * area_px || block.area_px * most_scale < area_px) continue;
+    const float score = luck_of(brick.i, brick.j, block.i, block.j) -
+                        (block.mean - color).abs().maxCoeff() / color_part;
+    if (best != nullptr && score <= best_score) continue;
+    best = &block;
+    best_score = score;
+  }
+  return best;
+}
+
+void PlaneTexture::make_tile(const Axes& axes, Brick brick, const Inputs& inputs,
+                             const Image<Bgr>& picture) {
+  const float a = static_cast<float>(brick.i) + (brick.j % 2 == 0 ? 0.5F : 0.F);
+  const float b = static_cast<float>(brick.j) + 0.5F;
+  Eigen::Matrix2f sides;
+  const auto middle = place(axes, a, b, sides);
+  if (!middle) return;
+  const float area_px = std::abs(sides.determinant());
+  if (!(area_px >= 1)) return;
+  const Pixel pixel = nearest_pixel(*middle);
+  const Bgr& color = picture(std::clamp(pixel.x, part_.x, part_.right() - 1),
+                             std::clamp(pixel.y, part_.y, part_.bottom() - 1));
+  const Block* const block = choose(brick, to_channels(color), area_px);
+  if (block == nullptr) return;
+  Eigen::Matrix2f shown_sides;
+  const auto shown =
+      place(axes, static_cast<float>(block->i), static_cast<float>(block->j), shown_sides);
+  if (!shown) return;
+  const Rect part = example_.part();
+  Tile& tile = tiles_(brick.i - first_.i, brick.j - first_.j);
+  tile.has_block = true;
+  tile.turn = shown_sides * sides.inverse();
+  tile.shift = *shown - tile.turn * *middle -
+               Eigen::Vector2f(static_cast<float>(part.x), static_cast<float>(part.y));
+  // A pixel more for what is cut off.
+  const Eigen::Vector2f reach =
+      shown_sides.cwiseAbs().rowwise().sum() / 2 + Eigen::Vector2f::Ones();
+  const Pixel corner = nearest_pixel(*shown - reach);
+  const Pixel end = nearest_pixel(*shown + reach);
+  example_.prepare(inputs.camera, {corner.x, corner.y, end.x - corner.x + 1, end.y - corner.y + 1});
+}
+
+/// Rows of the part.
+void PlaneTexture::add_rows(const Axes& axes, std::uint8_t label, Rows rows,
+                            DiminishedFrame& result) const {
+  for (int y = part_.y + rows.first; y < part_.y + rows.last; ++y) {
+    const std::uint8_t* const origin = result.provenance.row(y);
+    const std::uint8_t* const labels = result.surfaces.label.row(y);
+    for_each_run(origin, part_.x, part_.right(), provenance::inpainted, [&](int first, int last) {
+      for_each_run(labels, first, last, label, [&](int begin, int end) {
+        add_run(axes, begin, end, y, result.picture.row(y));
+      });
+    });
+  }
+}
+
+/// Columns [first, last).
+void PlaneTexture::add_run(const Axes& axes, int first, int last, int y, Bgr* colors) const {
+  constexpr float scale = strength / TextureExample::unit;
+  for (int begin = first; begin < last; begin += segment) {
+    const int end = std::min(last, begin + segment);
+    const auto from = coordinates(axes, begin, y);
+    const auto to = coordinates(axes, end - 1, y);
+    if (!from || !to) continue;
+    Eigen::Vector2f at = *from;
+    const Eigen::Vector2f right = (*to - at) / static_cast<float>(std::max(1, end - 1 - begin));
+    for (int x = begin; x < end; ++x, at += right) {
+      const Brick brick = brick_at(at);
+      const int column = brick.i - first_.i;
+      const int row = brick.j - first_.j;
+      if (!tiles_.bounds().contains(column, row) || !tiles_(column, row).has_block) continue;
+      const Tile& tile = tiles_(column, row);
+      const Pixel shown = nearest_pixel(
+          tile.turn * Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y)) + tile.shift);
+      const auto level = static_cast<int>(
+          std::lrint(scale * static_cast<float>(example_.grain(shown.x, shown.y))));
+      const auto add = [&](std::uint8_t& channel) {
+        channel = static_cast<std::uint8_t>(std::clamp(channel + level, 0, 255));
+      };
+      add(colors[x].b);
+      add(colors[x].g);
+      add(colors[x].r);
+    }
+  }
+}
+
+}  // namespace diminish
