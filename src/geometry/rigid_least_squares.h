@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -66,11 +65,8 @@ struct NormalEquations {
   }
 
   /// damping: enlarges the diagonal by this share of it, for a shorter step (Marquardt 1963).
-  Vector solve(Scalar damping = 0) const {
-    Matrix damped = squares;
-    damped.diagonal() *= 1 + damping;
-    return damped.ldlt().solve(products);
-  }
+  /// Compiled for float and double only.
+  Vector solve(Scalar damping = 0) const;
 };
 
 /// Levenberg-Marquardt (Marquardt 1963): takes steps that lower the cost, until the gain is tiny or
