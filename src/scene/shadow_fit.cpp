@@ -25,7 +25,7 @@ constexpr float most_unexplained = 0.6F;
 /// and at least .46 of dark posters.
 constexpr float most_unexplained_or_color = 0.41F;
 /// With less light than this a point is in the shadow.
-constexpr float shadow = 0.95F;
+constexpr float shadow_light = 0.95F;
 /// Objects do not hide the whole sky. A fit that says so explains texture.
 constexpr float most_shares = 0.75F;
 /// The largest difference between the channels' shares: a larger one is a colour, not a shadow.
@@ -228,7 +228,7 @@ bool ShadowFit::explains() {
   float without = 0;
   std::size_t in_shadow = 0;
   for (const Point& point : points_) {
-    if (point.light > shadow) continue;
+    if (point.light > shadow_light) continue;
     const float relative = point.levels[brightness] / point.field;
     with += point.weight * (relative - point.light) * (relative - point.light);
     without += point.weight * (relative - 1) * (relative - 1);
@@ -245,7 +245,7 @@ bool ShadowFit::is_colorless() const {
   float color = 0;
   float dark = 0;
   for (const Point& point : points_) {
-    if (point.light > shadow) continue;
+    if (point.light > shadow_light) continue;
     const float mean = point.relative.mean();
     color += point.weight * (point.relative - mean).square().mean();
     dark += point.weight * (mean - 1) * (mean - 1);
