@@ -7,6 +7,7 @@
 
 #include "diminish/rigid_transform.h"
 #include "geometry/rotation.h"
+#include "geometry/symmetric_solver.h"
 
 namespace diminish {
 
@@ -65,8 +66,11 @@ struct NormalEquations {
   }
 
   /// damping: enlarges the diagonal by this share of it, for a shorter step (Marquardt 1963).
-  /// Compiled for float and double only.
-  Vector solve(Scalar damping = 0) const;
+  Vector solve(Scalar damping = 0) const {
+    Matrix damped = squares;
+    damped.diagonal() *= 1 + damping;
+    return solve_symmetric(damped, products);
+  }
 };
 
 /// Levenberg-Marquardt (Marquardt 1963): takes steps that lower the cost, until the gain is tiny or

@@ -1,10 +1,10 @@
 #include "scene/color_map.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 
 #include "core/median_of_magnitudes.h"
 #include "core/robust.h"
+#include "geometry/symmetric_solver.h"
 
 namespace diminish {
 namespace {
@@ -163,9 +163,9 @@ void ColorMapFit::fit_channels(ColorMapModel model) {
       const Eigen::Array2i used(c, 3);
       const Eigen::Matrix2f own = squares(used, used);
       const Eigen::Vector2f target = products(used, c);
-      solution(used) = own.ldlt().solve(target);
+      solution(used) = solve_symmetric(own, target);
     } else {
-      solution = squares.ldlt().solve(products.col(c));
+      solution = solve_symmetric<float, 4>(squares, products.col(c));
     }
     map_.matrix.row(c) = solution.head<3>();
     map_.offset[c] = unit * solution[3];
@@ -202,7 +202,7 @@ void ColorMapFit::fit_field() {
     products[i] = product_sums[static_cast<std::size_t>(i)].sum();
   }
   squares.diagonal().array() += prior_pairs;
-  map_.field = squares.ldlt().solve(products);
+  map_.field = solve_symmetric(squares, products);
 }
 
 }  // namespace diminish

@@ -1,11 +1,11 @@
 #include "scene/shadow_fit.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "core/robust.h"
+#include "geometry/symmetric_solver.h"
 
 namespace diminish {
 namespace {
@@ -125,7 +125,7 @@ void ShadowFit::fit_field(int channel) {
   squares.diagonal().array() += 1e-3F;
   const Eigen::Matrix<float, terms, 1> products = sums.head<terms>();
   Eigen::Array<float, 8, 1> solution = Eigen::Array<float, 8, 1>::Zero();
-  solution.head<terms>() = squares.ldlt().solve(products).array();
+  solution.head<terms>() = solve_symmetric(squares, products).array();
   for (Point& point : points_) {
     constexpr float least_level = 4;
     point.field = std::max(least_level, (solution * point.monomials.head<8>()).sum());
