@@ -151,7 +151,8 @@ void ColorMapFit::fit_channels(ColorMapModel model) {
   for (int i = 0; i < 4; ++i) {
     for (int j = 0; j <= i; ++j) squares(i, j) = squares(j, i) = (square++)->sum();
     for (int c = 0; c < 3; ++c) {
-      products(i, c) = product_sums[static_cast<std::size_t>(4 * c + i)].sum();
+      products(i, c) =
+          product_sums[4 * static_cast<std::size_t>(c) + static_cast<std::size_t>(i)].sum();
     }
   }
   constexpr float prior = prior_pairs / 16;
