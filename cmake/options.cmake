@@ -18,6 +18,8 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # Nor does it tell any more that what it warns of is the standard library's own.
     target_compile_options(diminish_build_options INTERFACE -Wno-stringop-overflow -Wno-stringop-overread
       -Wno-array-bounds)
+    # Collecting its garbage before half a gigabyte is in use would take a tenth of its time.
+    target_compile_options(diminish_build_options INTERFACE --param=ggc-min-heapsize=500000)
   endif()
 endif()
 if(DIMINISH_UNITY_BUILD)
@@ -58,7 +60,7 @@ if(DIMINISH_BUILD_FUZZERS)
     -fsanitize-coverage-allowlist=${PROJECT_SOURCE_DIR}/fuzz/coverage.txt)
 endif()
 
-# diminish_compile_together(TARGET FILE...): in a unity build up to eight FILEs of this folder are one for the
+# diminish_compile_together(TARGET FILE...): in a unity build up to 16 FILEs of this folder are one for the
 # compiler, which reads the headers once for all of them. Names in their unnamed namespaces must differ.
 function(diminish_compile_together target)
   if(NOT DIMINISH_UNITY_BUILD)
@@ -78,7 +80,7 @@ function(diminish_compile_together target)
   file(RELATIVE_PATH room ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
   list(GET files 0 first)
   get_filename_component(first ${first} NAME_WE)
-  math(EXPR groups "(${count} + 7) / 8")
+  math(EXPR groups "(${count} + 15) / 16")
   set(index 0)
   foreach(file IN LISTS files)
     math(EXPR group "${index} * ${groups} / ${count} + 1")
@@ -87,6 +89,23 @@ function(diminish_compile_together target)
     math(EXPR index "${index} + 1")
   endforeach()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+endfunction()
+
+# diminish_compile_kernels_together(TARGET FILE...): the same for FILEs that Highway includes once for each kind of
+# CPU. It includes what HWY_TARGET_INCLUDE says: here a file that includes all of them, each of which says itself.
+function(diminish_compile_kernels_together target)
+  if(NOT DIMINISH_UNITY_BUILD)
+    return()
+  endif()
+  list(TRANSFORM ARGN PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
+  set(together ${CMAKE_CURRENT_BINARY_DIR}/kernels.cpp)
+  set(own_name "#define HWY_TARGET_INCLUDE \"${together}\"\n")
+  list(TRANSFORM ARGN REPLACE "(.+)" "#include \"\\1\"\n" OUTPUT_VARIABLE includes)
+  string(CONCAT content ${own_name} "#include <hwy/foreach_target.h>\n" ${includes} "#undef HWY_TARGET_INCLUDE\n" ${own_name})
+  file(CONFIGURE OUTPUT ${together} CONTENT "${content}" @ONLY)
+  target_sources(${target} PRIVATE ${together})
+  set_source_files_properties(${together} TARGET_DIRECTORY ${target} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  set_source_files_properties(${ARGN} TARGET_DIRECTORY ${target} PROPERTIES HEADER_FILE_ONLY ON)
 endfunction()
 
 # diminish_sources(FILE...): adds FILEs to the library. diminish_tests(FILE...): adds them to the tests.

@@ -1,6 +1,5 @@
 #include "composite/shadow_gain.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -8,6 +7,7 @@
 #include "core/robust.h"
 #include "core/runs.h"
 #include "diminish/diminished_frame.h"
+#include "geometry/symmetric_solver.h"
 #include "scene/background_planes.h"
 #include "scene/shadow_fit.h"
 
@@ -253,7 +253,7 @@ bool ShadowGain::fit_field(bool only_lit) {
       squares += weighted * cell.monomials.transpose();
       products += cell.color[brightness] * weighted;
     }
-    field_ = squares.ldlt().solve(products);
+    field_ = solve_symmetric(squares, products);
     residuals_.clear();
     for (const Cell& cell : cells_) residuals_.push_back(residual(cell));
     texture_ = std::max(least_texture, 1.48F * median(residuals_));

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -8,6 +7,7 @@
 
 #include "diminish/rigid_transform.h"
 #include "geometry/rotation.h"
+#include "geometry/symmetric_solver.h"
 
 namespace diminish {
 
@@ -69,7 +69,7 @@ struct NormalEquations {
   Vector solve(Scalar damping = 0) const {
     Matrix damped = squares;
     damped.diagonal() *= 1 + damping;
-    return damped.ldlt().solve(products);
+    return solve_symmetric(damped, products);
   }
 };
 

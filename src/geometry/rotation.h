@@ -12,4 +12,8 @@ inline Eigen::Matrix3d rotation_by(const Eigen::Vector3d& axis_times_angle) {
   return Eigen::AngleAxisd(angle, axis_times_angle / angle).toRotationMatrix();
 }
 
+/// The rotation nearest to a matrix, in the sense of least squares: by its singular value
+/// decomposition. A reflection for a matrix with a negative determinant.
+Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& matrix);
+
 }  // namespace diminish

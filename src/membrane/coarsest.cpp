@@ -9,7 +9,6 @@ namespace {
 
 constexpr int none = -1;
 constexpr int fixed = -2;
-constexpr int channels = MembraneLevel::channels;
 
 /// From a group's centre to the centre of a fixed cell outside its own 2x2.
 double weight_to_fixed(double weight) {
@@ -178,8 +177,8 @@ void MembraneCoarsest::correct(const MembraneLevel& level, const float* right_si
   if (group_count_ == 0) return;
   std::fill(solution_.begin(), solution_.end(), Eigen::Array4f::Zero());
   for (const Equation& equation : red_) {
-    float residual[channels];
-    for (int c = 0; c < channels; ++c) {
+    float residual[MembraneLevel::channels];
+    for (int c = 0; c < MembraneLevel::channels; ++c) {
       const std::ptrdiff_t at = equation.triple + c * level.channel_step();
       const float* const own = values + at;
       residual[c] = right_side[at] + equation.left * own[equation.to_left] +
@@ -215,7 +214,7 @@ void MembraneCoarsest::correct(const MembraneLevel& level, const float* right_si
   }
   for (const Cell& cell : cells_) {
     const Eigen::Array4f& correction = solution_[static_cast<std::size_t>(cell.group)];
-    for (int c = 0; c < channels; ++c) {
+    for (int c = 0; c < MembraneLevel::channels; ++c) {
       values[cell.triple + c * level.channel_step()] += correction[c];
     }
   }

@@ -1,6 +1,5 @@
 #include "pose/marker_pose.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,6 +9,7 @@
 #include "geometry/homography.h"
 #include "geometry/ideal_camera.h"
 #include "geometry/rigid_least_squares.h"
+#include "geometry/rotation.h"
 
 namespace diminish {
 namespace {
@@ -97,15 +97,19 @@ RigidTransform pose_from_homography(const IdealView& view, double size_m) {
   axes.leftCols<2>() *= scale;
   center *= scale;
   axes.col(2) = axes.col(0).cross(axes.col(1));
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(axes, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  return {svd.matrixU() * svd.matrixV().transpose(), center};
+  return {nearest_rotation(axes), center};
 }
 
 /// The pose that looks the same from afar: the marker's plane, mirrored about the line of sight
 /// (Schweighofer & Pinz 2006).
 RigidTransform mirrored(const RigidTransform& camera_from_solver) {
+  // The smallest rotation that turns the line of sight into the optical axis. Without a direction
+  // if the marker is straight behind the camera, where no pose is kept.
+  const Eigen::Vector3d sight = camera_from_solver.translation.normalized();
+  const double twice_cosine = std::sqrt(2 * (1 + sight.z()));  // of half the angle
+  const double factor = 1 / twice_cosine;
   const Eigen::Matrix3d sight_from_camera =
-      Eigen::Quaterniond::FromTwoVectors(camera_from_solver.translation, Eigen::Vector3d::UnitZ())
+      Eigen::Quaterniond(twice_cosine / 2, sight.y() * factor, -sight.x() * factor, 0)
           .toRotationMatrix();
   const Eigen::Matrix3d flip = Eigen::Vector3d(1, 1, -1).asDiagonal();
   return {

@@ -1,10 +1,10 @@
 #include "scene/color_map.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 
 #include "core/median_of_magnitudes.h"
 #include "core/robust.h"
+#include "geometry/symmetric_solver.h"
 
 namespace diminish {
 namespace {
@@ -151,7 +151,8 @@ void ColorMapFit::fit_channels(ColorMapModel model) {
   for (int i = 0; i < 4; ++i) {
     for (int j = 0; j <= i; ++j) squares(i, j) = squares(j, i) = (square++)->sum();
     for (int c = 0; c < 3; ++c) {
-      products(i, c) = product_sums[static_cast<std::size_t>(4 * c + i)].sum();
+      products(i, c) =
+          product_sums[4 * static_cast<std::size_t>(c) + static_cast<std::size_t>(i)].sum();
     }
   }
   constexpr float prior = prior_pairs / 16;
@@ -163,9 +164,9 @@ void ColorMapFit::fit_channels(ColorMapModel model) {
       const Eigen::Array2i used(c, 3);
       const Eigen::Matrix2f own = squares(used, used);
       const Eigen::Vector2f target = products(used, c);
-      solution(used) = own.ldlt().solve(target);
+      solution(used) = solve_symmetric(own, target);
     } else {
-      solution = squares.ldlt().solve(products.col(c));
+      solution = solve_symmetric<float, 4>(squares, products.col(c));
     }
     map_.matrix.row(c) = solution.head<3>();
     map_.offset[c] = unit * solution[3];
@@ -202,7 +203,7 @@ void ColorMapFit::fit_field() {
     products[i] = product_sums[static_cast<std::size_t>(i)].sum();
   }
   squares.diagonal().array() += prior_pairs;
-  map_.field = squares.ldlt().solve(products);
+  map_.field = solve_symmetric(squares, products);
 }
 
 }  // namespace diminish

@@ -1,11 +1,11 @@
 #include "scene/shadow_fit.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "core/robust.h"
+#include "geometry/symmetric_solver.h"
 
 namespace diminish {
 namespace {
@@ -25,7 +25,7 @@ constexpr float most_unexplained = 0.6F;
 /// and at least .46 of dark posters.
 constexpr float most_unexplained_or_color = 0.41F;
 /// With less light than this a point is in the shadow.
-constexpr float shadow = 0.95F;
+constexpr float shadow_light = 0.95F;
 /// Objects do not hide the whole sky. A fit that says so explains texture.
 constexpr float most_shares = 0.75F;
 /// The largest difference between the channels' shares: a larger one is a colour, not a shadow.
@@ -125,7 +125,7 @@ void ShadowFit::fit_field(int channel) {
   squares.diagonal().array() += 1e-3F;
   const Eigen::Matrix<float, terms, 1> products = sums.head<terms>();
   Eigen::Array<float, 8, 1> solution = Eigen::Array<float, 8, 1>::Zero();
-  solution.head<terms>() = squares.ldlt().solve(products).array();
+  solution.head<terms>() = solve_symmetric(squares, products).array();
   for (Point& point : points_) {
     constexpr float least_level = 4;
     point.field = std::max(least_level, (solution * point.monomials.head<8>()).sum());
@@ -228,7 +228,7 @@ bool ShadowFit::explains() {
   float without = 0;
   std::size_t in_shadow = 0;
   for (const Point& point : points_) {
-    if (point.light > shadow) continue;
+    if (point.light > shadow_light) continue;
     const float relative = point.levels[brightness] / point.field;
     with += point.weight * (relative - point.light) * (relative - point.light);
     without += point.weight * (relative - 1) * (relative - 1);
@@ -245,7 +245,7 @@ bool ShadowFit::is_colorless() const {
   float color = 0;
   float dark = 0;
   for (const Point& point : points_) {
-    if (point.light > shadow) continue;
+    if (point.light > shadow_light) continue;
     const float mean = point.relative.mean();
     color += point.weight * (point.relative - mean).square().mean();
     dark += point.weight * (mean - 1) * (mean - 1);

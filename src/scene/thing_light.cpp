@@ -1,9 +1,10 @@
 #include "scene/thing_light.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+
+#include "geometry/symmetric_solver.h"
 
 namespace diminish {
 namespace {
@@ -39,7 +40,7 @@ Eigen::Vector3f facing(const Image<float>& inverse_depth, int column, int row,
     }
   }
   if (count < fewest_blocks || squares.determinant() < 1) return Eigen::Vector3f::Zero();
-  const Eigen::Vector3f fit = squares.ldlt().solve(products);
+  const Eigen::Vector3f fit = solve_symmetric(squares, products);
   const Eigen::Vector2f slope = fit.tail<2>() / ray_step;
   // For a plane at n . point = 1, n . ray = 1 / z; -n faces the camera.
   return -Eigen::Vector3f(slope.x(), slope.y(), own + fit[0] - slope.dot(ray)).normalized();

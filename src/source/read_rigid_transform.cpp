@@ -1,7 +1,6 @@
 #include "source/read_rigid_transform.h"
 
-#include <Eigen/SVD>
-
+#include "geometry/rotation.h"
 #include "source/configuration_checks.h"
 
 namespace diminish {
@@ -13,9 +12,7 @@ RigidTransform read_rigid_transform(const Config& config) {
   const RigidTransform given{Eigen::Map<const RowMajor>(numbers.data()),
                              config.at("translation").vector3()};
   check_rigid_transform(given, config);
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(given.rotation,
-                                              Eigen::ComputeFullU | Eigen::ComputeFullV);
-  return {svd.matrixU() * svd.matrixV().transpose(), given.translation};
+  return {nearest_rotation(given.rotation), given.translation};
 }
 
 }  // namespace diminish

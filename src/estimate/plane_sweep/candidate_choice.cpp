@@ -18,9 +18,9 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
 /// In how many bits the codes of a row's pixels and of those in the other view differ.
-void MatchRow(const Parallax& parallax, int y, const std::uint32_t* codes,
-              const float* inverse_depths, int count, const std::uint32_t* other, int width,
-              int height, std::uint8_t* costs) {
+void MatchCandidates(const Parallax& parallax, int y, const std::uint32_t* codes,
+                     const float* inverse_depths, int count, const std::uint32_t* other, int width,
+                     int height, std::uint8_t* costs) {
   ForEachPixelVector(count, [&](auto d, int x) HWY_ATTR {
     const hn::RebindToSigned<decltype(d)> di;
     const hn::RebindToUnsigned<decltype(d)> du;
@@ -52,7 +52,7 @@ HWY_AFTER_NAMESPACE();
 namespace diminish {
 namespace {
 
-HWY_EXPORT(MatchRow);
+HWY_EXPORT(MatchCandidates);
 
 /// The square around a pixel whose census decides.
 constexpr int reach = 2;
@@ -103,7 +103,7 @@ void CandidateChoice::choose(const FineViews& views, const SweepPlanes& planes,
         const float* const known = scratch.coarse_rows[number / 2].data();
         const int* const columns = columns_[number % 2].data();
         for (std::size_t x = 0; x < depths.size(); ++x) depths[x] = known[columns[x]];
-        HWY_DYNAMIC_DISPATCH(MatchRow)
+        HWY_DYNAMIC_DISPATCH(MatchCandidates)
         (views.parallax, y, views.reference_census.row(y), depths.data(), width,
          views.other_census.data(), views.other_census.width(), views.other_census.height(),
          costs_[number].row(y));

@@ -54,13 +54,14 @@ namespace {
 
 HWY_EXPORT(CensusRow);
 
-constexpr int reach = 2;
+constexpr int census_reach = 2;
 
 }  // namespace
 
 void census(const Image<std::uint8_t>& grey, const Rect& part, Image<std::uint32_t>& codes) {
   const Rect all = grey.bounds();
-  const Rect inner = {reach, reach, all.width - 2 * reach, all.height - 2 * reach};
+  const Rect inner = {census_reach, census_reach, all.width - 2 * census_reach,
+                      all.height - 2 * census_reach};
   const Rect coded = inner.empty() ? Rect{} : intersect(part, inner);
   for_rows(part.height, [&](Rows rows) {
     for (int y = part.y + rows.first; y < part.y + rows.last; ++y) {

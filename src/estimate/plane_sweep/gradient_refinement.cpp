@@ -107,18 +107,18 @@ namespace {
 HWY_EXPORT(CompareRow);
 
 /// The square around a pixel whose gradients count.
-constexpr int reach = 4;
+constexpr int refinement_reach = 4;
 
 }  // namespace
 
 /// Adds a row's pixels to the sums of its columns, or takes them away (sign -1).
 void GradientRefinement::add_row(const std::int16_t* differences, const std::int16_t* slopes,
                                  int count, std::int32_t sign, Scratch& scratch) {
-  std::int32_t* const numbers = scratch.columns[0].data() + reach;
-  std::int32_t* const difference_sums = scratch.columns[1].data() + reach;
-  std::int32_t* const slope_sums = scratch.columns[2].data() + reach;
-  std::int32_t* const products = scratch.columns[3].data() + reach;
-  std::int32_t* const squares = scratch.columns[4].data() + reach;
+  std::int32_t* const numbers = scratch.columns[0].data() + refinement_reach;
+  std::int32_t* const difference_sums = scratch.columns[1].data() + refinement_reach;
+  std::int32_t* const slope_sums = scratch.columns[2].data() + refinement_reach;
+  std::int32_t* const products = scratch.columns[3].data() + refinement_reach;
+  std::int32_t* const squares = scratch.columns[4].data() + refinement_reach;
   for (int x = 0; x < count; ++x) {
     const bool known = differences[x] != unknown_difference;
     const std::int32_t difference = known ? sign * differences[x] : 0;
@@ -169,15 +169,16 @@ void GradientRefinement::move(const FineViews& views, float step, Image<float>& 
   for_rows(height, [&](Rows rows) {
     Scratch& scratch = scratch_[rows.band];
     for (auto& columns : scratch.columns) {
-      columns.assign(static_cast<std::size_t>(width) + std::size_t{2} * reach, 0);
+      columns.assign(static_cast<std::size_t>(width) + std::size_t{2} * refinement_reach, 0);
     }
     for (auto& sums : scratch.sums) sums.resize(static_cast<std::size_t>(width));
     for (int y = rows.first; y < rows.last; ++y) {
-      move_window(y, y == rows.first, reach, height, [&](int row, int sign) {
+      move_window(y, y == rows.first, refinement_reach, height, [&](int row, int sign) {
         add_row(difference_.row(row), slope_.row(row), width, sign, scratch);
       });
       for (std::size_t term = 0; term < terms; ++term) {
-        add_columns<reach>(scratch.columns[term].data(), width, scratch.sums[term].data());
+        add_columns<refinement_reach>(scratch.columns[term].data(), width,
+                                      scratch.sums[term].data());
       }
       move_row(scratch, width, step, inverse_depth.row(y));
     }
