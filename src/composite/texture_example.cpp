@@ -12,11 +12,11 @@ namespace {
 /// The grain of a pixel looks this far around.
 constexpr int grain_reach = TextureExample::mean_reach;
 /// Of a cell, every fourth pixel of every fourth row tells its colour and contrast.
-constexpr int look_step = 4;
+constexpr int sample_step = 4;
 /// Around a cell, in cells, nothing but the plane may be.
 constexpr int clearance = 1;
 /// Fewer cells have no typical contrast.
-constexpr std::size_t fewest_cells = 4;
+constexpr std::size_t fewest_for_median = 4;
 
 int brightness(const Bgr& color) {
   return color.b + 2 * color.g + color.r;
@@ -57,10 +57,10 @@ void TextureExample::mark_samples(const std::vector<SceneSample>& samples,
 
 void TextureExample::mark_objects(const Mask& occlusion) {
   for (int row = 0; row < cells_.height(); ++row) {
-    for (int y = (first_row_ + row) * cell; y < (first_row_ + row + 1) * cell; y += look_step) {
+    for (int y = (first_row_ + row) * cell; y < (first_row_ + row + 1) * cell; y += sample_step) {
       const std::uint8_t* mask = occlusion.row(y) + first_column_ * cell;
       for (int column = 0; column < cells_.width(); ++column, mask += cell) {
-        const int set = mask[0] | mask[look_step] | mask[2 * look_step] | mask[3 * look_step];
+        const int set = mask[0] | mask[sample_step] | mask[2 * sample_step] | mask[3 * sample_step];
         cells_(column, row).has_object |= set != 0;
       }
     }
@@ -73,12 +73,12 @@ void TextureExample::look_at(ImageView<Bgr> camera, int column, int row) {
   Cell& seen = cells_(column, row);
   int squares = 0;
   const int left = (first_column_ + column) * cell;
-  for (int y = look_step / 2; y < cell; y += look_step) {
+  for (int y = sample_step / 2; y < cell; y += sample_step) {
     const int picture_y = (first_row_ + row) * cell + y;
     const Bgr* const colors = camera.row(picture_y) + left;
     const Bgr* const above = camera.row(picture_y - lag) + left;
     const Bgr* const below = camera.row(picture_y + lag) + left;
-    for (int x = look_step / 2; x < cell; x += look_step) {
+    for (int x = sample_step / 2; x < cell; x += sample_step) {
       const int twice = 2 * brightness(colors[x]);
       const int across = twice - brightness(colors[x - lag]) - brightness(colors[x + lag]);
       const int down = twice - brightness(above[x]) - brightness(below[x]);
@@ -86,7 +86,7 @@ void TextureExample::look_at(ImageView<Bgr> camera, int column, int row) {
       seen.mean += to_channels(colors[x]);
     }
   }
-  seen.mean /= (cell / look_step) * (cell / look_step);
+  seen.mean /= (cell / sample_step) * (cell / sample_step);
   seen.contrast = std::sqrt(static_cast<float>(squares));
 }
 
@@ -111,7 +111,7 @@ void TextureExample::choose(ImageView<Bgr> camera) {
     }
   }
   float most = -1;
-  if (contrasts_.size() >= fewest_cells) {
+  if (contrasts_.size() >= fewest_for_median) {
     const auto middle = contrasts_.begin() + static_cast<std::ptrdiff_t>(contrasts_.size() / 2);
     std::nth_element(contrasts_.begin(), middle, contrasts_.end());
     most = most_contrast * *middle;
