@@ -27,9 +27,9 @@ constexpr int most_bricks = 1 << 12;
 constexpr std::size_t most_blocks = 12;
 /// A place whose pixels are so much smaller or larger on the plane shows another grain.
 constexpr float most_scale = 2.5F;
-/// Levels: a place whose mean differs so much from the brick's colour is as unwelcome as the least
-/// lucky place.
-constexpr float color_part = 12;
+/// Levels: a place whose mean differs so much from the brick's colour shows something else. It is
+/// not weighed against luck: then noise would change a brick's grain from frame to frame.
+constexpr float most_away = 24;
 /// Of the grain: half of its energy. A grain in the wrong place is an error, too.
 constexpr float strength = 0.7F;
 /// Along so many pixels of a row, places on the plane lie evenly.
@@ -230,14 +230,14 @@ void PlaneTexture::add_block(const Axes& axes, int i, int j) {
 const PlaneTexture::Block* PlaneTexture::choose(Brick brick, const Eigen::Array3f& color,
                                                 float area_px) const {
   const Block* best = nullptr;
-  float best_score = 0;
+  float best_luck = -1;
   for (const Block& block : blocks_) {
     if (block.area_px > most_scale * area_px || block.area_px * most_scale < area_px) continue;
-    const float score = luck_of(brick.i, brick.j, block.i, block.j) -
-                        (block.mean - color).abs().maxCoeff() / color_part;
-    if (best != nullptr && score <= best_score) continue;
+    if ((block.mean - color).abs().maxCoeff() > most_away) continue;
+    const float luck = luck_of(brick.i, brick.j, block.i, block.j);
+    if (luck <= best_luck) continue;
     best = &block;
-    best_score = score;
+    best_luck = luck;
   }
   return best;
 }
