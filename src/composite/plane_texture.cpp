@@ -135,7 +135,7 @@ std::optional<Eigen::Vector2f> PlaneTexture::place(const Axes& axes, float a, fl
 /// Also how far a brick's sides along u and v reach there.
 std::optional<Eigen::Vector2f> PlaneTexture::place(const Axes& axes, float a, float b,
                                                    Eigen::Matrix2f& sides) const {
-  const auto middle = place(axes, a, b);
+  auto middle = place(axes, a, b);
   const auto right = place(axes, a + step, b);
   const auto up = place(axes, a, b + step);
   if (!middle || !right || !up) return std::nullopt;

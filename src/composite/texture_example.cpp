@@ -58,9 +58,10 @@ void TextureExample::mark_samples(const std::vector<SceneSample>& samples,
 void TextureExample::mark_objects(const Mask& occlusion) {
   for (int row = 0; row < cells_.height(); ++row) {
     for (int y = (first_row_ + row) * cell; y < (first_row_ + row + 1) * cell; y += sample_step) {
-      const std::uint8_t* mask = occlusion.row(y) + first_column_ * cell;
+      const std::uint8_t* mask = &occlusion(first_column_ * cell, y);
       for (int column = 0; column < cells_.width(); ++column, mask += cell) {
-        const int set = mask[0] | mask[sample_step] | mask[2 * sample_step] | mask[3 * sample_step];
+        int set = 0;
+        for (std::ptrdiff_t x = 0; x < cell; x += sample_step) set |= mask[x];
         cells_(column, row).has_object |= set != 0;
       }
     }
@@ -86,7 +87,8 @@ void TextureExample::look_at(ImageView<Bgr> camera, int column, int row) {
       seen.mean += to_channels(colors[x]);
     }
   }
-  seen.mean /= (cell / sample_step) * (cell / sample_step);
+  constexpr int looked_at = (cell / sample_step) * (cell / sample_step);
+  seen.mean /= static_cast<float>(looked_at);
   seen.contrast = std::sqrt(static_cast<float>(squares));
 }
 
@@ -139,8 +141,8 @@ void TextureExample::find_grain(ImageView<Bgr> camera, int column, int row) {
   std::array<std::array<std::uint16_t, size>, size> bright;
   for (std::size_t y = 0; y < size; ++y) {
     const Bgr* const colors =
-        camera.row((first_row_ + row) * cell + static_cast<int>(y) - grain_reach) +
-        (first_column_ + column) * cell - grain_reach;
+        &camera((first_column_ + column) * cell - grain_reach,
+                (first_row_ + row) * cell + static_cast<int>(y) - grain_reach);
     for (std::size_t x = 0; x < size; ++x) {
       bright[y][x] = static_cast<std::uint16_t>(brightness(colors[x]) / 2);
     }
@@ -162,7 +164,7 @@ void TextureExample::find_grain(ImageView<Bgr> camera, int column, int row) {
     for (std::size_t k = 0; k < side; ++k) {
       for (std::size_t x = 0; x < cell; ++x) sums[x] += column_sums[x + k];
     }
-    std::int16_t* const grain = grain_.row(row * cell + static_cast<int>(y)) + column * cell;
+    std::int16_t* const grain = &grain_(column * cell, row * cell + static_cast<int>(y));
     for (std::size_t x = 0; x < cell; ++x) {
       const std::size_t at = x + grain_reach;
       const int own = fine[at - 1] + 2 * fine[at] + fine[at + 1];

@@ -36,6 +36,7 @@ TEST(GlOwnThread, ManyCallersWaitForTheirOwnWork) {
   OwnThread own;
   int count = 0;  // changed in one thread only
   std::vector<std::thread> callers;
+  callers.reserve(4);
   for (int i = 0; i < 4; ++i) {
     callers.emplace_back([&] {
       for (int k = 0; k < 500; ++k) {

@@ -23,7 +23,7 @@ std::vector<std::string> files(const Rasterizer& rasterizer, const char* last) {
 /// Gives the reconstruction its region, and as much memory as will be filled.
 void begin(const Rig& rig, const FrameInputs& inputs, Stage last, DiminishedFrame& result) {
   Reconstruction& reconstruction = result.reconstruction;
-  result.surfaces.region = inputs.region;
+  result.surfaces.region = static_cast<const Rect&>(inputs.region);
   result.surfaces.label.resize(0, 0);
   result.surfaces.light.resize(0, 0);
   if (FrameCompositor::gives_reconstruction(inputs, last)) {
