@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "core/tracing.h"
 #include "sink/distribution.h"
@@ -53,8 +54,10 @@ WorkAndSpan measure_work_and_span(const Recording& input, const std::vector<Fram
                           {}};
   for (const char* const name : stage_names) {
     const double ns = median([&](const Cost& cost) {
-      const auto link = std::find_if(cost.chain.begin(), cost.chain.end(),
-                                     [&](const Cost::Link& each) { return each.name == name; });
+      // Each file may have the name's text in a place of its own.
+      const auto link =
+          std::find_if(cost.chain.begin(), cost.chain.end(),
+                       [&](const Cost::Link& each) { return std::string_view(each.name) == name; });
       return link == cost.chain.end() ? 0 : link->ns;
     });
     if (ns > 0) median_cost.chain_ms.emplace_back(name, ns / ns_per_ms);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <mutex>
+#include <string_view>
 #include <utility>
 
 namespace diminish::tracing {
@@ -44,8 +45,9 @@ void record(const char* name, int part, std::int64_t begin_ns, std::int64_t end_
 }
 
 void add_link(Cost& cost, const Cost::Link& added) {
-  const auto same = std::find_if(cost.chain.begin(), cost.chain.end(),
-                                 [&](const Cost::Link& link) { return link.name == added.name; });
+  const auto same = std::find_if(cost.chain.begin(), cost.chain.end(), [&](const Cost::Link& link) {
+    return std::string_view(link.name) == added.name;
+  });
   if (same == cost.chain.end()) {
     cost.chain.push_back(added);
   } else {
