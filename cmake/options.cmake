@@ -18,7 +18,7 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # Nor does it tell any more that what it warns of is the standard library's own.
     target_compile_options(diminish_build_options INTERFACE -Wno-stringop-overflow -Wno-stringop-overread
       -Wno-array-bounds)
-    # Collecting its garbage before half a gigabyte is in use would take a tenth of its time.
+    # Collecting its garbage before half a gigabyte is in use takes a few per cent of its time.
     target_compile_options(diminish_build_options INTERFACE --param=ggc-min-heapsize=500000)
   endif()
 endif()

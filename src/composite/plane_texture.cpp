@@ -12,8 +12,8 @@
 namespace diminish {
 namespace {
 
-/// Of a brick in the picture, about. It must hold a few ripples of a grain, and the example must
-/// have places that large.
+/// A brick's side in the picture, about. It must hold a few ripples of a grain, and the example
+/// must have places that large.
 constexpr float brick_px = 36;
 /// How far from the objects the example is looked for.
 constexpr int example_reach_px = 96;
@@ -51,6 +51,11 @@ float luck_of(int i, int j, int k = 0, int l = 0) {
   return static_cast<float>(value) / static_cast<float>(std::numeric_limits<std::uint32_t>::max());
 }
 
+/// Every other row of bricks is moved back by half a brick.
+float row_shift(int j) {
+  return j % 2 == 0 ? 0 : 0.5F;
+}
+
 /// Without SSE4, std::floor is a call.
 int floor_of(float value) {
   const auto whole = static_cast<int>(value);
@@ -79,22 +84,31 @@ void PlaneTexture::add(const Inputs& inputs, DiminishedFrame& result) {
   }
 }
 
+/// Calls visit(x, y) for every fourth pixel of every fourth row that was invented on a plane.
+template <class Visit>
+void PlaneTexture::for_some_open(const DiminishedFrame& result, std::uint8_t label,
+                                 const Visit& visit) const {
+  for (int y = part_.y; y < part_.bottom(); y += look_step) {
+    for (int x = part_.x; x < part_.right(); x += look_step) {
+      const bool is_invented = result.provenance(x, y) == provenance::inpainted;
+      if (is_invented && result.surfaces.label(x, y) == label) visit(x, y);
+    }
+  }
+}
+
 /// Of what is invented on a plane; nothing if that is little.
 std::optional<float> PlaneTexture::mean_depth_m(const DiminishedFrame& result,
                                                 const BackgroundPlane& plane,
                                                 std::uint8_t label) const {
   int count = 0;
   float sum_m = 0;
-  for (int y = part_.y; y < part_.bottom(); y += look_step) {
-    for (int x = part_.x; x < part_.right(); x += look_step) {
-      if (!is_open(result, label, x, y)) continue;
-      const Eigen::Vector2f ray = (*rays_)(x, y);
-      const float inverse = plane.inverse_depth(ray.x(), ray.y());
-      if (!(inverse > 0)) continue;
-      sum_m += 1 / inverse;
-      ++count;
-    }
-  }
+  for_some_open(result, label, [&](int x, int y) {
+    const Eigen::Vector2f ray = (*rays_)(x, y);
+    const float inverse = plane.inverse_depth(ray.x(), ray.y());
+    if (!(inverse > 0)) return;
+    sum_m += 1 / inverse;
+    ++count;
+  });
   if (count * look_step * look_step < fewest_pixels) return std::nullopt;
   return sum_m / static_cast<float>(count);
 }
@@ -146,18 +160,15 @@ std::optional<Eigen::Vector2f> PlaneTexture::place(const Axes& axes, float a, fl
 
 PlaneTexture::Brick PlaneTexture::brick_at(const Eigen::Vector2f& at) {
   const int j = floor_of(at.y());
-  return {floor_of(at.x() + (j % 2 == 0 ? 0 : 0.5F)), j};
+  return {floor_of(at.x() + row_shift(j)), j};
 }
 
 /// Finds the bricks of what is invented. False if there are too many.
 bool PlaneTexture::lay_bricks(const Axes& axes, const DiminishedFrame& result, std::uint8_t label) {
   bricks_.clear();
-  for (int y = part_.y; y < part_.bottom(); y += look_step) {
-    for (int x = part_.x; x < part_.right(); x += look_step) {
-      if (!is_open(result, label, x, y)) continue;
-      if (const auto at = coordinates(axes, x, y)) bricks_.push_back(brick_at(*at));
-    }
-  }
+  for_some_open(result, label, [&](int x, int y) {
+    if (const auto at = coordinates(axes, x, y)) bricks_.push_back(brick_at(*at));
+  });
   if (bricks_.empty()) return false;
   Brick last = first_ = bricks_.front();
   for (const Brick& brick : bricks_) {
@@ -244,7 +255,7 @@ const PlaneTexture::Block* PlaneTexture::choose(Brick brick, const Eigen::Array3
 
 void PlaneTexture::make_tile(const Axes& axes, Brick brick, const Inputs& inputs,
                              const Image<Bgr>& picture) {
-  const float a = static_cast<float>(brick.i) + (brick.j % 2 == 0 ? 0.5F : 0.F);
+  const float a = static_cast<float>(brick.i) + 0.5F - row_shift(brick.j);
   const float b = static_cast<float>(brick.j) + 0.5F;
   Eigen::Matrix2f sides;
   const auto middle = place(axes, a, b, sides);

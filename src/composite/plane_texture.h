@@ -62,9 +62,8 @@ class PlaneTexture {
     Eigen::Vector2f shift = Eigen::Vector2f::Zero();
   };
 
-  bool is_open(const DiminishedFrame& result, std::uint8_t label, int x, int y) const {
-    return result.provenance(x, y) == provenance::inpainted && result.surfaces.label(x, y) == label;
-  }
+  template <class Visit>
+  void for_some_open(const DiminishedFrame& result, std::uint8_t label, const Visit& visit) const;
   std::optional<float> mean_depth_m(const DiminishedFrame& result, const BackgroundPlane& plane,
                                     std::uint8_t label) const;
   static Axes axes_of(const Inputs& inputs, const BackgroundPlane& plane, float size_m);

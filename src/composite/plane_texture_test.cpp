@@ -146,7 +146,7 @@ TEST_F(Wall, GrainHasTheWallsDirectionAndNearlyItsContrast) {
   ASSERT_EQ(contrast(inside), 0);
   add();
   const Rect beside{120, 160, 90, 110};
-  // Of .7 of it, the finest is taken for noise.
+  // .7 of it is added, less the finest, which is taken for noise.
   EXPECT_GT(contrast(inside), 0.45 * contrast(beside));
   EXPECT_LT(contrast(inside), 0.75 * contrast(beside));
   const Rect around = grow(object, 30);

@@ -192,8 +192,7 @@ void ShadowGain::gather_samples(const Inputs& inputs, const CastShadows::Shadow&
   cells_.clear();
   const Rect whole = inputs.picture.bounds();
   for (const SceneSample& sample : inputs.samples) {
-    const float tolerance_m = BackgroundPlanes::tolerance.at(sample.point_m.z());
-    if (std::abs(shadow.ground.plane.height_m(sample.point_m)) > tolerance_m) continue;
+    if (!BackgroundPlanes::lies_on(shadow.ground.plane, sample.point_m)) continue;
     const Rect part{static_cast<int>(sample.pixel.x()) - part_px / 2,
                     static_cast<int>(sample.pixel.y()) - part_px / 2, part_px, part_px};
     if (intersect(part, whole) != part || shadow.light_at(sample.point_m) < lit) continue;

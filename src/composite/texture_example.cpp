@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "core/channels.h"
+#include "core/quick_brightness.h"
+#include "core/robust.h"
 
 namespace diminish {
 namespace {
@@ -17,10 +19,6 @@ constexpr int sample_step = 4;
 constexpr int clearance = 1;
 /// Fewer cells have no typical contrast.
 constexpr std::size_t fewest_for_median = 4;
-
-int brightness(const Bgr& color) {
-  return color.b + 2 * color.g + color.r;
-}
 
 }  // namespace
 
@@ -47,11 +45,9 @@ void TextureExample::mark_samples(const std::vector<SceneSample>& samples,
   for (const SceneSample& sample : samples) {
     const auto x = static_cast<int>(std::lrint(sample.pixel.x()));
     const auto y = static_cast<int>(std::lrint(sample.pixel.y()));
-    if (!is_inside(x, y)) continue;
-    Cell& marked = cells_(x / cell - first_column_, y / cell - first_row_);
-    const float tolerance_m = BackgroundPlanes::tolerance.at(sample.point_m.z());
-    const bool is_on = std::abs(plane.height_m(sample.point_m)) < tolerance_m;
-    (is_on ? marked.on_plane : marked.off_plane) = true;
+    if (!part().contains(x, y)) continue;
+    Cell& marked = at(x, y);
+    (BackgroundPlanes::lies_on(plane, sample.point_m) ? marked.on_plane : marked.off_plane) = true;
   }
 }
 
@@ -80,9 +76,10 @@ void TextureExample::look_at(ImageView<Bgr> camera, int column, int row) {
     const Bgr* const above = camera.row(picture_y - lag) + left;
     const Bgr* const below = camera.row(picture_y + lag) + left;
     for (int x = sample_step / 2; x < cell; x += sample_step) {
-      const int twice = 2 * brightness(colors[x]);
-      const int across = twice - brightness(colors[x - lag]) - brightness(colors[x + lag]);
-      const int down = twice - brightness(above[x]) - brightness(below[x]);
+      const int twice = 2 * quick_brightness(colors[x]);
+      const int across =
+          twice - quick_brightness(colors[x - lag]) - quick_brightness(colors[x + lag]);
+      const int down = twice - quick_brightness(above[x]) - quick_brightness(below[x]);
       squares += across * across + down * down;
       seen.mean += to_channels(colors[x]);
     }
@@ -112,12 +109,8 @@ void TextureExample::choose(ImageView<Bgr> camera) {
       contrasts_.push_back(cells_(column, row).contrast);
     }
   }
-  float most = -1;
-  if (contrasts_.size() >= fewest_for_median) {
-    const auto middle = contrasts_.begin() + static_cast<std::ptrdiff_t>(contrasts_.size() / 2);
-    std::nth_element(contrasts_.begin(), middle, contrasts_.end());
-    most = most_contrast * *middle;
-  }
+  const bool has_median = contrasts_.size() >= fewest_for_median;
+  const float most = has_median ? most_contrast * median(contrasts_) : -1;
   for (Cell& chosen : cells_) chosen.is_example = chosen.is_example && chosen.contrast <= most;
 }
 
@@ -144,7 +137,7 @@ void TextureExample::find_grain(ImageView<Bgr> camera, int column, int row) {
         &camera((first_column_ + column) * cell - grain_reach,
                 (first_row_ + row) * cell + static_cast<int>(y) - grain_reach);
     for (std::size_t x = 0; x < size; ++x) {
-      bright[y][x] = static_cast<std::uint16_t>(brightness(colors[x]) / 2);
+      bright[y][x] = static_cast<std::uint16_t>(quick_brightness(colors[x]) / 2);
     }
   }
   // Of a row of pixels: sums of the 9 above and below, and 1 2 1 of 3.

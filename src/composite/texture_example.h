@@ -32,14 +32,14 @@ class TextureExample {
     return {first_column_ * cell, first_row_ * cell, cells_.width() * cell, cells_.height() * cell};
   }
   /// Whether the cell around a pixel is one.
-  bool shows_plane(int x, int y) const { return is_inside(x, y) && at(x, y).is_example; }
+  bool shows_plane(int x, int y) const { return part().contains(x, y) && at(x, y).is_example; }
   /// The mean colour of that cell.
   const Eigen::Array3f& mean(int x, int y) const { return at(x, y).mean; }
 
   /// Computes the grain of all cells that a part of the picture touches. Cost: 1 us a cell.
   void prepare(ImageView<Bgr> camera, const Rect& touched);
   /// In sixteenths of a level; 0 in cells that are none or not prepared, and beyond the part. x, y:
-  /// in the part.
+  /// from the part's first pixel on.
   int grain(int x, int y) const { return grain_.bounds().contains(x, y) ? grain_(x, y) : 0; }
 
  private:
@@ -49,10 +49,7 @@ class TextureExample {
     bool on_plane = false, off_plane = false, has_object = false;
     bool is_example = false, has_grain = false;
   };
-  bool is_inside(int x, int y) const {
-    return x >= first_column_ * cell && y >= first_row_ * cell &&
-           x < (first_column_ + cells_.width()) * cell && y < (first_row_ + cells_.height()) * cell;
-  }
+  Cell& at(int x, int y) { return cells_(x / cell - first_column_, y / cell - first_row_); }
   const Cell& at(int x, int y) const {
     return cells_(x / cell - first_column_, y / cell - first_row_);
   }

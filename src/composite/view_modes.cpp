@@ -4,6 +4,7 @@
 #include "composite/view_mode_rules.h"
 #include "core/channels.h"
 #include "core/neighbours.h"
+#include "core/quick_brightness.h"
 #include "core/rows.h"
 #include "diminish/view_mode.h"
 
@@ -50,7 +51,7 @@ class XRay : public ViewMode {
     const auto brightness = [&](int x, int y) {
       const Bgr& color =
           camera(std::clamp(x, 0, camera.width() - 1), std::clamp(y, 0, camera.height() - 1));
-      return static_cast<float>(color.b + 2 * color.g + color.r) / 4;
+      return static_cast<float>(quick_brightness(color)) / 4;
     };
     replace_in_mask(result, [&](int x, int y) {
       const float across = brightness(x + 1, y) - brightness(x - 1, y);

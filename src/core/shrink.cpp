@@ -1,5 +1,6 @@
 #include "core/shrink.h"
 
+#include "core/quick_brightness.h"
 #include "core/rows.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -148,8 +149,7 @@ void ShrinkOutsideRow(const Bgr* upper, const Bgr* lower, const std::uint8_t* ma
   for (; x < count; ++x) {
     int sum = 0;
     for (const Bgr* pixels : {upper + left, upper + right, lower + left, lower + right}) {
-      const Bgr& color = pixels[std::ptrdiff_t{x} * scale];
-      sum += color.b + 2 * color.g + color.r;
+      sum += quick_brightness(pixels[std::ptrdiff_t{x} * scale]);
     }
     const bool is_masked = mask[x * scale + scale / 2] != 0;
     levels[x] = static_cast<std::uint8_t>(is_masked ? 0 : std::max(1, sum / 16));

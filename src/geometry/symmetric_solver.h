@@ -4,8 +4,8 @@
 
 namespace diminish {
 
-/// x of squares * x = products, for a symmetric matrix that is not negative, such as least squares
-/// have: by Eigen's LDLT. Compiled once, for two to six floats and for six doubles.
+/// Solves squares * x = products for a positive semidefinite matrix, as least squares have, by
+/// Eigen's LDLT. Compiled once, for two to six floats and for six doubles.
 template <class Scalar, int size>
 Eigen::Matrix<Scalar, size, 1> solve_symmetric(const Eigen::Matrix<Scalar, size, size>& squares,
                                                const Eigen::Matrix<Scalar, size, 1>& products);

@@ -3,7 +3,6 @@
 #include <memory>
 #include <string>
 
-#include "diminish/error.h"
 #include "diminish/gl_texture.h"
 #include "gl/own_thread.h"
 

@@ -31,7 +31,7 @@ class OwnThread {
   void run(const Task& task);
   void loop();
 
-  std::mutex turn_;  ///< held by who waits for his work
+  std::mutex turn_;  ///< held by the caller whose work is being done
   std::mutex mutex_;
   std::condition_variable changed_;
   Task task_;

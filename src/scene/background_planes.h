@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <vector>
 
 #include "depth/depth_noise.h"
@@ -78,6 +79,9 @@ class BackgroundPlanes {
   static constexpr std::size_t most_planes = 3;
   /// How far a measurement may be from its plane.
   static constexpr DepthNoise tolerance{0.012F, 0.006F};
+  static bool lies_on(const BackgroundPlane& plane, const Eigen::Vector3f& point_m) {
+    return std::abs(plane.height_m(point_m)) <= tolerance.at(point_m.z());
+  }
 
   explicit BackgroundPlanes(const Intrinsics& color) : rays_(color) {}
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/quick_brightness.h"
 #include "core/shrink.h"
 
 namespace diminish {
@@ -27,10 +28,6 @@ constexpr double least_late_s = 0.05;
 /// an earlier moment may by chance have .82 of it.
 constexpr double still_as_good = 0.93;
 constexpr double still_as_good_at_once = 0.75;
-
-int level_of(const Bgr& color) {
-  return color.b + 2 * color.g + color.r;
-}
 
 /// How bright the user's camera shows what an RGB-D camera shows: a line, by least squares.
 class Relation {
@@ -166,7 +163,7 @@ void StreamDelay::compare(const Inputs& inputs, std::size_t begin, std::size_t e
   Relation relation;
   for (std::size_t i = begin; i < end; ++i) {
     const SceneSample& sample = inputs.samples.surfaces[i];
-    Changed seen{static_cast<float>(level_of(sample.color)) / 4, {}};
+    Changed seen{static_cast<float>(quick_brightness(sample.color)) / 4, {}};
     int least = 255;
     int greatest = 0;
     for (std::size_t m = 0; m < moments.size() && least > 0; ++m) {

@@ -45,7 +45,7 @@ bool ObjectEvidence::is_on_plane(const std::vector<BackgroundPlane>& planes, int
                                  float depth_m) const {
   const Eigen::Vector3f point = depth_m * (*rays_)(x, y).homogeneous();
   return std::any_of(planes.begin(), planes.end(), [&](const BackgroundPlane& plane) {
-    return std::abs(plane.height_m(point)) <= BackgroundPlanes::tolerance.at(depth_m);
+    return BackgroundPlanes::lies_on(plane, point);
   });
 }
 
