@@ -42,6 +42,7 @@ WorkAndSpan measure_work_and_span(const Recording& input, const std::vector<Fram
   });
   const auto median = [&](const auto& figure) {
     std::vector<double> values;
+    values.reserve(costs.size());
     for (const tracing::Cost& cost : costs) values.push_back(static_cast<double>(figure(cost)));
     return distribution_of(std::move(values)).p50;
   };

@@ -1,9 +1,8 @@
 #include "core/tracing.h"
 
-#include <time.h>
-
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <mutex>
 #include <string_view>
 #include <utility>

@@ -96,7 +96,8 @@ void BackgroundPlanes::label(const Reconstruction& reconstruction, Surfaces& sur
   const TiledRegion& region = reconstruction.region;
   const Image<float>& depth_m = reconstruction.depth_m;
   Image<std::uint8_t>& label = surfaces.label;
-  surfaces.region = region;
+  const Rect& box = region;
+  surfaces.region = box;
   label.resize(depth_m.width(), depth_m.height());
   for_rows(region.height, [&](Rows rows) {
     for (int y = region.y + rows.first; y < region.y + rows.last; ++y) {
