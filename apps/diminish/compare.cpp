@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "commands.h"
+#include "heap.h"
 #include "diminish/report.h"
 
 namespace diminish {
@@ -32,6 +33,7 @@ void add_compare(CLI::App& program, int& exit_code) {
       ->check(CLI::Range(0, 1000))
       ->type_name("N");
   sub->callback([command, &exit_code] {
+    heap_for_scoring();
     const std::filesystem::path file =
         command->file.empty() ? command->second / "compare.html" : command->file;
     write_comparison(command->recording, command->first, command->second, file, command->frames);

@@ -1,4 +1,3 @@
-#include <malloc.h>
 #include <oneapi/tbb/global_control.h>
 
 #include <cstdio>
@@ -7,6 +6,7 @@
 #include <opencv2/core.hpp>
 
 #include "commands.h"
+#include "heap.h"
 
 namespace {
 
@@ -57,11 +57,7 @@ int run_command(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-#ifdef __GLIBC__
-  // Fixed: glibc would raise it to the largest image that was freed. Then images are made where
-  // others were, and cleared; else they take memory only where they are written.
-  mallopt(M_MMAP_THRESHOLD, 1 << 17);
-#endif
+  diminish::heap_for_pipelines();
   int exit_code = failed;
   try {
     oneapi::tbb::task_scheduler_handle workers{oneapi::tbb::attach{}};

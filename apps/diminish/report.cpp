@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "commands.h"
+#include "heap.h"
 
 namespace diminish {
 
@@ -25,6 +26,7 @@ void add_report(CLI::App& program, int& exit_code) {
   sub->add_option("--out", command->file, "Where to write the page; default: RUN/report.html")
       ->type_name("FILE");
   sub->callback([command, &exit_code] {
+    heap_for_scoring();
     const std::filesystem::path file =
         command->file.empty() ? command->run / "report.html" : command->file;
     write_report(command->recording, command->run, file);

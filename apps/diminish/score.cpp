@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "commands.h"
+#include "heap.h"
 #include "sink/partial_file.h"
 
 namespace diminish {
@@ -18,6 +19,7 @@ struct ScoreCommand {
   bool pictures = false;
 
   void execute() const {
+    heap_for_scoring();
     const Score score =
         pictures ? score_run_with_pictures(recording, run) : score_run(recording, run);
     fmt::print("{}", score_table(score));
