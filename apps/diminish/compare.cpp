@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "commands.h"
-#include "heap.h"
 #include "diminish/report.h"
+#include "heap.h"
 
 namespace diminish {
 

@@ -39,6 +39,7 @@ class Ros2Camera : public CameraSource {
         subscriptions_(dds::Node::open(address_.network)) {
     const RgbdCamera* const camera =
         request.rig != nullptr ? find_rgbd_camera(*request.rig, request.name) : nullptr;
+    if (has_rig_ && !uri.has("rgbd")) take_local_images();
     wants_depth_ = request.name != "color" && (!camera || camera->measures_depth);
     if (camera) depth_unit_m_ = camera->depth_unit_m;
     if (!wants_depth_ && !address_.color && address_.rgbd.empty()) {
@@ -82,6 +83,19 @@ class Ros2Camera : public CameraSource {
   std::optional<CameraClock> clock() const override { return clock_.state(); }
 
  private:
+  /// On the node's own machine its images as they are take less time than compressing them. The
+  /// lenses, which come with the compressed ones, are known from the rig.
+  void take_local_images() {
+    const dds::Network& network = address_.network;
+    if (address_.rgbd.empty() || !network.shared_memory || !network.interface.empty() ||
+        !network.keys.empty()) {
+      return;
+    }
+    const std::string base = address_.rgbd.substr(0, address_.rgbd.rfind('/'));
+    address_.color = {.topic = base + "/color/image_raw"};
+    address_.depth = {.topic = base + "/depth/image_raw"};
+    address_.rgbd.clear();
+  }
   Delivery delivery() const { return address_.is_reliable ? Delivery::reliable : Delivery::newest; }
   template <class Message>
   void add(const std::string& topic, Role role, Delivery delivery) {

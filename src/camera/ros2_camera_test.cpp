@@ -161,7 +161,7 @@ TEST_F(Ros2Camera, ANodesMomentIsTwoImages) {
   auto& topic = publish<ros::RgbdMessage>("/d/rgbd");
   Rig rig;
   rig.rgbd.push_back({.name = "rgbd0", .depth_unit_m = .0005});
-  const auto camera = open_camera("ros2:/d", {"rgbd0", &rig, 0});
+  const auto camera = open_camera("ros2:/d?rgbd=rgbd", {"rgbd0", &rig, 0});
   const auto sent = depth();
   std::vector<std::uint8_t> depth_bytes, png;
   ros::RgbdMessage message;
@@ -177,6 +177,24 @@ TEST_F(Ros2Camera, ANodesMomentIsTwoImages) {
   for (std::size_t i = 0; i < sent.size(); ++i) {
     EXPECT_NEAR(got.depth.data()[i], sent.data()[i] / 2., .51);
   }
+}
+
+TEST_F(Ros2Camera, ANodeOfThisMachineSendsItsImagesAsTheyAre) {
+  auto& color = publish<ros::ImageMessage>("/h/color/image_raw");
+  auto& depth_topic = publish<ros::ImageMessage>("/h/depth/image_raw");
+  Rig rig;
+  rig.rgbd.push_back({.name = "rgbd0", .depth_unit_m = .00025});
+  const auto camera = open_camera("ros2:/h", {"rgbd0", &rig, 0});
+  const auto pixels = picture();
+  const CameraImage got =
+      image_of(*camera, Sensor::color, [&] { send(color, ros::image_message(pixels), utc_s()); });
+  EXPECT_EQ(got.color, pixels);
+  // Steps of a quarter of a millimetre, in metres.
+  const auto sent = depth();
+  const Image<float> metres = ros::depth_in_metres(sent, .00025);
+  EXPECT_FLOAT_EQ(metres(1, 0), 703 * .00025F);
+  const auto send_depth = [&] { send(depth_topic, ros::image_message(metres), utc_s()); };
+  EXPECT_EQ(image_of(*camera, Sensor::depth, send_depth).depth, sent);
 }
 
 TEST_F(Ros2Camera, AnotherMachinesClockIsFollowed) {

@@ -9,6 +9,7 @@
 #include <fastrtps/utils/IPLocator.h>
 #include <ifaddrs.h>
 #include <netinet/in.h>
+#include <sys/statvfs.h>
 #include <algorithm>
 #include <array>
 #include <cstdlib>
@@ -43,6 +44,9 @@ constexpr int most_domain = 232;
 constexpr std::uint32_t most_processes = 32;
 /// Room for a few pictures of several megabytes.
 constexpr std::uint32_t segment_bytes = 32u << 20;
+/// Shared memory that must be free for messages to be shared. Who writes where there is none is
+/// killed.
+constexpr std::uint64_t shared_bytes = 512u << 20;
 constexpr std::uint32_t socket_bytes = 8u << 20;
 /// Of 1500 that Ethernet carries: without the heads of IP and UDP.
 constexpr std::uint32_t packet_bytes = 1472;
@@ -132,6 +136,11 @@ void use_keys(const std::filesystem::path& folder, DomainParticipantQos& qos) {
   set("crypto.plugin", "builtin.AES-GCM-GMAC");
 }
 
+bool has_shared_memory() {
+  struct statvfs space {};
+  return statvfs("/dev/shm", &space) == 0 && space.f_bavail * space.f_frsize >= shared_bytes;
+}
+
 /// Throws Error if no network interface of this machine has the address. Fast DDS would say
 /// nothing.
 void expect_own(const std::string& address) {
@@ -177,6 +186,8 @@ Node::Implementation::Implementation(const Network& network) {
   if (!network.interface.empty()) expect_own(network.interface);
   if (network.most_mbits > 0) flow_controller = flow_controller_name;
   if (!network.keys.empty()) refusal = ": do the permissions in " + network.keys + " allow it?";
+  shares_data = network.shared_memory && network.interface.empty() && network.keys.empty() &&
+                network.most_mbits == 0 && has_shared_memory();
   // It would write to the program's standard output.
   eprosima::fastdds::dds::Log::ClearConsumers();
   DomainParticipantQos qos = participant_qos(network);

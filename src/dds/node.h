@@ -36,6 +36,9 @@ struct Node::Implementation {
 
   /// Of Fast DDS's flow controllers, the one for what is sent; null: none.
   const char* flow_controller = nullptr;
+  /// Whether programs of this machine read messages where their sender wrote them. Fast DDS cuts
+  /// what goes through its transports, shared memory too, into pieces of 64 kB.
+  bool shares_data = false;
   /// Why a topic may be refused where there are keys.
   std::string refusal;
   std::mutex mutex;

@@ -10,11 +10,25 @@ namespace {
 using namespace eprosima::fastdds::dds;
 
 constexpr int newest_sent = 2;
+/// Of what others read where it was written: they have the time of so many messages to do so.
+constexpr int newest_shared = 4;
 /// Of what may have to be sent again.
 constexpr int reliable_sent = 8;
 constexpr int kept_sent = 16;
 /// While somebody has not received all, it is asked this often what is missing.
 constexpr std::uint32_t repair_ns = 5'000'000;
+
+/// Where data are shared, the sender has room for all that it keeps from the start, in memory that
+/// the machine gives where it is written.
+void share_data(DataWriterQos& qos) {
+  qos.data_sharing().automatic();
+  qos.history().depth = newest_shared;
+  qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::PREALLOCATED_MEMORY_MODE;
+  qos.resource_limits().max_samples = newest_shared;
+  qos.resource_limits().max_instances = 1;
+  qos.resource_limits().max_samples_per_instance = newest_shared;
+  qos.resource_limits().allocated_samples = 0;
+}
 
 DataWriterQos writer_qos(Delivery delivery) {
   DataWriterQos qos;
@@ -52,6 +66,7 @@ Publication::Publication(std::shared_ptr<Node> node, const diminish::dds::Topic&
   self.node = std::move(node);
   auto& inner = self.node->implementation();
   DataWriterQos qos = writer_qos(delivery);
+  if (inner.shares_data && delivery == Delivery::newest) share_data(qos);
   if (inner.flow_controller) qos.publish_mode().flow_controller_name = inner.flow_controller;
   self.publisher = inner.participant->create_publisher(PUBLISHER_QOS_DEFAULT);
   expect_made(self.publisher, "no publisher can be made");

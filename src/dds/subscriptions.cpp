@@ -117,8 +117,10 @@ Subscriptions::~Subscriptions() {
 
 std::size_t Subscriptions::add(const diminish::dds::Topic& topic, Delivery delivery) {
   auto& node = implementation_->node->implementation();
+  DataReaderQos qos = reader_qos(delivery);
+  if (node.shares_data && delivery == Delivery::newest) qos.data_sharing().automatic();
   DataReader* const reader = implementation_->subscriber->create_datareader(
-      node.topic(topic), reader_qos(delivery), &implementation_->arrivals);
+      node.topic(topic), qos, &implementation_->arrivals);
   expect_made(reader, topic.name + " cannot be read" + node.refusal);
   implementation_->readers.push_back(reader);
   return implementation_->readers.size() - 1;

@@ -66,15 +66,14 @@ void CameraMessages::send(const Image<Pixel>& image, double stamp_s, Topics& top
   }
   if (topics.raw.listeners() > 0) {
     ros::ImageMessage message = ros::image_message(image);
-    message.header = header;
-    Image<Pixel> in_millimetres;
+    Image<float> metres;
     if constexpr (!is_color) {
       if (lenses.depth_unit_m != ros::millimetre_m) {
-        in_millimetres = image;
-        ros::rescale_depth(lenses.depth_unit_m, ros::millimetre_m, in_millimetres);
-        message.data = ros::image_message(in_millimetres).data;
+        metres = ros::depth_in_metres(image, lenses.depth_unit_m);
+        message = ros::image_message(metres);
       }
     }
+    message.header = header;
     send(topics.raw, message);
   }
   const bool is_wanted_alone = topics.compressed.listeners() > 0;

@@ -177,11 +177,21 @@ void read_depth(const ImageMessage& message, double unit_m, Image<std::uint16_t>
   if (!is_float) rescale_depth(millimetre_m, unit_m, depth);
 }
 
+Image<float> depth_in_metres(const Image<std::uint16_t>& depth, double unit_m) {
+  Image<float> metres(depth.width(), depth.height());
+  std::transform(depth.begin(), depth.end(), metres.begin(),
+                 [&](std::uint16_t value) { return static_cast<float>(value * unit_m); });
+  return metres;
+}
+
 ImageMessage image_message(const Image<Bgr>& image) {
   return message_of(image, "bgr8");
 }
 ImageMessage image_message(const Image<std::uint16_t>& image) {
   return message_of(image, "16UC1");
+}
+ImageMessage image_message(const Image<float>& image) {
+  return message_of(image, "32FC1");
 }
 ImageMessage image_message(const Image<std::uint8_t>& image) {
   return message_of(image, "mono8");

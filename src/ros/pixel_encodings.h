@@ -41,9 +41,13 @@ void read_color(const CompressedImageMessage& message, Image<Bgr>& color);
 /// nothing was measured, or more than 16 bits hold. Throws Error (input).
 void read_depth(const ImageMessage& message, double unit_m, Image<std::uint16_t>& depth);
 
-/// Messages of pixels that the caller keeps: bgr8, 16UC1, mono8. Rows without gaps.
+/// A depth image in metres; 0 where nothing was measured. `read_depth` makes the same of it again.
+Image<float> depth_in_metres(const Image<std::uint16_t>& depth, double unit_m);
+
+/// Messages of pixels that the caller keeps: bgr8, 16UC1, 32FC1, mono8. Rows without gaps.
 ImageMessage image_message(const Image<Bgr>& image);
 ImageMessage image_message(const Image<std::uint16_t>& image);
+ImageMessage image_message(const Image<float>& image);
 ImageMessage image_message(const Image<std::uint8_t>& image);
 
 }  // namespace diminish::ros
