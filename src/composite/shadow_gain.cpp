@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "composite/scale_light.h"
 #include "core/bilinear.h"
 #include "core/robust.h"
 #include "core/runs.h"
@@ -39,9 +40,7 @@ constexpr float prior_by_texture = 2;
 constexpr float prior_of_channels = 4;
 constexpr float least_texture = 0.02F;
 constexpr float least_gain = 0.1F;
-/// A gain in fixed point: the largest one, times the largest level, fits 16 bits.
-constexpr std::uint8_t one = 64;
-constexpr auto most_dark = static_cast<std::uint16_t>(255 * (1 - least_light));
+constexpr auto most_dark = static_cast<std::uint8_t>(255 * (1 - least_light));
 
 /// The mean colour of a part of a cell and its brightness, 0 to 1.
 Levels mean_of_part(const Image<Bgr>& image, int left, int top, int size) {
@@ -83,36 +82,6 @@ void halve(const Image<Value>& fine, Image<Value>& coarse) {
 float in_cells(int place, int step, int cells) {
   return std::clamp((static_cast<float>(place) + 0.5F) / static_cast<float>(step) - 0.5F, 0.F,
                     static_cast<float>(cells - 1));
-}
-
-/// From gains at the centres of cells to those of a row of channels; 1 where the label is another.
-void spread(const std::vector<Eigen::Array4i>& by_cell, const std::uint8_t* labels,
-            std::uint8_t label, int width, std::uint8_t* by_channel) {
-  static_assert(ShadowGain::cell_px == 8);
-  const auto count = static_cast<int>(by_cell.size());
-  for (int x = 0; x < width; ++x) {
-    // Sixteenths of a cell from the first one's centre.
-    const int at = std::max(2 * x - 7, 0);
-    const int left = std::min(at >> 4, count - 1);
-    const int right = std::min(left + 1, count - 1);
-    const int* const a = by_cell[static_cast<std::size_t>(left)].data();
-    const int* const b = by_cell[static_cast<std::size_t>(right)].data();
-    const bool is_here = labels[x] == label;
-    for (int c = 0; c < 3; ++c) {
-      const int by = (16 * a[c] + (at & 15) * (b[c] - a[c])) >> 4;
-      by_channel[3 * x + c] = static_cast<std::uint8_t>(is_here ? by : one);
-    }
-  }
-}
-
-/// Multiplies what is lost of the light. Without a branch, so that the compiler vectorises it.
-void scale_row(const std::uint8_t* __restrict__ by, int count, std::uint8_t* __restrict__ levels) {
-  for (int i = 0; i < count; ++i) {
-    const auto lost = static_cast<std::uint16_t>(255 - levels[i]);
-    const auto scaled =
-        static_cast<std::uint16_t>(static_cast<std::uint16_t>(by[i] * lost + one / 2) / one);
-    levels[i] = static_cast<std::uint8_t>(255 - std::min(scaled, most_dark));
-  }
 }
 
 }  // namespace
@@ -363,30 +332,29 @@ void ShadowGain::blur(int reach, Image<Levels>& image) {
 }
 
 void ShadowGain::scale_light(std::uint8_t label, Surfaces& surfaces) {
+  static_assert(cell_px == LightGains::cell_px);
+  static_assert(static_cast<int>(most * LightGains::one) * 255 < 1 << 16);
   const Rect& region = surfaces.region;
   const Image<Levels>& gain = scales_.front().gain;
-  const int cells = gain.width();
-  const int count = 3 * region.width;
   for_rows(region.height, [&](Rows rows) {
-    // Of a row of cells and of the row's channels, in fixed point.
     std::vector<Eigen::Array4i>& by_cell = by_cell_[rows.band];
-    std::vector<std::uint8_t>& by_channel = by_channel_[rows.band];
-    by_cell.resize(static_cast<std::size_t>(cells));
-    by_channel.resize(static_cast<std::size_t>(count));
+    by_cell.resize(static_cast<std::size_t>(gain.width()));
     for (int y = region.y + rows.first; y < region.y + rows.last; ++y) {
-      auto* const levels = reinterpret_cast<std::uint8_t*>(surfaces.light.row(y) + region.x);
-      if (find_other(levels, 0, count, 255) == count) continue;
+      Bgr* const light = surfaces.light.row(y) + region.x;
+      const int count = 3 * region.width;
+      if (find_other(reinterpret_cast<const std::uint8_t*>(light), 0, count, 255) == count)
+        continue;
       const float at = in_cells(y - region.y, cell_px, gain.height());
       const int row = static_cast<int>(at);
       const float share = at - static_cast<float>(row);
       const Levels* const above = gain.row(row);
       const Levels* const below = gain.row(std::min(row + 1, gain.height() - 1));
-      for (int i = 0; i < cells; ++i) {
+      for (int i = 0; i < gain.width(); ++i) {
         const Levels here = above[i] + share * (below[i] - above[i]);
-        by_cell[static_cast<std::size_t>(i)] = (here * one).cast<int>();
+        by_cell[static_cast<std::size_t>(i)] = (here * LightGains::one).cast<int>();
       }
-      spread(by_cell, surfaces.label.row(y) + region.x, label, region.width, by_channel.data());
-      scale_row(by_channel.data(), count, levels);
+      diminish::scale_light({by_cell, label, most_dark}, surfaces.label.row(y) + region.x,
+                            region.width, light);
     }
   });
 }

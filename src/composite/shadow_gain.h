@@ -103,9 +103,7 @@ class ShadowGain {
   float texture_ = 0;  ///< relative to the field, one standard deviation
   std::vector<float> residuals_;
   Image<Levels> padded_;
-  /// Of each band.
-  std::vector<Eigen::Array4i> by_cell_[most_bands];
-  std::vector<std::uint8_t> by_channel_[most_bands];
+  std::vector<Eigen::Array4i> by_cell_[most_bands];  ///< gains of a row, of each band
 };
 
 }  // namespace diminish

@@ -80,7 +80,7 @@ void CameraMessages::send(const Image<Pixel>& image, double stamp_s, Topics& top
   if (!is_wanted_alone && rgbd_.listeners() == 0) return;
   // The one before is still alone: the other sensor has none of its moment.
   if (waiting) send_moment(lenses);
-  waiting.emplace();
+  waiting = Compressed{};
   waiting->stamp_s = stamp_s;
   const double start_s = monotonic_now_s();
   compress(image, lenses, *waiting);
