@@ -9,7 +9,9 @@
 #include <fastrtps/utils/IPLocator.h>
 #include <ifaddrs.h>
 #include <netinet/in.h>
+#include <sys/stat.h>
 #include <sys/statvfs.h>
+#include <unistd.h>
 #include <algorithm>
 #include <array>
 #include <cstdlib>
@@ -136,9 +138,20 @@ void use_keys(const std::filesystem::path& folder, DomainParticipantQos& qos) {
   set("crypto.plugin", "builtin.AES-GCM-GMAC");
 }
 
-bool has_shared_memory() {
+/// Of this user's programs that have the same shared memory, which containers may not have. Others
+/// could not write into what this user made. Nothing where there is little of it.
+std::optional<std::uint16_t> find_shared_domain() {
+  constexpr const char* folder = "/dev/shm";
   struct statvfs space {};
-  return statvfs("/dev/shm", &space) == 0 && space.f_bavail * space.f_frsize >= shared_bytes;
+  struct stat mount {};
+  if (statvfs(folder, &space) != 0 || space.f_bavail * space.f_frsize < shared_bytes ||
+      stat(folder, &mount) != 0) {
+    return std::nullopt;
+  }
+  // A collision of two users in 65536 costs what they send to each other.
+  constexpr std::uint64_t spread = 0x9e3779b97f4a7c15;
+  const std::uint64_t both = (std::uint64_t{getuid()} + 1) * spread ^ mount.st_dev;
+  return static_cast<std::uint16_t>(both * spread >> 48);
 }
 
 /// Throws Error if no network interface of this machine has the address. Fast DDS would say
@@ -186,8 +199,10 @@ Node::Implementation::Implementation(const Network& network) {
   if (!network.interface.empty()) expect_own(network.interface);
   if (network.most_mbits > 0) flow_controller = flow_controller_name;
   if (!network.keys.empty()) refusal = ": do the permissions in " + network.keys + " allow it?";
-  shares_data = network.shared_memory && network.interface.empty() && network.keys.empty() &&
-                network.most_mbits == 0 && has_shared_memory();
+  if (network.shared_memory && network.interface.empty() && network.keys.empty() &&
+      network.most_mbits == 0) {
+    shared_domain = find_shared_domain();
+  }
   // It would write to the program's standard output.
   eprosima::fastdds::dds::Log::ClearConsumers();
   DomainParticipantQos qos = participant_qos(network);

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <fastdds/rtps/writer/WriterDiscoveryInfo.h>
+#include <cstdint>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <fastdds/dds/topic/Topic.hpp>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,9 +38,10 @@ struct Node::Implementation {
 
   /// Of Fast DDS's flow controllers, the one for what is sent; null: none.
   const char* flow_controller = nullptr;
-  /// Whether programs of this machine read messages where their sender wrote them. Fast DDS cuts
-  /// what goes through its transports, shared memory too, into pieces of 64 kB.
-  bool shares_data = false;
+  /// What programs must have in common to read messages where their sender wrote them; nothing: all
+  /// messages are sent. Fast DDS cuts what goes through its transports, shared memory too, into
+  /// pieces of 64 kB.
+  std::optional<std::uint16_t> shared_domain;
   /// Why a topic may be refused where there are keys.
   std::string refusal;
   std::mutex mutex;

@@ -1,6 +1,8 @@
+#include <cstdint>
 #include <fastdds/dds/publisher/DataWriter.hpp>
 #include <fastdds/dds/publisher/Publisher.hpp>
 #include <fastdds/dds/publisher/qos/DataWriterQos.hpp>
+#include <vector>
 
 #include "dds/node.h"
 
@@ -20,8 +22,8 @@ constexpr std::uint32_t repair_ns = 5'000'000;
 
 /// Where data are shared, the sender has room for all that it keeps from the start, in memory that
 /// the machine gives where it is written.
-void share_data(DataWriterQos& qos) {
-  qos.data_sharing().automatic();
+void share_data(std::uint16_t domain, DataWriterQos& qos) {
+  qos.data_sharing().automatic(std::vector<std::uint16_t>{domain});
   qos.history().depth = newest_shared;
   qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::PREALLOCATED_MEMORY_MODE;
   qos.resource_limits().max_samples = newest_shared;
@@ -66,7 +68,7 @@ Publication::Publication(std::shared_ptr<Node> node, const diminish::dds::Topic&
   self.node = std::move(node);
   auto& inner = self.node->implementation();
   DataWriterQos qos = writer_qos(delivery);
-  if (inner.shares_data && delivery == Delivery::newest) share_data(qos);
+  if (inner.shared_domain && delivery == Delivery::newest) share_data(*inner.shared_domain, qos);
   if (inner.flow_controller) qos.publish_mode().flow_controller_name = inner.flow_controller;
   self.publisher = inner.participant->create_publisher(PUBLISHER_QOS_DEFAULT);
   expect_made(self.publisher, "no publisher can be made");

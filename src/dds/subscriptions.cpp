@@ -1,11 +1,13 @@
 #include <atomic>
 #include <condition_variable>
+#include <cstdint>
 #include <fastdds/dds/subscriber/DataReader.hpp>
 #include <fastdds/dds/subscriber/DataReaderListener.hpp>
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <fastdds/dds/subscriber/qos/DataReaderQos.hpp>
 #include <mutex>
+#include <vector>
 
 #include "dds/node.h"
 
@@ -118,7 +120,9 @@ Subscriptions::~Subscriptions() {
 std::size_t Subscriptions::add(const diminish::dds::Topic& topic, Delivery delivery) {
   auto& node = implementation_->node->implementation();
   DataReaderQos qos = reader_qos(delivery);
-  if (node.shares_data && delivery == Delivery::newest) qos.data_sharing().automatic();
+  if (node.shared_domain && delivery == Delivery::newest) {
+    qos.data_sharing().automatic(std::vector<std::uint16_t>{*node.shared_domain});
+  }
   DataReader* const reader = implementation_->subscriber->create_datareader(
       node.topic(topic), qos, &implementation_->arrivals);
   expect_made(reader, topic.name + " cannot be read" + node.refusal);
