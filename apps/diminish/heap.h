@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdlib>
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif

@@ -86,11 +86,7 @@ class Ros2Camera : public CameraSource {
   /// On the node's own machine its images as they are take less time than compressing them. The
   /// lenses, which come with the compressed ones, are known from the rig.
   void take_local_images() {
-    const dds::Network& network = address_.network;
-    if (address_.rgbd.empty() || !network.shared_memory || !network.interface.empty() ||
-        !network.keys.empty()) {
-      return;
-    }
+    if (address_.rgbd.empty() || !address_.network.is_within_machine()) return;
     const std::string base = address_.rgbd.substr(0, address_.rgbd.rfind('/'));
     address_.color = {.topic = base + "/color/image_raw"};
     address_.depth = {.topic = base + "/depth/image_raw"};

@@ -31,6 +31,9 @@ struct Network {
   /// Messages travel in pieces of one packet of Ethernet each, so that one that gets lost is all
   /// that has to be sent again. Otherwise in pieces of up to 64 kB, which cost less.
   bool in_packets = false;
+
+  /// Whether others are programs of this machine, which hand messages over through shared memory.
+  bool is_within_machine() const { return shared_memory && interface.empty() && keys.empty(); }
 };
 
 /// ROS_DOMAIN_ID from the environment, else 0. Throws Error if it is not a number from 0 to 232.

@@ -31,8 +31,10 @@
 namespace diminish::dds {
 namespace {
 
+using eprosima::fastdds::dds::DataSharingQosPolicy;
 using eprosima::fastdds::dds::DomainParticipantFactory;
 using eprosima::fastdds::dds::DomainParticipantQos;
+using eprosima::fastdds::dds::ResourceLimitsQosPolicy;
 using eprosima::fastdds::dds::TypeSupport;
 using eprosima::fastdds::rtps::FlowControllerDescriptor;
 using eprosima::fastdds::rtps::SharedMemTransportDescriptor;
@@ -199,10 +201,7 @@ Node::Implementation::Implementation(const Network& network) {
   if (!network.interface.empty()) expect_own(network.interface);
   if (network.most_mbits > 0) flow_controller = flow_controller_name;
   if (!network.keys.empty()) refusal = ": do the permissions in " + network.keys + " allow it?";
-  if (network.shared_memory && network.interface.empty() && network.keys.empty() &&
-      network.most_mbits == 0) {
-    shared_domain = find_shared_domain();
-  }
+  if (network.is_within_machine() && network.most_mbits == 0) shared_domain = find_shared_domain();
   // It would write to the program's standard output.
   eprosima::fastdds::dds::Log::ClearConsumers();
   DomainParticipantQos qos = participant_qos(network);
@@ -222,6 +221,23 @@ Node::Implementation::~Implementation() {
   if (participant == nullptr) return;
   participant->delete_contained_entities();
   DomainParticipantFactory::get_instance()->delete_participant(participant);
+}
+
+DataSharingQosPolicy Node::Implementation::data_sharing(Delivery delivery) const {
+  DataSharingQosPolicy policy;
+  if (shared_domain && delivery == Delivery::newest) {
+    policy.automatic(std::vector<std::uint16_t>{*shared_domain});
+  } else {
+    policy.off();
+  }
+  return policy;
+}
+
+void keep_at_most(int messages, ResourceLimitsQosPolicy& limits) {
+  limits.max_samples = messages;
+  limits.max_instances = 1;
+  limits.max_samples_per_instance = messages;
+  limits.allocated_samples = 0;
 }
 
 eprosima::fastdds::dds::Topic* Node::Implementation::topic(const Topic& topic) {

@@ -2,6 +2,7 @@
 
 #include <fastdds/rtps/writer/WriterDiscoveryInfo.h>
 #include <cstdint>
+#include <fastdds/dds/core/policy/QosPolicies.hpp>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <fastdds/dds/topic/Topic.hpp>
@@ -42,12 +43,17 @@ struct Node::Implementation {
   /// messages are sent. Fast DDS cuts what goes through its transports, shared memory too, into
   /// pieces of 64 kB.
   std::optional<std::uint16_t> shared_domain;
+  /// How a topic's messages are handed over.
+  eprosima::fastdds::dds::DataSharingQosPolicy data_sharing(Delivery delivery) const;
   /// Why a topic may be refused where there are keys.
   std::string refusal;
   std::mutex mutex;
   Discovery discovery;
   eprosima::fastdds::dds::DomainParticipant* participant = nullptr;
 };
+
+/// Room for so many messages, each of which takes it where it is written.
+void keep_at_most(int messages, eprosima::fastdds::dds::ResourceLimitsQosPolicy& limits);
 
 /// Throws Error (device) that says what could not be made.
 void expect_made(const void* made, const std::string& what);

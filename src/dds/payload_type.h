@@ -19,8 +19,7 @@ class PayloadType : public eprosima::fastdds::dds::TopicDataType {
   bool serialize(void* data, eprosima::fastrtps::rtps::SerializedPayload_t* payload) override;
   /// False if the sender has begun to write its next message there.
   bool deserialize(eprosima::fastrtps::rtps::SerializedPayload_t* payload, void* data) override;
-  /// Whether a message that was taken from a payload is still in it: senders may write where
-  /// readers read.
+  /// Whether a message that was taken from a payload is still in it.
   static bool is_still_there(const std::vector<std::uint8_t>& taken,
                              const eprosima::fastrtps::rtps::SerializedPayload_t& payload);
   std::function<uint32_t()> getSerializedSizeProvider(void* data) override;

@@ -2,7 +2,6 @@
 #include <fastdds/dds/publisher/DataWriter.hpp>
 #include <fastdds/dds/publisher/Publisher.hpp>
 #include <fastdds/dds/publisher/qos/DataWriterQos.hpp>
-#include <vector>
 
 #include "dds/node.h"
 
@@ -20,19 +19,7 @@ constexpr int kept_sent = 16;
 /// While somebody has not received all, it is asked this often what is missing.
 constexpr std::uint32_t repair_ns = 5'000'000;
 
-/// Where data are shared, the sender has room for all that it keeps from the start, in memory that
-/// the machine gives where it is written.
-void share_data(std::uint16_t domain, DataWriterQos& qos) {
-  qos.data_sharing().automatic(std::vector<std::uint16_t>{domain});
-  qos.history().depth = newest_shared;
-  qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::PREALLOCATED_MEMORY_MODE;
-  qos.resource_limits().max_samples = newest_shared;
-  qos.resource_limits().max_instances = 1;
-  qos.resource_limits().max_samples_per_instance = newest_shared;
-  qos.resource_limits().allocated_samples = 0;
-}
-
-DataWriterQos writer_qos(Delivery delivery) {
+DataWriterQos writer_qos(Delivery delivery, const DataSharingQosPolicy& data_sharing) {
   DataWriterQos qos;
   qos.reliability().kind =
       delivery == Delivery::newest ? BEST_EFFORT_RELIABILITY_QOS : RELIABLE_RELIABILITY_QOS;
@@ -46,10 +33,15 @@ DataWriterQos writer_qos(Delivery delivery) {
   auto& times = qos.reliable_writer_qos().times;
   times.heartbeatPeriod = {0, repair_ns};
   times.nackResponseDelay = {0, 0};
-  qos.data_sharing().off();
   // Large messages go in pieces, on a thread of their own.
   qos.publish_mode().kind = ASYNCHRONOUS_PUBLISH_MODE;
   qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::DYNAMIC_REUSABLE_MEMORY_MODE;
+  qos.data_sharing(data_sharing);
+  if (data_sharing.kind() != OFF) {
+    qos.history().depth = newest_shared;
+    qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::PREALLOCATED_MEMORY_MODE;
+    keep_at_most(newest_shared, qos.resource_limits());
+  }
   return qos;
 }
 
@@ -67,8 +59,7 @@ Publication::Publication(std::shared_ptr<Node> node, const diminish::dds::Topic&
   Implementation& self = *implementation_;
   self.node = std::move(node);
   auto& inner = self.node->implementation();
-  DataWriterQos qos = writer_qos(delivery);
-  if (inner.shared_domain && delivery == Delivery::newest) share_data(*inner.shared_domain, qos);
+  DataWriterQos qos = writer_qos(delivery, inner.data_sharing(delivery));
   if (inner.flow_controller) qos.publish_mode().flow_controller_name = inner.flow_controller;
   self.publisher = inner.participant->create_publisher(PUBLISHER_QOS_DEFAULT);
   expect_made(self.publisher, "no publisher can be made");

@@ -1,13 +1,11 @@
 #include <atomic>
 #include <condition_variable>
-#include <cstdint>
 #include <fastdds/dds/subscriber/DataReader.hpp>
 #include <fastdds/dds/subscriber/DataReaderListener.hpp>
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <fastdds/dds/subscriber/qos/DataReaderQos.hpp>
 #include <mutex>
-#include <vector>
 
 #include "dds/node.h"
 
@@ -61,14 +59,10 @@ DataReaderQos reader_qos(Delivery delivery) {
                         : delivery == Delivery::kept ? kept_received
                                                      : reliable_received;
   qos.reliable_reader_qos().times.heartbeatResponseDelay = {0, 0};
-  qos.data_sharing().off();
   // What a message claims to be is not allocated: each has the room that the type says, which the
   // machine gives where it is written.
   qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::PREALLOCATED_MEMORY_MODE;
-  qos.resource_limits().max_samples = qos.history().depth;
-  qos.resource_limits().max_instances = 1;
-  qos.resource_limits().max_samples_per_instance = qos.history().depth;
-  qos.resource_limits().allocated_samples = 0;
+  keep_at_most(qos.history().depth, qos.resource_limits());
   return qos;
 }
 
@@ -120,9 +114,7 @@ Subscriptions::~Subscriptions() {
 std::size_t Subscriptions::add(const diminish::dds::Topic& topic, Delivery delivery) {
   auto& node = implementation_->node->implementation();
   DataReaderQos qos = reader_qos(delivery);
-  if (node.shared_domain && delivery == Delivery::newest) {
-    qos.data_sharing().automatic(std::vector<std::uint16_t>{*node.shared_domain});
-  }
+  qos.data_sharing(node.data_sharing(delivery));
   DataReader* const reader = implementation_->subscriber->create_datareader(
       node.topic(topic), qos, &implementation_->arrivals);
   expect_made(reader, topic.name + " cannot be read" + node.refusal);
