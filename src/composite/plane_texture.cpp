@@ -301,31 +301,44 @@ void PlaneTexture::add_rows(const Axes& axes, std::uint8_t label, Rows rows,
 
 /// Columns [first, last).
 void PlaneTexture::add_run(const Axes& axes, int first, int last, int y, Bgr* colors) const {
-  constexpr float scale = strength / TextureExample::unit;
   for (int begin = first; begin < last; begin += segment) {
     const int end = std::min(last, begin + segment);
     const auto from = coordinates(axes, begin, y);
     const auto to = coordinates(axes, end - 1, y);
     if (!from || !to) continue;
-    Eigen::Vector2f at = *from;
-    const Eigen::Vector2f right = (*to - at) / static_cast<float>(std::max(1, end - 1 - begin));
-    for (int x = begin; x < end; ++x, at += right) {
-      const Brick brick = brick_at(at);
+    const Eigen::Vector2f right = (*to - *from) / static_cast<float>(std::max(1, end - 1 - begin));
+    const auto brick_of = [&](int x) {
+      return brick_at(*from + static_cast<float>(x - begin) * right);
+    };
+    // Nearly always one brick or two, each of consecutive pixels.
+    const Brick last_brick = brick_of(end - 1);
+    for (int x = begin; x < end;) {
+      const Brick brick = brick_of(x);
+      int next = brick == last_brick ? end : x + 1;
+      while (next < end && brick_of(next) == brick) ++next;
       const int column = brick.i - first_.i;
       const int row = brick.j - first_.j;
-      if (!tiles_.bounds().contains(column, row) || !tiles_(column, row).has_block) continue;
-      const Tile& tile = tiles_(column, row);
-      const Pixel shown = nearest_pixel(
-          tile.turn * Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y)) + tile.shift);
-      const auto level = static_cast<int>(
-          std::lrint(scale * static_cast<float>(example_.grain(shown.x, shown.y))));
-      const auto add = [&](std::uint8_t& channel) {
-        channel = static_cast<std::uint8_t>(std::clamp(channel + level, 0, 255));
-      };
-      add(colors[x].b);
-      add(colors[x].g);
-      add(colors[x].r);
+      if (tiles_.bounds().contains(column, row)) add_tile(tiles_(column, row), x, next, y, colors);
+      x = next;
     }
+  }
+}
+
+/// Columns [first, last), which a tile covers.
+void PlaneTexture::add_tile(const Tile& tile, int first, int last, int y, Bgr* colors) const {
+  if (!tile.has_block) return;
+  constexpr float scale = strength / TextureExample::unit;
+  const Eigen::Vector2f start = static_cast<float>(y) * tile.turn.col(1) + tile.shift;
+  for (int x = first; x < last; ++x) {
+    const Pixel shown = nearest_pixel(static_cast<float>(x) * tile.turn.col(0) + start);
+    const auto level =
+        static_cast<int>(std::lrint(scale * static_cast<float>(example_.grain(shown.x, shown.y))));
+    const auto add = [&](std::uint8_t& channel) {
+      channel = static_cast<std::uint8_t>(std::clamp(channel + level, 0, 255));
+    };
+    add(colors[x].b);
+    add(colors[x].g);
+    add(colors[x].r);
   }
 }
 

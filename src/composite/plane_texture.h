@@ -47,6 +47,8 @@ class PlaneTexture {
   /// The one that covers [i - (j odd ? 0.5 : 0), + 1) x [j, + 1).
   struct Brick {
     int i, j;
+
+    bool operator==(const Brick&) const = default;
   };
   /// A place of the example that a brick may show: around a = i, b = j.
   struct Block {
@@ -79,6 +81,7 @@ class PlaneTexture {
   void make_tile(const Axes& axes, Brick brick, const Inputs& inputs, const Image<Bgr>& picture);
   void add_rows(const Axes& axes, std::uint8_t label, Rows rows, DiminishedFrame& result) const;
   void add_run(const Axes& axes, int first, int last, int y, Bgr* colors) const;
+  void add_tile(const Tile& tile, int first, int last, int y, Bgr* colors) const;
 
   Projection lens_;
   std::shared_ptr<const RayTable> rays_;

@@ -35,10 +35,16 @@ constexpr Code guessed = 0x40;
 constexpr Code standing = surface_rules::labels;
 static_assert(standing < guessed);
 
-/// The label of an open pixel.
-Code open_label(std::uint8_t label) {
-  if (label < surface_rules::labels) return label;
-  return label == surface_label::standing ? standing : surface_label::unknown;
+/// Of a row of pixels, some missing. By value, so that the loop is vectorised.
+void find_codes(const std::uint8_t* missing, const std::uint8_t* labels, int count, Code* codes) {
+  for (int i = 0; i < count; ++i) {
+    const std::uint8_t label = labels[i];
+    const Code beyond_planes = label == surface_label::standing ? standing : surface_label::unknown;
+    const Code wanted = label < surface_rules::labels ? label : beyond_planes;
+    const Code is_open = missing[i] & open;
+    const auto known = static_cast<Code>(label & label_bits);
+    codes[i] = static_cast<Code>(is_open | (is_open != 0 ? wanted : known));
+  }
 }
 }  // namespace state
 
@@ -106,14 +112,14 @@ class SurfaceInpainting : public Inpainter {
       std::fill(states + window_.x, states + window_.right(), state::outside);
       if (y < seen.y || y >= seen.bottom()) continue;
       const std::uint8_t* const missing = holes.missing.row(y);
-      for (int x = seen.x; x < seen.right(); ++x) states[x] = missing[x] & state::open;
+      std::transform(missing + seen.x, missing + seen.right(), states + seen.x,
+                     [](std::uint8_t is_missing) { return is_missing & state::open; });
       if (y >= drawn.y && y < drawn.bottom()) {
-        const std::uint8_t* const labels = surfaces.label.row(y);
-        for (int x = drawn.x; x < drawn.right(); ++x) {
-          const state::Code known = labels[x] & state::label_bits;
-          states[x] |= states[x] == 0 ? known : state::open_label(labels[x]);
+        state::find_codes(missing + drawn.x, surfaces.label.row(y) + drawn.x, drawn.width,
+                          states + drawn.x);
+        if (marks_guesses) {
+          mark_guesses(holes.depth_m.row(y) + drawn.x, drawn.width, states + drawn.x);
         }
-        if (marks_guesses) mark_guesses(holes.depth_m.row(y), drawn, states);
       }
       for_each_run(missing, seen.x, seen.right(), Pixels::set, [&](int first, int last) {
         for (int end; first < last; first = end) {
@@ -125,11 +131,11 @@ class SurfaceInpainting : public Inpainter {
     }
   }
 
-  static void mark_guesses(const float* depth_m, const Rect& drawn, state::Code* states) {
-    for (int x = drawn.x; x < drawn.right(); ++x) {
-      const bool is_guess = all_of(states[x] >= surface_label::first_plane,
-                                   states[x] < surface_rules::labels, depth_m[x] == 0);
-      states[x] |= is_guess ? state::guessed : 0;
+  static void mark_guesses(const float* depth_m, int count, state::Code* states) {
+    for (int i = 0; i < count; ++i) {
+      const bool is_guess = all_of(states[i] >= surface_label::first_plane,
+                                   states[i] < surface_rules::labels, depth_m[i] == 0);
+      states[i] |= is_guess ? state::guessed : 0;
     }
   }
 
