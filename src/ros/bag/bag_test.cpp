@@ -209,6 +209,11 @@ TEST(Bag, WhatIsBrokenIsSaid) {
                                                    with_length("size=" + raw(std::uint32_t{9})),
                                                "x")),
       HasSubstr("compressed by bz2, lz4 or zstd, got 'rar'"));
+  const std::string of_chunk =
+      with_length("compression=none") + with_length("size=" + raw(std::uint32_t{9}));
+  EXPECT_THAT(
+      error(open_ros1_bag, magic + ros1_record(5, of_chunk, ros1_record(5, of_chunk, "inner"))),
+      HasSubstr("a chunk has a chunk in it"));
   for (const std::string& method : methods({"bz2", "lz4"})) {
     std::string header = with_length("compression=" + method);
     header += with_length("size=" + raw(std::uint32_t{9}));

@@ -42,6 +42,7 @@ class Header {
     return Fields({reinterpret_cast<const std::uint8_t*>(value.data()), value.size()})
         .number<Number>();
   }
+  std::uint8_t op() const { return number<std::uint8_t>("op"); }
 
  private:
   std::map<std::string_view, std::string_view> values_;
@@ -60,7 +61,7 @@ class Ros1Bag : public BagReader {
         if (take_record(message)) return true;
       }
       if (!read_record()) return false;
-      if (take(header_, data_, message)) return true;
+      if (take(Header(header_), data_, message)) return true;
     }
   }
 
@@ -80,16 +81,16 @@ class Ros1Bag : public BagReader {
   /// From the chunk. Whether it was a message.
   bool take_record(BagMessage& message) {
     Fields fields(chunk_rest_);
-    const auto header = fields.bytes(fields.number<std::uint32_t>());
+    const Header header(fields.bytes(fields.number<std::uint32_t>()));
     const auto data = fields.bytes(fields.number<std::uint32_t>());
     chunk_rest_ = fields.rest();
+    // It would take the place of the one that it is read from.
+    if (header.op() == chunk_op) throw Error(Error::input, "a chunk has a chunk in it");
     return take(header, data, message);
   }
 
-  bool take(std::span<const std::uint8_t> header_bytes, std::span<const std::uint8_t> data,
-            BagMessage& message) {
-    const Header header(header_bytes);
-    switch (header.number<std::uint8_t>("op")) {
+  bool take(const Header& header, std::span<const std::uint8_t> data, BagMessage& message) {
+    switch (header.op()) {
       case message_op: {
         const auto connection = connections_.find(header.number<std::uint32_t>("conn"));
         if (connection == connections_.end()) {
