@@ -2,7 +2,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <opencv2/aruco.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>
@@ -12,6 +11,7 @@
 #include "diminish/marker_detector.h"
 #include "diminish/rig.h"
 #include "paths.h"
+#include "pose/opencv_aruco.h"
 
 namespace diminish {
 namespace {
@@ -46,17 +46,12 @@ struct Found {
 };
 
 std::vector<Marker> detect_with_opencv(const Image<Bgr>& image,
-                                       const cv::Ptr<cv::aruco::Dictionary>& dictionary) {
-  static const auto parameters = [] {
-    auto result = cv::aruco::DetectorParameters::create();
-    result->cornerRefinementMethod = cv::aruco::CORNER_REFINE_SUBPIX;
-    return result;
-  }();
+                                       const opencv_aruco::Dictionary& dictionary) {
   cv::Mat gray;
   cv::cvtColor(as_mat(image), gray, cv::COLOR_BGR2GRAY);
-  std::vector<std::vector<cv::Point2f>> corners;
+  opencv_aruco::Corners corners;
   std::vector<int> ids;
-  cv::aruco::detectMarkers(gray, dictionary, corners, ids, parameters);
+  opencv_aruco::detect(gray, dictionary, true, corners, ids);
   std::vector<Marker> markers;
   for (std::size_t i = 0; i < ids.size(); ++i) {
     Marker marker{ids[i], {}};
@@ -67,12 +62,12 @@ std::vector<Marker> detect_with_opencv(const Image<Bgr>& image,
 }
 
 void beside_opencv(benchmark::State& state, const std::vector<Picture>& pictures,
-                   const std::string& name, int id) {
+                   const std::string& name, opencv_aruco::DictionaryName id) {
   if (pictures.empty()) {
     state.SkipWithError("no pictures");
     return;
   }
-  const auto dictionary = cv::aruco::getPredefinedDictionary(id);
+  const auto dictionary = opencv_aruco::dictionary(id);
   MarkerDetector detector(name);
   Found ours;
   Found opencvs;
@@ -115,7 +110,8 @@ BENCHMARK(markers_of_a_frame)->UseManualTime()->Unit(benchmark::kMillisecond);
 
 /// DIMINISH_MARKERS may name a folder of pictures WIDTH_aro_*.png and WIDTH_t36_*.png with the true
 /// corners beside them (one line per marker: id and four corners).
-void markers_with_truth(benchmark::State& state, const char* kind, const char* name, int id) {
+void markers_with_truth(benchmark::State& state, const char* kind, const char* name,
+                        opencv_aruco::DictionaryName id) {
   std::vector<Picture> pictures;
   if (const char* folder = std::getenv("DIMINISH_MARKERS")) {
     std::vector<fs::path> paths;

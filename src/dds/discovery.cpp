@@ -7,23 +7,19 @@
 namespace diminish::dds {
 namespace {
 
-using eprosima::fastrtps::rtps::WriterDiscoveryInfo;
-
 constexpr std::size_t most_writers = 1000;
 /// Before the names of ROS's topics.
 constexpr std::string_view prefix = "rt/";
 
 }  // namespace
 
-void Discovery::on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant*,
-                                       WriterDiscoveryInfo&& info) {
-  const std::string name = info.info.topicName().to_string();
-  if (!name.starts_with(prefix)) return;
+void Discovery::on_writer(const Writer& writer) {
+  if (!writer.topic.starts_with(prefix)) return;
   const std::lock_guard lock(mutex_);
-  if (info.status == WriterDiscoveryInfo::REMOVED_WRITER) {
-    writers_.erase(info.info.guid());
+  if (writer.is_gone) {
+    writers_.erase(writer.guid);
   } else if (writers_.size() < most_writers) {
-    writers_[info.info.guid()] = {name.substr(prefix.size() - 1), info.info.typeName().to_string()};
+    writers_[writer.guid] = {writer.topic.substr(prefix.size() - 1), writer.type};
   }
 }
 

@@ -3,10 +3,6 @@
 #include <arpa/inet.h>
 #include <fmt/format.h>
 
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
-#include <fastrtps/config.h>
-#include <fastrtps/utils/IPLocator.h>
 #include <ifaddrs.h>
 #include <netinet/in.h>
 #include <sys/stat.h>
@@ -39,8 +35,8 @@ using eprosima::fastdds::dds::TypeSupport;
 using eprosima::fastdds::rtps::FlowControllerDescriptor;
 using eprosima::fastdds::rtps::SharedMemTransportDescriptor;
 using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
-using eprosima::fastrtps::rtps::IPLocator;
-using eprosima::fastrtps::rtps::Locator_t;
+using rtps::IPLocator;
+using rtps::Locator_t;
 
 constexpr const char* loopback = "127.0.0.1";
 constexpr int most_domain = 232;
@@ -119,8 +115,6 @@ DomainParticipantQos participant_qos(const Network& network) {
 
 /// DDS Security 1.1, 9: its builtin plugins, which every implementation has. Throws Error.
 void use_keys(const std::filesystem::path& folder, DomainParticipantQos& qos) {
-  // Fast DDS without its plugins would say nothing, and encrypt nothing.
-  if (HAVE_SECURITY == 0) throw Error("keys: this build's Fast DDS is without DDS Security");
   const KeyFiles files(folder);
   check(files);
   const auto set = [&](const char* name, const std::string& value) {

@@ -1,10 +1,8 @@
 #pragma once
 
-#include <fastdds/rtps/writer/WriterDiscoveryInfo.h>
 #include <cstdint>
 #include <fastdds/dds/core/policy/QosPolicies.hpp>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
-#include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <fastdds/dds/topic/Topic.hpp>
 #include <map>
 #include <memory>
@@ -14,19 +12,19 @@
 #include <vector>
 
 #include "dds/dds.h"
+#include "dds/fast_dds.h"
 
 namespace diminish::dds {
 
 /// Keeps what is heard of other participants' writers. Called by DDS's threads; it throws nothing.
-class Discovery : public eprosima::fastdds::dds::DomainParticipantListener {
+class Discovery : public WritersListener {
  public:
-  void on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant*,
-                              eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) override;
+  void on_writer(const Writer& writer) override;
   std::vector<Topic> topics() const;
 
  private:
   mutable std::mutex mutex_;
-  std::map<eprosima::fastrtps::rtps::GUID_t, Topic> writers_;
+  std::map<rtps::GUID_t, Topic> writers_;
 };
 
 /// A participant, and its topics and types: each exists once, whoever uses it.

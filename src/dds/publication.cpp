@@ -30,16 +30,14 @@ DataWriterQos writer_qos(Delivery delivery, const DataSharingQosPolicy& data_sha
                         : delivery == Delivery::reliable ? reliable_sent
                                                          : newest_sent;
   // What is lost is missed, and sent again, within some milliseconds, not seconds.
-  auto& times = qos.reliable_writer_qos().times;
-  times.heartbeatPeriod = {0, repair_ns};
-  times.nackResponseDelay = {0, 0};
+  repair_within(repair_ns, qos.reliable_writer_qos().times);
   // Large messages go in pieces, on a thread of their own.
   qos.publish_mode().kind = ASYNCHRONOUS_PUBLISH_MODE;
-  qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::DYNAMIC_REUSABLE_MEMORY_MODE;
+  qos.endpoint().history_memory_policy = rtps::DYNAMIC_REUSABLE_MEMORY_MODE;
   qos.data_sharing(data_sharing);
   if (data_sharing.kind() != OFF) {
     qos.history().depth = newest_shared;
-    qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::PREALLOCATED_MEMORY_MODE;
+    qos.endpoint().history_memory_policy = rtps::PREALLOCATED_MEMORY_MODE;
     keep_at_most(newest_shared, qos.resource_limits());
   }
   return qos;

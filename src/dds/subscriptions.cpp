@@ -13,7 +13,6 @@ namespace diminish::dds {
 namespace {
 
 using namespace eprosima::fastdds::dds;
-using eprosima::fastrtps::types::ReturnCode_t;
 
 /// Messages that wait to be taken: of images the newest few, of what is sent once all.
 constexpr int newest_received = 4;
@@ -58,10 +57,10 @@ DataReaderQos reader_qos(Delivery delivery) {
   qos.history().depth = is_newest                    ? newest_received
                         : delivery == Delivery::kept ? kept_received
                                                      : reliable_received;
-  qos.reliable_reader_qos().times.heartbeatResponseDelay = {0, 0};
+  answer_at_once(qos.reliable_reader_qos().times);
   // What a message claims to be is not allocated: each has the room that the type says, which the
   // machine gives where it is written.
-  qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::PREALLOCATED_MEMORY_MODE;
+  qos.endpoint().history_memory_policy = rtps::PREALLOCATED_MEMORY_MODE;
   keep_at_most(qos.history().depth, qos.resource_limits());
   return qos;
 }
@@ -83,7 +82,7 @@ struct Subscriptions::Implementation {
     for (std::size_t i = 0; i < readers.size(); ++i) {
       const std::size_t topic = (next + i) % readers.size();
       SampleInfo info;
-      while (readers[topic]->take_next_sample(&received.bytes, &info) == ReturnCode_t::RETCODE_OK) {
+      while (is_done(readers[topic]->take_next_sample(&received.bytes, &info))) {
         if (!info.valid_data) continue;
         received.topic = topic;
         received.arrival_s = now_s();

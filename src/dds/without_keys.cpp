@@ -6,7 +6,7 @@ namespace diminish::dds {
 KeyFiles::KeyFiles(const std::filesystem::path&) {}
 
 void check(const KeyFiles&) {
-  throw Error("keys: this build is without OpenSSL");
+  throw Error("keys: this build is without OpenSSL, or its Fast DDS without DDS Security");
 }
 
 }  // namespace diminish::dds

@@ -2,17 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <opencv2/aruco.hpp>
-#include <opencv2/aruco/charuco.hpp>
 #include <utility>
 
 #include "core/text.h"
 #include "diminish/error.h"
+#include "pose/opencv_aruco.h"
 
 namespace diminish {
 namespace {
 
-using DictionaryName = std::pair<const char*, cv::aruco::PREDEFINED_DICTIONARY_NAME>;
+using DictionaryName = std::pair<const char*, opencv_aruco::DictionaryName>;
 #define DIMINISH_DICTIONARY(name) \
   DictionaryName {                \
 #name, cv::aruco::name        \
@@ -31,9 +30,9 @@ constexpr DictionaryName dictionaries[] = {
     DIMINISH_DICTIONARY(DICT_APRILTAG_36h11)};
 #undef DIMINISH_DICTIONARY
 
-cv::Ptr<cv::aruco::Dictionary> opencv_dictionary(const std::string& name) {
+opencv_aruco::Dictionary opencv_dictionary(const std::string& name) {
   for (const auto& [candidate, id] : dictionaries) {
-    if (name == candidate) return cv::aruco::getPredefinedDictionary(id);
+    if (name == candidate) return opencv_aruco::dictionary(id);
   }
   throw Error("marker_dictionary: expected one of " + join(dictionary_names()) + ", got '" +
               printable(name) + "'");
@@ -66,9 +65,9 @@ MarkerDictionary find_dictionary(const std::string& name) {
 }
 
 std::vector<Marker> detect_with_opencv(const cv::Mat& picture, const std::string& dictionary) {
-  std::vector<std::vector<cv::Point2f>> corners;
+  opencv_aruco::Corners corners;
   std::vector<int> ids;
-  cv::aruco::detectMarkers(picture, opencv_dictionary(dictionary), corners, ids);
+  opencv_aruco::detect(picture, opencv_dictionary(dictionary), false, corners, ids);
   std::vector<Marker> markers;
   for (std::size_t i = 0; i < ids.size(); ++i) {
     Marker& marker = markers.emplace_back();
@@ -79,7 +78,7 @@ std::vector<Marker> detect_with_opencv(const cv::Mat& picture, const std::string
 }
 
 struct CharucoBoard::Implementation {
-  cv::Ptr<cv::aruco::CharucoBoard> board;
+  opencv_aruco::Board board;
   double height_m;
 };
 
@@ -91,8 +90,8 @@ CharucoBoard::CharucoBoard(const Board& board) {
                             describe(board), markers, dictionary->bytesList.rows));
   }
   implementation_ = std::make_unique<const Implementation>(Implementation{
-      cv::aruco::CharucoBoard::create(board.columns, board.rows, static_cast<float>(board.square_m),
-                                      static_cast<float>(board.marker_m), dictionary),
+      opencv_aruco::make_board({board.columns, board.rows}, static_cast<float>(board.square_m),
+                               static_cast<float>(board.marker_m), dictionary),
       board.rows * board.square_m});
 }
 CharucoBoard::~CharucoBoard() = default;
@@ -102,25 +101,21 @@ CharucoBoard& CharucoBoard::operator=(CharucoBoard&&) noexcept = default;
 std::vector<CharucoBoard::Place> CharucoBoard::markers() const {
   const auto& [board, height_m] = *implementation_;
   std::vector<Place> places;
-  for (std::size_t i = 0; i < board->ids.size(); ++i) {
-    const auto& corners = board->objPoints[i];
+  const std::vector<int>& ids = opencv_aruco::marker_ids(board);
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    const auto& corners = opencv_aruco::marker_corners(board)[i];
     const cv::Point3f center = 0.25F * (corners[0] + corners[1] + corners[2] + corners[3]);
     const bool y_upwards = corners[0].y > corners[3].y;
     const double y_m = y_upwards ? height_m - static_cast<double>(center.y) : center.y;
-    places.push_back({board->ids[i], center.x, y_m});
+    places.push_back({ids[i], center.x, y_m});
   }
   return places;
 }
 
 std::vector<CharucoBoard::Corner> CharucoBoard::detect(const cv::Mat& grey) const {
-  const auto& board = implementation_->board;
-  std::vector<std::vector<cv::Point2f>> markers;
-  std::vector<int> marker_ids;
-  cv::aruco::detectMarkers(grey, board->dictionary, markers, marker_ids);
-  if (marker_ids.empty()) return {};
   std::vector<cv::Point2f> pixels;
   std::vector<int> ids;
-  cv::aruco::interpolateCornersCharuco(markers, marker_ids, grey, board, pixels, ids);
+  opencv_aruco::detect_corners(grey, implementation_->board, pixels, ids);
   std::vector<Corner> corners;
   for (std::size_t i = 0; i < ids.size(); ++i) corners.push_back({ids[i], pixels[i]});
   return corners;

@@ -11,8 +11,7 @@
 
 namespace diminish {
 
-// What we use of OpenCV's aruco module. Its interface changed in OpenCV 4.7: only aruco.cpp
-// includes it.
+// What we use of OpenCV's markers.
 
 /// The cells of each of a dictionary's markers.
 struct MarkerDictionary {

@@ -3,13 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
-#include <opencv2/aruco.hpp>
 #include <opencv2/imgproc.hpp>
 #include <random>
 
 #include "core/mat.h"
 #include "diminish/error.h"
 #include "diminish/marker_detector.h"
+#include "pose/opencv_aruco.h"
 
 namespace diminish {
 namespace {
@@ -27,8 +27,7 @@ RenderedMarker render_marker(int id, const std::array<Eigen::Vector2d, 4>& corne
                              double noise, unsigned seed) {
   constexpr int modules = 6;
   cv::Mat code;
-  cv::aruco::drawMarker(cv::aruco::getPredefinedDictionary(cv::aruco::DICT_4X4_50), id, modules,
-                        code, 1);
+  opencv_aruco::draw(opencv_aruco::dictionary(cv::aruco::DICT_4X4_50), id, modules, code);
   std::vector<cv::Point2f> from = {{0, 0}, {modules, 0}, {modules, modules}, {0, modules}};
   std::vector<cv::Point2f> to;
   for (const Eigen::Vector2d& corner : corners) {

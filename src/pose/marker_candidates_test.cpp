@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <opencv2/aruco.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <random>
@@ -13,6 +12,7 @@
 #include "paths.h"
 #include "pose/dark_regions.h"
 #include "pose/marker_code.h"
+#include "pose/opencv_aruco.h"
 #include "pose/quad_candidates.h"
 
 namespace diminish {
@@ -93,7 +93,7 @@ TEST(QuadCandidates, AreNotDiscsOrTriangles) {
 
 // Every id of a dictionary, from every side, in OpenCV's own drawing.
 TEST(MarkerCode, ReadsWhatOpenCvDraws) {
-  const auto dictionary = cv::aruco::getPredefinedDictionary(cv::aruco::DICT_5X5_50);
+  const auto dictionary = opencv_aruco::dictionary(cv::aruco::DICT_5X5_50);
   const MarkerCode code(find_dictionary("DICT_5X5_50"));
   const double first = 19.5;
   const double last = 89.5;
@@ -101,7 +101,7 @@ TEST(MarkerCode, ReadsWhatOpenCvDraws) {
       Eigen::Vector2d(first, first), {last, first}, {last, last}, {first, last}};
   for (int id = 0; id < 50; ++id) {
     cv::Mat drawn;
-    cv::aruco::drawMarker(dictionary, id, 70, drawn);
+    opencv_aruco::draw(dictionary, id, 70, drawn);
     Image<Bgr> image(110, 110, {255, 255, 255});
     for (int y = 0; y < 70; ++y) {
       for (int x = 0; x < 70; ++x) {
@@ -149,18 +149,16 @@ INSTANTIATE_TEST_SUITE_P(Recordings, MarkersOfRecordings,
 // Whatever OpenCV finds, we find, at the same place, which is some pixels off with OpenCV where a
 // marker is small and slanted.
 TEST_P(MarkersOfRecordings, AreThoseThatOpenCvFinds) {
-  const auto dictionary = cv::aruco::getPredefinedDictionary(cv::aruco::DICT_4X4_50);
-  const auto parameters = cv::aruco::DetectorParameters::create();
-  parameters->cornerRefinementMethod = cv::aruco::CORNER_REFINE_SUBPIX;
+  const auto dictionary = opencv_aruco::dictionary(cv::aruco::DICT_4X4_50);
   MarkerDetector detector("DICT_4X4_50");
   int found = 0;
   for (const auto& entry : std::filesystem::directory_iterator(
            std::filesystem::path(testing::recordings_dir()) / GetParam())) {
     const cv::Mat picture = cv::imread(entry.path().string());
     if (picture.empty()) continue;
-    std::vector<std::vector<cv::Point2f>> corners;
+    opencv_aruco::Corners corners;
     std::vector<int> ids;
-    cv::aruco::detectMarkers(picture, dictionary, corners, ids, parameters);
+    opencv_aruco::detect(picture, dictionary, true, corners, ids);
     Image<Bgr> image;
     copy_from(picture, image);
     std::vector<Marker> markers;

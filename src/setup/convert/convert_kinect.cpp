@@ -4,6 +4,7 @@
 #include <fstream>
 #include <memory>
 #include <optional>
+#include <string_view>
 
 #include "core/text.h"
 #include "diminish/error.h"
@@ -50,14 +51,15 @@ std::string tag(const AVDictionary* tags, const char* name) {
 }
 
 /// The track that the recorder calls so: by its tag, or by its name.
-const AVStream& track(const AVFormatContext& container, const std::string& name) {
+const AVStream& track(const AVFormatContext& container, std::string_view name) {
   for (unsigned i = 0; i < container.nb_streams; ++i) {
     const AVStream& stream = *container.streams[i];
     if (stream.codecpar->codec_type == AVMEDIA_TYPE_ATTACHMENT) continue;
-    if (!tag(stream.metadata, ("K4A_" + name + "_TRACK").c_str()).empty()) return stream;
+    if (!tag(stream.metadata, fmt::format("K4A_{}_TRACK", name).c_str()).empty()) return stream;
     if (tag(stream.metadata, "title") == name) return stream;
   }
-  throw Error(Error::input, "expected an Azure Kinect's recording with the track " + name);
+  throw Error(Error::input,
+              fmt::format("expected an Azure Kinect's recording with the track {}", name));
 }
 
 /// The attachment that the recorder calls so: by its tag, or by its usual name.

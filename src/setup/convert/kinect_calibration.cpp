@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/limits.h"
@@ -48,13 +49,14 @@ double size(const json& object, const char* key) {
 }
 
 /// The entry of a location: CALIBRATION_CameraLocation...
-const json& camera_at(const json& cameras, const std::string& location) {
+const json& camera_at(const json& cameras, std::string_view location) {
   if (!cameras.is_array()) fail("a list of Cameras");
+  const std::string wanted = fmt::format("CALIBRATION_CameraLocation{}", location);
   for (const json& camera : cameras) {
     const json& place = member(camera, "Location");
-    if (place.is_string() && place == "CALIBRATION_CameraLocation" + location) return camera;
+    if (place.is_string() && place == wanted) return camera;
   }
-  fail("a camera at the location " + location);
+  fail(fmt::format("a camera at the location {}", location));
 }
 
 /// The whole sensor's image as a mode reads it: scaled to `scaled`, then cut out from `corner` on.
