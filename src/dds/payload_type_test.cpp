@@ -31,16 +31,15 @@ TEST(PayloadType, AMessageComesAsItWasSent) {
 TEST(PayloadType, WhatIsOverwrittenMeanwhileIsNotBelieved) {
   const PayloadType type("type", message_bytes);
   SerializedPayload_t payload(message_bytes);
-  Bytes sent(message_bytes, 5);
+  const Bytes sent(message_bytes, 5);
   ASSERT_TRUE(type.write(sent, payload));
-  const Bytes taken = sent;
-  EXPECT_TRUE(PayloadType::is_still_there(taken, payload));
+  EXPECT_TRUE(PayloadType::is_still_there(sent, payload));
   // The next one has another stamp, after the four bytes of encapsulation.
   for (const std::size_t at : {4U, 8U, 15U}) {
     Bytes next = sent;
     next[at] = 6;
     ASSERT_TRUE(type.write(next, payload));
-    EXPECT_FALSE(PayloadType::is_still_there(taken, payload)) << at;
+    EXPECT_FALSE(PayloadType::is_still_there(sent, payload)) << at;
   }
 }
 

@@ -30,6 +30,7 @@ RenderedMarker render_marker(int id, const std::array<Eigen::Vector2d, 4>& corne
   opencv_aruco::draw(opencv_aruco::dictionary(cv::aruco::DICT_4X4_50), id, modules, code);
   std::vector<cv::Point2f> from = {{0, 0}, {modules, 0}, {modules, modules}, {0, modules}};
   std::vector<cv::Point2f> to;
+  to.reserve(corners.size());
   for (const Eigen::Vector2d& corner : corners) {
     to.emplace_back(static_cast<float>(corner.x()), static_cast<float>(corner.y()));
   }
@@ -40,8 +41,10 @@ RenderedMarker render_marker(int id, const std::array<Eigen::Vector2d, 4>& corne
     for (int x = 0; x < ideal.width; ++x) {
       double sum = 0;
       for (int s = 0; s < samples * samples; ++s) {
-        const cv::Vec3d p = code_from_image * cv::Vec3d(x + (s % samples + 0.5) / samples - 0.5,
-                                                        y + (s / samples + 0.5) / samples - 0.5, 1);
+        const int column = s % samples;
+        const int row = s / samples;
+        const cv::Vec3d p = code_from_image * cv::Vec3d(x + (column + 0.5) / samples - 0.5,
+                                                        y + (row + 0.5) / samples - 0.5, 1);
         const double u = p[0] / p[2];
         const double v = p[1] / p[2];
         const bool inside = u >= 0 && u < modules && v >= 0 && v < modules;

@@ -47,7 +47,7 @@ TEST(DarkRegions, AreTheFourConnectedPartsBelowTheLocalMean) {
     for (int x = 2; x < mat.cols - 2; ++x) {
       const double mean = cv::mean(mat(cv::Rect(x - 2, y - 2, 5, 5)))[0];
       // 27 (v + 2) < 25 mean
-      if (27 * (picture(x, y) + 2) < std::lround(25 * mean)) expected(x, y) = 255;
+      if (27L * (picture(x, y) + 2) < std::lround(25 * mean)) expected(x, y) = 255;
     }
   }
   DarkRegions regions;

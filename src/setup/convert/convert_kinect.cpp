@@ -188,7 +188,7 @@ Conversion convert_kinect(const std::filesystem::path& file,
                         .depth_unit_m = 0.001,
                         .color_from_depth = calibration.color_from_depth});
     make_recording_folder(recording);
-    const Conversion conversion = Copy(*container, color, depth, recording).run();
+    Conversion conversion = Copy(*container, color, depth, recording).run();
     write_set_up(recording, rig, true, "");
     return conversion;
   } catch (const Error& error) {
