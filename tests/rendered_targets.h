@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <opencv2/aruco/charuco.hpp>
 #include <opencv2/imgproc.hpp>
 #include <random>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "diminish/board.h"
 #include "diminish/intrinsics.h"
 #include "diminish/rigid_transform.h"
+#include "pose/opencv_aruco.h"
 
 namespace diminish::testing {
 
@@ -28,8 +28,8 @@ inline Target marker_target(int id, double size_m, const RigidTransform& world_f
   constexpr int cell_px = 40;
   constexpr int cells = 6;
   cv::Mat picture;
-  cv::aruco::drawMarker(cv::aruco::getPredefinedDictionary(cv::aruco::DICT_4X4_50), id,
-                        cells * cell_px, picture, 1);
+  opencv_aruco::draw(opencv_aruco::dictionary(cv::aruco::DICT_4X4_50), id, cells * cell_px,
+                     picture);
   cv::copyMakeBorder(picture, picture, rim * cell_px, rim * cell_px, rim * cell_px, rim * cell_px,
                      cv::BORDER_CONSTANT, cv::Scalar(255));
   const double side = size_m * (cells + 2 * rim) / cells;
@@ -43,10 +43,10 @@ inline Target board_target(const Board& board, const RigidTransform& world_from_
   int columns = board.columns;
   int rows = board.rows;
   if (board.kind == Board::Kind::charuco) {
-    const auto charuco = cv::aruco::CharucoBoard::create(
-        columns, rows, static_cast<float>(board.square_m), static_cast<float>(board.marker_m),
-        cv::aruco::getPredefinedDictionary(cv::aruco::DICT_4X4_50));
-    charuco->draw({columns * square_px, rows * square_px}, picture, 0, 1);
+    const auto charuco = opencv_aruco::make_board(
+        {columns, rows}, static_cast<float>(board.square_m), static_cast<float>(board.marker_m),
+        opencv_aruco::dictionary(cv::aruco::DICT_4X4_50));
+    opencv_aruco::draw(charuco, {columns * square_px, rows * square_px}, picture);
   } else {
     ++columns;
     ++rows;

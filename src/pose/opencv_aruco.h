@@ -45,13 +45,19 @@ inline Board make_board(cv::Size squares, float square_m, float marker_m,
                         const Dictionary& dictionary) {
   return cv::makePtr<cv::aruco::CharucoBoard>(squares, square_m, marker_m, *dictionary);
 }
+inline void draw(const Board& board, cv::Size pixels, cv::Mat& drawn) {
+  board->generateImage(pixels, drawn);
+}
 inline const std::vector<int>& marker_ids(const Board& board) {
   return board->getIds();
 }
 inline const std::vector<std::vector<cv::Point3f>>& marker_corners(const Board& board) {
   return board->getObjPoints();
 }
-/// The chessboard's inner corners.
+/// The chessboard's inner corners, by id: on the board, and in a picture.
+inline std::vector<cv::Point3f> corners(const Board& board) {
+  return board->getChessboardCorners();
+}
 inline void detect_corners(const cv::Mat& grey, const Board& board,
                            std::vector<cv::Point2f>& pixels, std::vector<int>& ids) {
   cv::aruco::CharucoDetector(*board).detectBoard(grey, pixels, ids);
@@ -80,13 +86,19 @@ inline Board make_board(cv::Size squares, float square_m, float marker_m,
   return cv::aruco::CharucoBoard::create(squares.width, squares.height, square_m, marker_m,
                                          dictionary);
 }
+inline void draw(const Board& board, cv::Size pixels, cv::Mat& drawn) {
+  board->draw(pixels, drawn);
+}
 inline const std::vector<int>& marker_ids(const Board& board) {
   return board->ids;
 }
 inline const std::vector<std::vector<cv::Point3f>>& marker_corners(const Board& board) {
   return board->objPoints;
 }
-/// The chessboard's inner corners.
+/// The chessboard's inner corners, by id: on the board, and in a picture.
+inline std::vector<cv::Point3f> corners(const Board& board) {
+  return board->chessboardCorners;
+}
 inline void detect_corners(const cv::Mat& grey, const Board& board,
                            std::vector<cv::Point2f>& pixels, std::vector<int>& ids) {
   Corners corners;

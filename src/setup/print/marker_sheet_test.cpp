@@ -1,7 +1,6 @@
 #include "diminish/marker_sheet.h"
 
 #include <cmath>
-#include <opencv2/aruco/charuco.hpp>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -10,6 +9,7 @@
 
 #include "core/text.h"
 #include "expect_error.h"
+#include "pose/opencv_aruco.h"
 #include "temporary_folder.h"
 
 namespace diminish {
@@ -79,8 +79,8 @@ Drawing parse_pdf(const std::string& pdf) {
   return drawing;
 }
 
-cv::Ptr<cv::aruco::Dictionary> dictionary_5x5() {
-  return cv::aruco::getPredefinedDictionary(cv::aruco::DICT_5X5_100);
+opencv_aruco::Dictionary dictionary_5x5() {
+  return opencv_aruco::dictionary(cv::aruco::DICT_5X5_100);
 }
 
 /// Reads a marker's cells where it should be, by OpenCV's dictionary; -1: it is none.
@@ -108,11 +108,11 @@ class MarkerSheetTest : public ::testing::Test {
     write_marker_sheet(sheet, find_paper("A4"), folder.path() / name);
     return read_text_file(folder.path() / name, max_bytes);
   }
-  std::vector<std::vector<cv::Point2f>> detect(const cv::Mat& picture,
-                                               const cv::Ptr<cv::aruco::Dictionary>& dictionary,
-                                               std::vector<int>& ids) {
-    std::vector<std::vector<cv::Point2f>> corners;
-    cv::aruco::detectMarkers(picture, dictionary, corners, ids);
+  static opencv_aruco::Corners detect(const cv::Mat& picture,
+                                      const opencv_aruco::Dictionary& dictionary,
+                                      std::vector<int>& ids) {
+    opencv_aruco::Corners corners;
+    opencv_aruco::detect(picture, dictionary, false, corners, ids);
     return corners;
   }
 
@@ -249,21 +249,22 @@ TEST_P(CharucoBoardTest, OpenCVFindsAllItsCornersWhereTheyBelong) {
   write_board(board, find_paper("A4"), file);
   const double per_metre = pixels_per_metre(read_text_file(file, max_bytes));
   const cv::Mat picture = cv::imread(file.string(), cv::IMREAD_GRAYSCALE);
-  const auto dictionary = cv::aruco::getPredefinedDictionary(cv::aruco::DICT_4X4_50);
+  const auto dictionary = opencv_aruco::dictionary(cv::aruco::DICT_4X4_50);
   const auto opencv =
-      cv::aruco::CharucoBoard::create(board.columns, board.rows, static_cast<float>(board.square_m),
-                                      static_cast<float>(board.marker_m), dictionary);
-  std::vector<std::vector<cv::Point2f>> markers;
+      opencv_aruco::make_board({board.columns, board.rows}, static_cast<float>(board.square_m),
+                               static_cast<float>(board.marker_m), dictionary);
+  opencv_aruco::Corners markers;
   std::vector<int> ids;
-  cv::aruco::detectMarkers(picture, dictionary, markers, ids);
-  EXPECT_EQ(ids.size(), opencv->ids.size());
+  opencv_aruco::detect(picture, dictionary, false, markers, ids);
+  EXPECT_EQ(ids.size(), opencv_aruco::marker_ids(opencv).size());
   std::vector<cv::Point2f> corners;
   std::vector<int> corner_ids;
-  cv::aruco::interpolateCornersCharuco(markers, ids, picture, opencv, corners, corner_ids);
-  ASSERT_EQ(corners.size(), opencv->chessboardCorners.size());
+  opencv_aruco::detect_corners(picture, opencv, corners, corner_ids);
+  const std::vector<cv::Point3f> on_board = opencv_aruco::corners(opencv);
+  ASSERT_EQ(corners.size(), on_board.size());
   for (std::size_t i = 1; i < corners.size(); ++i) {
-    const auto expected = opencv->chessboardCorners[static_cast<std::size_t>(corner_ids[i])] -
-                          opencv->chessboardCorners[static_cast<std::size_t>(corner_ids[0])];
+    const auto expected = on_board[static_cast<std::size_t>(corner_ids[i])] -
+                          on_board[static_cast<std::size_t>(corner_ids[0])];
     const cv::Point2f seen = (corners[i] - corners[0]) / per_metre;
     EXPECT_NEAR(std::abs(seen.x), std::abs(expected.x), 0.0001);
     EXPECT_NEAR(std::abs(seen.y), std::abs(expected.y), 0.0001);
