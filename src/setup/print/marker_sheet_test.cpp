@@ -186,7 +186,8 @@ TEST_F(MarkerSheetTest, NothingIsOffThePageNorInAQuietZone) {
     EXPECT_LE(r.br().y, 292);
   }
   const double cell = 53.7 / 7;
-  for (double x = 0.1; x < 53.7 + 2 * cell; x += 1) {
+  for (int mm = 0; mm < 53.6 + 2 * cell; ++mm) {
+    const double x = mm + 0.1;
     EXPECT_FALSE(drawing.is_black(10 + x, 10 + 0.5 * cell)) << x;
     EXPECT_FALSE(drawing.is_black(10 + 0.5 * cell, 10 + x)) << x;
   }
