@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <fastdds/dds/topic/TopicDataType.hpp>
+#include <functional>
 #include <string>
 #include <vector>
 
