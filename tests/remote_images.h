@@ -29,7 +29,7 @@ class NodeInProcess {
     question_.user = recording.rig.color;
     question_.wishes = {recording.scene.marker_dictionary,
                         PoseRefinement::usual_spacings_px(recording.rig.color), samples,
-                        settings.depth_unit_m == 0};
+                        settings.coding.is_exact()};
   }
 
   /// Takes the images out of the frame; the node keeps them.

@@ -32,20 +32,22 @@ constexpr double patience_s = 0.5;
 constexpr double unanswered_after_s = 1;
 constexpr std::size_t most_asked = 8;
 
-RemoteSettings parse_settings(const CameraUri& uri) {
+RemoteSettings parse_settings(const CameraUri& uri, bool is_within_machine) {
   std::vector<std::string> known = {"lossless", "quality", "depth_step", "wait"};
   known.insert(known.end(), std::begin(node_network_parameters), std::end(node_network_parameters));
   uri.expect_parameters(known);
   RemoteSettings settings;
+  LayerCoding& coding = settings.coding;
   if (uri.has("lossless")) {
     if (uri.has("quality") || uri.has("depth_step")) {
       uri.fail("expected lossless, or quality and depth_step");
     }
-    settings.jpeg_quality = 0;
-    settings.depth_unit_m = 0;
+    coding.jpeg_quality = 0;
+    coding.depth_unit_m = 0;
   } else {
-    settings.jpeg_quality = static_cast<int>(uri.number("quality", settings.jpeg_quality, 1, 100));
-    settings.depth_unit_m = 1e-3 * uri.number("depth_step", 1e3 * settings.depth_unit_m, 0.01, 100);
+    coding.raw = is_within_machine && !uri.has("quality") && !uri.has("depth_step");
+    coding.jpeg_quality = static_cast<int>(uri.number("quality", coding.jpeg_quality, 1, 100));
+    coding.depth_unit_m = 1e-3 * uri.number("depth_step", 1e3 * coding.depth_unit_m, 0.01, 100);
   }
   settings.wait_s = 1e-3 * uri.number("wait", 1e3 * settings.wait_s, 1, 60'000);
   return settings;
@@ -88,12 +90,12 @@ struct RemoteCamera::Implementation {
   Implementation(const LiveCamera& camera_, const Setting& setting)
       : camera(camera_), question(question_of(setting)) {
     const CameraUri uri = parse_camera_uri(camera.uri);
-    settings = parse_settings(uri);
-    question.wishes.exact = settings.depth_unit_m == 0;
+    const NodeWire wire = node_wire(uri);
+    settings = parse_settings(uri, wire.network.is_within_machine());
+    question.wishes.exact = settings.coding.is_exact();
     if (!setting.camera.measures_depth) {
       uri.fail("expected a camera that measures depth, " + camera.name + " does not");
     }
-    const NodeWire wire = node_wire(uri);
     const auto node = dds::Node::open(wire.network);
     answers.emplace(node);
     answers->add({ros2_topic(uri, uri.target, "answer"), node_answer_type}, wire.delivery);

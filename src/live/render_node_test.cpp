@@ -30,8 +30,8 @@ std::string camera_uri(const std::string& name) {
   return "recording:" + folder.string() + "?loop&in-step&rate=0.2" +
          (name == "color" ? "" : "&camera=" + name);
 }
-std::string node_uri(const std::string& name) {
-  return "node:/" + name + "?lossless&wait=20000";
+std::string node_uri(const std::string& name, const std::string& coding) {
+  return "node:/" + name + "?wait=20000" + coding;
 }
 
 class RenderNodeTest : public ::testing::Test {
@@ -46,11 +46,14 @@ class RenderNodeTest : public ::testing::Test {
   RenderNodeOptions node(const std::string& name) const {
     return {camera_uri(name), name, "/" + name, recording_.rig};
   }
-  std::unique_ptr<LiveSession> session(const std::vector<std::string>& remote) const {
+  /// coding: of the nodes' URI; without any, layers are raw.
+  std::unique_ptr<LiveSession> session(const std::vector<std::string>& remote,
+                                       const std::string& coding = "") const {
     std::vector<LiveCamera> cameras = {{"color", camera_uri("color")}};
     for (const RgbdCamera& camera : recording_.rig.rgbd) {
       const bool is_remote = std::find(remote.begin(), remote.end(), camera.name) != remote.end();
-      cameras.push_back({camera.name, is_remote ? node_uri(camera.name) : camera_uri(camera.name)});
+      cameras.push_back(
+          {camera.name, is_remote ? node_uri(camera.name, coding) : camera_uri(camera.name)});
     }
     LiveOptions live;
     live.sync_wait_s = 2;
@@ -89,9 +92,13 @@ TEST_F(RenderNodeTest, ItsContributionMakesTheLocalPicture) {
 
   const RenderNode first(node("rgbd0"));
   const RenderNode second(node("rgbd1"));
-  for (const std::vector<std::string>& remote :
-       {std::vector<std::string>{"rgbd1"}, {"rgbd0", "rgbd1"}}) {
-    const auto running = session(remote);
+  struct Case {
+    std::vector<std::string> remote;
+    std::string coding;
+  };
+  for (const auto& [remote, coding] :
+       {Case{{"rgbd1"}, "&lossless"}, Case{{"rgbd0", "rgbd1"}, ""}}) {
+    const auto running = session(remote, coding);
     const auto live = frame_where(*running, is_complete);
     ASSERT_TRUE(live);
     const auto same = std::find_if(recorded.begin(), recorded.end(), [&](const FrameSet& frame) {

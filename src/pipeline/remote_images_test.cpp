@@ -90,14 +90,16 @@ Options comparable() {
   return options;
 }
 
-const RemoteSettings lossless{0, 0, 10};
+const RemoteSettings lossless{{false, 0, 0}, 10}, raw{{true}, 10};
 
 TEST_F(RemoteImagesTest, GiveThePictureOfLocalOnesBitForBit) {
   for (const std::vector<std::size_t>& remote :
        {std::vector<std::size_t>{0}, std::vector<std::size_t>{1}, std::vector<std::size_t>{0, 1}}) {
-    const Difference found = difference(comparable(), remote, lossless);
-    EXPECT_GT(found.pixels, 10000U);
-    EXPECT_EQ(found.squares, 0);
+    for (const RemoteSettings& settings : {lossless, raw}) {
+      const Difference found = difference(comparable(), remote, settings);
+      EXPECT_GT(found.pixels, 10000U);
+      EXPECT_EQ(found.squares, 0);
+    }
   }
 }
 
@@ -114,7 +116,7 @@ TEST_F(RemoteImagesTest, DifferLittleWithWhatIsLeftOut) {
 }
 
 TEST_F(RemoteImagesTest, DifferLittleWithWhatIsLost) {
-  EXPECT_LT(difference(without_bars(), {0, 1}, {92, 2e-4, 10}).mean_square(), 12);
+  EXPECT_LT(difference(without_bars(), {0, 1}, {{false, 92, 2e-4}, 10}).mean_square(), 12);
 }
 
 }  // namespace

@@ -95,7 +95,7 @@ void AskedImages::draw(const RemoteDrawing& drawing) {
   }
   NodeHead head = head_;
   head.topic = NodeTopic::layer;
-  send_(write_question(head, drawing, settings_.jpeg_quality, settings_.depth_unit_m));
+  send_(write_question(head, drawing, settings_.coding));
   const std::lock_guard lock(mutex_);
   question_ns_ = tracing::thread_now_ns() - begin_ns;
 }

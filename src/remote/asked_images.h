@@ -14,9 +14,8 @@ namespace diminish {
 
 /// How a node's contributions are to be sent, and how long they are waited for.
 struct RemoteSettings {
-  int jpeg_quality = 92;       ///< 0: colours without loss
-  double depth_unit_m = 2e-4;  ///< 0: depth without loss
-  double wait_s = 0.1;         ///< for each of a frame's two answers
+  LayerCoding coding;
+  double wait_s = 0.1;  ///< for each of a frame's two answers
 };
 
 /// A remote camera's images of one frame, on the user's machine. The pipeline's thread asks and

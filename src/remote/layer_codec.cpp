@@ -186,13 +186,16 @@ void compress_exactly(const Image<float>& values, std::vector<std::uint8_t>& byt
 void decompress_exactly(std::span<const std::uint8_t> bytes, float most, Image<float>& values) {
   Image<std::uint32_t> words(values.width(), values.height());
   decompress_words(bytes, words);
-  std::transform(words.begin(), words.end(), values.begin(), [&](std::uint32_t word) {
-    const auto value = std::bit_cast<float>(word);
-    if (word != 0 && !(value >= least_exact && value <= most)) {
-      throw Error(Error::input, "expected numbers within their range");
-    }
-    return value;
+  std::transform(words.begin(), words.end(), values.begin(),
+                 [](std::uint32_t word) { return std::bit_cast<float>(word); });
+  expect_numbers(values, most);
+}
+
+void expect_numbers(const Image<float>& values, float most) {
+  const bool are_there = std::all_of(values.begin(), values.end(), [&](float value) {
+    return std::bit_cast<std::uint32_t>(value) == 0 || (value >= least_exact && value <= most);
   });
+  if (!are_there) throw Error(Error::input, "expected numbers within their range");
 }
 
 double compress_inverse_z(const Image<float>& inverse_z, double unit_m,

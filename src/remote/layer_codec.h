@@ -34,8 +34,9 @@ void compress_words(const Image<std::uint32_t>& words, std::vector<std::uint8_t>
 void decompress_words(std::span<const std::uint8_t> bytes, Image<std::uint32_t>& words);
 /// The same for numbers that are 0 or at least a millionth.
 void compress_exactly(const Image<float>& values, std::vector<std::uint8_t>& bytes);
-/// Throws Error for a number above `most`.
 void decompress_exactly(std::span<const std::uint8_t> bytes, float most, Image<float>& values);
+/// Throws Error (input) unless all are such numbers, of at most `most`.
+void expect_numbers(const Image<float>& values, float most);
 
 /// RemoteLayer::inverse_z as depth in steps of `unit_m`, or of what 16 bits need to reach far
 /// enough. Returns the step.

@@ -61,7 +61,8 @@ void LayerDrawer::write_rows(ImageView<Bgr> texture, Rows rows, RemoteLayer& lay
     Bgr* const color = layer.color.row(i);
     for (std::size_t x = 0; x < size; ++x) {
       const Bgra& found = scratch.colors[x];
-      if (scratch.source[x] != 0) color[x] = {found.b, found.g, found.r};
+      // What memory held before does not travel.
+      color[x] = scratch.source[x] != 0 ? Bgr{found.b, found.g, found.r} : Bgr{};
     }
   }
 }

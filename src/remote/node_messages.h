@@ -41,14 +41,24 @@ struct GlanceQuestion {
   GlanceWishes wishes;
 };
 
+/// How a layer travels.
+struct LayerCoding {
+  /// Within one machine: as it is in memory, if it has at most three million pixels. Many bytes,
+  /// and hardly any time.
+  bool raw = false;
+  int jpeg_quality = 92;       ///< otherwise; 0: colours without loss
+  double depth_unit_m = 2e-4;  ///< otherwise: the least step of its depth; 0: without loss
+
+  bool is_exact() const { return raw || depth_unit_m == 0; }
+};
+
 /// For a layer. How the images are to be drawn, and sent.
 struct LayerQuestion {
   RigidTransform color_from_depth;
   Mask rgbd_color, rgbd_depth;
   TiledRegion region;
-  Options options;          ///< those that the drawing reads
-  int jpeg_quality = 0;     ///< 0: colours without loss
-  double depth_unit_m = 0;  ///< the least step of the layer's depth; 0: without loss
+  Options options;  ///< those that the drawing reads
+  LayerCoding coding;
 
   RemoteDrawing drawing() const {
     return {color_from_depth, rgbd_color, rgbd_depth, region, options};
@@ -65,7 +75,7 @@ struct AnswerHead : NodeHead {
 
 std::vector<std::uint8_t> write_question(const NodeHead& head, const GlanceQuestion& question);
 std::vector<std::uint8_t> write_question(const NodeHead& head, const RemoteDrawing& drawing,
-                                         int jpeg_quality, double depth_unit_m);
+                                         const LayerCoding& coding);
 
 /// A message whose head has been read.
 template <class Head>
@@ -84,9 +94,9 @@ void read(ros::MessageReader& reader, const GlanceQuestion& asked, LayerQuestion
 /// Stamps are the node's.
 std::vector<std::uint8_t> write_answer(const AnswerHead& head, const Glance& glance,
                                        const GlanceQuestion& asked);
-/// layer: its colours may be changed where it has no depth.
-std::vector<std::uint8_t> write_answer(const AnswerHead& head, RemoteLayer& layer, int jpeg_quality,
-                                       double depth_unit_m);
+/// layer: its colours may be changed where it has no depth. answer: its memory is used again.
+void write_answer(const AnswerHead& head, RemoteLayer& layer, const LayerCoding& coding,
+                  std::vector<std::uint8_t>& answer);
 /// With a problem alone.
 std::vector<std::uint8_t> write_answer(const AnswerHead& head);
 

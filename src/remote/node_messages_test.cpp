@@ -95,7 +95,7 @@ TEST(NodeMessages, AQuestionForALayerIsReadAsItWasWritten) {
   Options options;
   options.smooth_depth = false;
   options.discontinuity_threshold_m = 0.07;
-  const auto bytes = write_question(head, {pose, color, depth, region, options}, 80, 2e-4);
+  const auto bytes = write_question(head, {pose, color, depth, region, options}, {true, 80, 2e-4});
   auto message = open_question(bytes);
   LayerQuestion back;
   read(message.rest, asked, back);
@@ -112,13 +112,19 @@ TEST(NodeMessages, AQuestionForALayerIsReadAsItWasWritten) {
   EXPECT_FALSE(back.options.smooth_depth);
   EXPECT_TRUE(back.options.snap_edges);
   EXPECT_EQ(back.options.discontinuity_threshold_m, 0.07);
-  EXPECT_EQ(back.jpeg_quality, 80);
-  EXPECT_EQ(back.depth_unit_m, 2e-4);
+  EXPECT_TRUE(back.coding.raw);
+  EXPECT_EQ(back.coding.jpeg_quality, 80);
+  EXPECT_EQ(back.coding.depth_unit_m, 2e-4);
 }
 
-RemoteLayer sent_and_read(const RemoteLayer& sent, int jpeg_quality, double depth_unit_m) {
-  RemoteLayer layer = sent;
-  const auto bytes = write_answer({}, layer, jpeg_quality, depth_unit_m);
+std::vector<std::uint8_t> answer_with(RemoteLayer layer, const LayerCoding& coding) {
+  std::vector<std::uint8_t> bytes;
+  write_answer({}, layer, coding, bytes);
+  return bytes;
+}
+
+RemoteLayer sent_and_read(const RemoteLayer& sent, const LayerCoding& coding) {
+  const auto bytes = answer_with(sent, coding);
   auto message = open_answer(bytes);
   RemoteLayer back;
   back.region = sent.region;
@@ -128,19 +134,21 @@ RemoteLayer sent_and_read(const RemoteLayer& sent, int jpeg_quality, double dept
 
 TEST(NodeMessages, ALayerWithoutLossIsReadBitForBit) {
   const RemoteLayer sent = random_layer({4, 6, 40, 32});
-  const RemoteLayer back = sent_and_read(sent, 0, 0);
-  EXPECT_EQ(back.inverse_z, sent.inverse_z);
-  EXPECT_EQ(back.resolution, sent.resolution);
-  for (std::size_t i = 0; i < sent.color.size(); ++i) {
-    if (sent.inverse_z.data()[i] == 0) continue;
-    ASSERT_EQ(back.color.data()[i], sent.color.data()[i]) << i;
+  for (const LayerCoding& coding : {LayerCoding{false, 0, 0}, LayerCoding{true}}) {
+    const RemoteLayer back = sent_and_read(sent, coding);
+    EXPECT_EQ(back.inverse_z, sent.inverse_z);
+    EXPECT_EQ(back.resolution, sent.resolution);
+    for (std::size_t i = 0; i < sent.color.size(); ++i) {
+      if (sent.inverse_z.data()[i] == 0) continue;
+      ASSERT_EQ(back.color.data()[i], sent.color.data()[i]) << i;
+    }
   }
 }
 
 TEST(NodeMessages, ALayersDepthIsRoundedToItsSteps) {
   const RemoteLayer sent = random_layer({4, 6, 40, 32});
   for (const double step_m : {2e-4, 1e-6}) {
-    const RemoteLayer back = sent_and_read(sent, 95, step_m);
+    const RemoteLayer back = sent_and_read(sent, {false, 95, step_m});
     // 7.2 m are more than 65534 small steps.
     const double most_m = step_m > 1e-5 ? step_m / 2 : 6e-5;
     for (std::size_t i = 0; i < sent.inverse_z.size(); ++i) {
@@ -174,6 +182,35 @@ TEST(NodeMessages, SurfacesWithoutLossAreSmall) {
   decompress_exactly(bytes, 1, back);
   EXPECT_EQ(back, plane);
   EXPECT_THROW(decompress_exactly(bytes, 0.7F, back), Error);
+}
+
+TEST(NodeMessages, RawNumbersThatAreNoneAreRefused) {
+  for (const float value : {-1.F, 2000.F, std::nanf(""), 1e-9F}) {
+    RemoteLayer sent = random_layer({4, 6, 40, 32});
+    sent.inverse_z(3, 5) = value;
+    EXPECT_THROW(sent_and_read(sent, {true}), Error) << value;
+  }
+}
+
+TEST(NodeMessages, RawLayersOfAnotherSizeAreRefused) {
+  const auto bytes = answer_with(random_layer({4, 6, 40, 32}), {true});
+  auto message = open_answer(bytes);
+  RemoteLayer back;
+  back.region = {4, 6, 48, 32};
+  EXPECT_EQ(error_of([&] { read(message.rest, back); }),
+            "expected the pixels of the region that was asked for");
+}
+
+TEST(NodeMessages, RawLayersThatAreTooLargeForAMessageAreCompressed) {
+  RemoteLayer sent;
+  sent.region = {0, 0, 2400, 1600};
+  sent.color = Image<Bgr>(2400, 1600, {90, 100, 110});
+  sent.inverse_z = Image<float>(2400, 1600, 0.5F);
+  sent.resolution = Image<float>(300, 200, 1.F);
+  EXPECT_LT(answer_with(sent, {true}).size(), 4'000'000U);
+  const RemoteLayer back = sent_and_read(sent, {true});
+  EXPECT_NEAR(back.inverse_z(1200, 800), 0.5, 1e-4);
+  EXPECT_NEAR(back.color(1200, 800).g, 100, 2);
 }
 
 class NodeGlance : public ::testing::TestWithParam<bool> {};
@@ -241,7 +278,7 @@ TEST(NodeMessages, BrokenOnesAreRefused) {
   const Mask depth = random_mask(40, 32, 2);
   const TiledRegion region(Rect{3, 5, 80, 50});
   const Options options;
-  RemoteLayer layer = random_layer(region);
+  const RemoteLayer layer = random_layer(region);
   const auto read_question = [&](const std::vector<std::uint8_t>& bytes) {
     auto message = open_question(bytes);
     LayerQuestion read_one;
@@ -273,9 +310,12 @@ TEST(NodeMessages, BrokenOnesAreRefused) {
     }
     EXPECT_GT(refused, 0);
   };
-  try_all(write_question(head, {pose, color, depth, region, options}, 80, 2e-4), read_question);
-  try_all(write_answer({}, layer, 0, 1e-4), read_answer);
-  try_all(write_answer({}, layer, 0, 0), read_answer);
+  try_all(write_question(head, {pose, color, depth, region, options}, {false, 80, 2e-4}),
+          read_question);
+  for (const LayerCoding& coding :
+       {LayerCoding{false, 0, 1e-4}, LayerCoding{false, 0, 0}, LayerCoding{true}}) {
+    try_all(answer_with(layer, coding), read_answer);
+  }
 }
 
 TEST(NodeMessages, SizesAreBounded) {

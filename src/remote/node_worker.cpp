@@ -175,11 +175,11 @@ void NodeWorker::take_layer(NodeMessage<NodeHead>& message, double now_s) {
   from.drawer->draw(*moment->images, from.question.drawing(), from.layer);
   const double drawn_s = monotonic_now_s();
   counts_.draw_ms += 1e3 * (drawn_s - start_s);
-  const auto answer = write_answer(answer_to(message.head, from.asked.asked_s, now_s), from.layer,
-                                   from.question.jpeg_quality, from.question.depth_unit_m);
+  write_answer(answer_to(message.head, from.asked.asked_s, now_s), from.layer, from.question.coding,
+               answer_);
   counts_.compress_ms += since_ms(drawn_s);
   ++counts_.layers;
-  send(answer, counts_.layer_bytes);
+  send(answer_, counts_.layer_bytes);
 }
 
 void NodeWorker::send(const std::vector<std::uint8_t>& answer, std::size_t& bytes) {

@@ -87,6 +87,7 @@ class NodeWorker {
   Find find_;
   Send send_;
   std::vector<std::unique_ptr<User>> users_;
+  std::vector<std::uint8_t> answer_;  ///< a layer's
   NodeCounts counts_;
 };
 

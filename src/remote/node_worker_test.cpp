@@ -43,7 +43,7 @@ class NodeWorkerTest : public ::testing::Test {
   }
   void ask_layer(std::uint64_t user, std::uint64_t frame, double now_s) {
     worker_.take(write_question({NodeTopic::layer, user, frame},
-                                {pose, color_mask, depth_mask, region_, options}, 0, 1e-4),
+                                {pose, color_mask, depth_mask, region_, options}, {false, 0, 1e-4}),
                  now_s);
   }
   /// Of the last answer.
