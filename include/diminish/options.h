@@ -13,6 +13,7 @@ namespace diminish {
 struct Options {
   double sync_tolerance_s = 0;
   int mask_margin_px = 5;
+  int contact_line_px = 7;
   int soft_rim_px = 2;
   int rgbd_mask_margin_px = 9;
   double blob_spread = 1.0;
@@ -71,6 +72,11 @@ void for_each_option(AnyOptions& options, Visit&& visit) {
   visit(OptionInfo{"mask_margin_px", "pixels",
                    "How far the objects' masks grow in the colour image", 0, 200},
         options.mask_margin_px);
+  visit(OptionInfo{"contact_line_px", "pixels",
+                   "How far beyond its mask the dark line around the foot of an object that stands "
+                   "on a plane is looked for, to be removed with it; 0: not",
+                   0, 50},
+        options.contact_line_px);
   visit(OptionInfo{"soft_rim_px", "pixels",
                    "Width inside the margin over which the camera's picture fades into the "
                    "background; at most half the margin",

@@ -55,6 +55,7 @@ class ArticulatedOccluder final : public ShapeDetector {
       return;
     }
     add(*poses.color_from_world, in_color_, object, outlines.color);
+    outlines.vertices_m[object] = in_camera_;
     for (std::size_t k = 0; k < rig_.rgbd.size(); ++k) {
       const RgbdFrame& rgbd = frame.rgbd[k];
       const auto& depth_from_world = poses.depth_from_world[k];

@@ -55,6 +55,7 @@ class MarkerOccluder : public ShapeDetector {
 
     if (const auto& pose = camera_from_marker_[0]) {
       add_shape(*pose, in_color_, object, outlines.color);
+      outlines.vertices_m[object] = vertices_in_camera_;
     }
     for (std::size_t k = 0; k < rig_.rgbd.size(); ++k) {
       const auto& pose = camera_from_marker_[k + 1];

@@ -52,7 +52,7 @@ void OccluderStage::draw_by(const std::string& drawer) {
 
 void OccluderStage::detect(const Observation& observation, std::vector<OccluderReport>& reports) {
   clear();
-  outlines_.clear(rig_.rgbd.size());
+  outlines_.clear(rig_.rgbd.size(), detectors_.size());
   is_blank_ = true;
   reports.resize(detectors_.size());
   const std::vector<std::string> kept = kept_objects(observation.options);
@@ -80,6 +80,16 @@ void OccluderStage::detect(const Observation& observation, std::vector<OccluderR
   end_turn();
   draw(observation.options, reports);
   objects_ = bounding_box(masks_.color, parts_[0]);
+}
+
+void OccluderStage::add(std::span<const Eigen::Vector2i> pixels) {
+  Rect part = parts_[0];
+  for (const Eigen::Vector2i& pixel : pixels) {
+    masks_.color(pixel.x(), pixel.y()) = 255;
+    part = join(part, {pixel.x(), pixel.y(), 1, 1});
+  }
+  parts_[0] = part;
+  if (!pixels.empty()) objects_ = bounding_box(masks_.color, part);
 }
 
 /// What is outlined, and the margins.

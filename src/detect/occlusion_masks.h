@@ -1,6 +1,8 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -37,6 +39,12 @@ class OccluderStage {
   /// the union of all objects' masks in this frame, grown by the options' margins, and `reports` by
   /// one report for each object. Objects in the option `keep` are not looked for.
   void detect(const Observation& observation, std::vector<OccluderReport>& reports);
+
+  /// The shapes of the objects, where they are known: vertices in the colour camera's frame, by
+  /// object.
+  std::span<const std::vector<Eigen::Vector3d>> vertices_m() const { return outlines_.vertices_m; }
+  /// Adds pixels to the colour camera's mask of this frame.
+  void add(std::span<const Eigen::Vector2i> pixels);
 
   const OcclusionMasks& masks() const { return masks_; }
   /// The colour camera's mask's bounding box.

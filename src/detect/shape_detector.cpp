@@ -2,16 +2,18 @@
 
 namespace diminish {
 
-void OcclusionOutlines::clear(std::size_t cameras) {
+void OcclusionOutlines::clear(std::size_t cameras, std::size_t objects) {
   rgbd_color.resize(cameras);
   rgbd_depth.resize(cameras);
   color.clear();
   for (Polygons& polygons : rgbd_color) polygons.clear();
   for (Polygons& polygons : rgbd_depth) polygons.clear();
+  vertices_m.resize(objects);
+  for (auto& vertices : vertices_m) vertices.clear();
 }
 
 OccluderReport ShapeDetector::detect(const Observation& observation, OcclusionMasks& masks) {
-  outlines_.clear(masks.rgbd_color.size());
+  outlines_.clear(masks.rgbd_color.size(), 1);
   OccluderReport report;
   report.in_rgbd.assign(masks.rgbd_color.size(), false);
   outline(observation, 0, nullptr, outlines_, report);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <vector>
 
@@ -14,18 +15,20 @@ namespace diminish {
 struct OcclusionOutlines {
   Polygons color;
   std::vector<Polygons> rgbd_color, rgbd_depth;
+  /// By object: its shape's vertices in the colour camera's frame; none where it is not known.
+  std::vector<std::vector<Eigen::Vector3d>> vertices_m;
 
-  /// Empty, for this many RGB-D cameras.
-  void clear(std::size_t cameras);
+  /// Empty, for this many RGB-D cameras and objects.
+  void clear(std::size_t cameras, std::size_t objects);
 };
 
 /// A detector of objects with a known shape. It outlines them, and the MaskDrawer draws its
 /// outlines with the others.
 class ShapeDetector : public OccluderDetector {
  public:
-  /// Adds the object's outlines, labelled `object`, and leaves the others alone. What they cover is
-  /// known only after drawing: of the report, fills the name and the message. track: of this
-  /// object, to be followed and continued; null if frames stand alone.
+  /// Adds the object's outlines, labelled `object`, and its vertices, and leaves the others alone.
+  /// What they cover is known only after drawing: of the report, fills the name and the message.
+  /// track: of this object, to be followed and continued; null if frames stand alone.
   virtual void outline(const Observation& observation, std::uint32_t object, ObjectTrack* track,
                        OcclusionOutlines& outlines, OccluderReport& report) = 0;
 

@@ -1,5 +1,6 @@
 #include "pipeline/frame_stages.h"
 
+#include <algorithm>
 #include <functional>
 
 #include "composite/smoothing_share.h"
@@ -69,6 +70,7 @@ FrameStages::FrameStages(const Rig& rig_, const Scene& scene_)
       agreement(rig, scene),
       object_place(rig, scene),
       background(rig.color),
+      contact_line(rig.color),
       bar_views(rig),
       standing_things(rig),
       backend(rig),
@@ -89,10 +91,15 @@ void FrameStages::set_options(const Options& wanted) {
              options.memory != "off"};
 }
 
+/// The mask may still grow by the objects' contact line.
+int FrameStages::surroundings_px() const {
+  return std::max(options.surroundings_px, options.contact_line_px + 1);
+}
+
 Rect FrameStages::surroundings() const {
   const Rect whole = rig.color.bounds();
   if (options.whole_view) return whole;
-  return intersect(grow(occluders.objects(), options.surroundings_px), whole);
+  return intersect(grow(occluders.objects(), surroundings_px()), whole);
 }
 
 bool FrameStages::looks_at_scene() const {
@@ -108,6 +115,12 @@ bool FrameStages::completes_sides() const {
   return options.complete_sides && methods.inpainting.uses_surfaces && background.planes();
 }
 
+void FrameStages::find_contact_line(const FrameSet& frame) {
+  if (!background.planes()) return;
+  contact_line.find({frame.color, occluders.masks().color, occluders.vertices_m(),
+                     *background.planes(), options.mask_margin_px, options.contact_line_px});
+}
+
 /// If there is an object that hides them. They are looked for in front of the background's planes.
 bool FrameStages::draws_bars() const {
   return options.draw_bars && methods.inpainting.uses_surfaces && !rig.rgbd.empty();
@@ -118,7 +131,7 @@ void FrameStages::choose_region() {
   if (options.remove_shadows) {
     region.set(rig.color.bounds());
   } else if (!options.whole_view) {
-    region.keep_near(occluders.masks().color, options.surroundings_px);
+    region.keep_near(occluders.masks().color, surroundings_px());
   }
 }
 
@@ -190,10 +203,14 @@ void FrameStages::process(const FrameSet& given, DiminishedFrame& result) {
   spare_cameras(frame, report);
   report.poses = measured_poses;
   background.clear();
+  contact_line.clear();
   const auto learn = [&] {
     do_all(
         [&] {
-          stage(Stage::background, [&] { background.find(objects, samples, wanted_background()); });
+          stage(Stage::background, [&] {
+            background.find(objects, samples, wanted_background());
+            find_contact_line(frame);
+          });
         },
         [&] {
           stage(Stage::color_maps, [&] {
@@ -278,9 +295,14 @@ void FrameStages::process(const FrameSet& given, DiminishedFrame& result) {
     recall();
   };
   narrow_region();
+  // Nobody may read the masks meanwhile.
+  const auto add_contact_line = [&] { occluders.add(contact_line.pixels()); };
   if (learns_while_drawing) {
     do_all(judge_and_recall, draw, learn, prepare);
+    add_contact_line();
   } else {
+    add_contact_line();
+    drawing.objects = objects;
     drawing.planes = background.planes();
     drawing.shadows = background.shadows();
     drawing.color_maps = color_maps.by_source();

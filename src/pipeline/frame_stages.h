@@ -29,6 +29,7 @@
 #include "pose/pose_refinement.h"
 #include "scene/background.h"
 #include "scene/color_maps.h"
+#include "scene/contact_line.h"
 #include "scene/scene_fit.h"
 #include "scene/scene_sampler.h"
 #include "scene/standing_things.h"
@@ -42,12 +43,14 @@ struct FrameStages {
 
   void set_options(const Options& wanted);
 
+  int surroundings_px() const;
   /// The part of the picture around the objects that is reconstructed.
   Rect surroundings() const;
   /// Whether anything is to be drawn. A shadow may be in view without its object.
   bool looks_at_scene() const;
   Background::Wanted wanted_background() const;
   bool completes_sides() const;
+  void find_contact_line(const FrameSet& frame);
   bool draws_bars() const;
   void choose_region();
   void narrow_region();
@@ -97,6 +100,7 @@ struct FrameStages {
   ObjectPlace object_place;
   std::vector<std::optional<PlaceOfObject>> places;
   Background background;
+  ContactLine contact_line;
   RimLines rim_lines;
   BarViews bar_views;
   BarSearch bar_search;
