@@ -16,6 +16,7 @@
 #include <fastdds/rtps/flowcontrol/FlowControllerDescriptor.hpp>
 #include <filesystem>
 #include <map>
+#include <sstream>
 #include <tuple>
 #include <vector>
 
@@ -196,6 +197,7 @@ Node::Implementation::Implementation(const Network& network) {
   if (network.most_mbits > 0) flow_controller = flow_controller_name;
   if (!network.keys.empty()) refusal = ": do the permissions in " + network.keys + " allow it?";
   if (network.is_within_machine() && network.most_mbits == 0) shared_domain = find_shared_domain();
+  if (network.shared_memory) remove_leftovers();
   // It would write to the program's standard output.
   eprosima::fastdds::dds::Log::ClearConsumers();
   DomainParticipantQos qos = participant_qos(network);
@@ -209,6 +211,11 @@ Node::Implementation::Implementation(const Network& network) {
       eprosima::fastdds::dds::StatusMask::none());
   expect_made(participant, fmt::format("no participant in domain {}: are all of its ports taken{}?",
                                        network.domain, doubt));
+  if (shared_domain) {
+    std::ostringstream prefix;
+    prefix << participant->guid().guidPrefix;
+    mark.emplace(prefix.str());
+  }
 }
 
 Node::Implementation::~Implementation() {

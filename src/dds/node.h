@@ -13,6 +13,7 @@
 
 #include "dds/dds.h"
 #include "dds/fast_dds.h"
+#include "dds/leftovers.h"
 
 namespace diminish::dds {
 
@@ -48,6 +49,7 @@ struct Node::Implementation {
   std::mutex mutex;
   Discovery discovery;
   eprosima::fastdds::dds::DomainParticipant* participant = nullptr;
+  std::optional<SharedMark> mark;
 };
 
 /// Room for so many messages, each of which takes it where it is written.
