@@ -47,6 +47,15 @@ void begin(const FrameSet& frame, DiminishedFrame& result) {
   result.surfaces = {};
 }
 
+/// In the surfaces' region.
+void copy_labels(const Surfaces& from, Surfaces& to) {
+  const Rect& region = to.region = from.region;
+  to.label.resize(from.label.width(), from.label.height());
+  for (int y = region.y; y < region.bottom(); ++y) {
+    std::copy_n(from.label.row(y) + region.x, region.width, to.label.row(y) + region.x);
+  }
+}
+
 }  // namespace
 
 FrameStages::FrameStages(const Rig& rig_, const Scene& scene_)
@@ -324,24 +333,27 @@ void FrameStages::process(const FrameSet& given, DiminishedFrame& result) {
     Compositor::sort(inputs, result);
   });
   const auto correct_colors = [&] {
-    stage(Stage::colors,
-          [&] { compositor.correct_colors(inputs, color_maps.by_source(), *corrector, result); });
+    stage(Stage::colors, [&] {
+      compositor.correct_colors(inputs, color_maps.by_source(), *corrector, result);
+      compositor.lift_shadows(inputs, background.shadows(), samples, result);
+    });
   };
   const bool has_sides = completes_sides();
   const bool has_bars = draws_bars() && !objects.empty() && background.planes();
   bar_search.clear();
-  // Of what is behind the objects; changes labels only, which colours do not need.
+  // Of what is behind the objects. Shadows need the planes' labels meanwhile.
   const auto find_structure = [&] {
     stage(Stage::inpainting, [&] {
       if (has_sides) {
+        copy_labels(result.surfaces, with_sides);
         standing_things.find(
             {frame, report.poses, masks, objects, result.reconstruction, *background.planes()},
-            result.surfaces);
+            with_sides);
       }
       if (has_bars) {
         bar_views.begin(frame, report.poses, masks);
-        bar_search.find(
-            {rim_lines.lines(), bar_views, *background.planes(), result.surfaces, masks.color});
+        bar_search.find({rim_lines.lines(), bar_views, *background.planes(),
+                         has_sides ? with_sides : result.surfaces, masks.color});
       }
     });
   };
@@ -350,10 +362,12 @@ void FrameStages::process(const FrameSet& given, DiminishedFrame& result) {
   } else {
     correct_colors();
   }
-  stage(Stage::colors,
-        [&] { compositor.lift_shadows(inputs, background.shadows(), samples, result); });
   stage(Stage::inpainting, [&] {
-    if (has_sides) Compositor::hide_behind_sides(inputs, result);
+    if (has_sides) {
+      std::swap(result.surfaces.label, with_sides.label);
+      std::swap(result.surfaces.standing_depth_m, with_sides.standing_depth_m);
+      Compositor::hide_behind_sides(inputs, result);
+    }
     compositor.inpaint(inputs, *inpainter, result);
     if (!bar_search.bars().empty()) {
       bar_painting.paint(

@@ -106,6 +106,7 @@ struct FrameStages {
   BarSearch bar_search;
   BarPainting bar_painting;
   StandingThings standing_things;
+  Surfaces with_sides;  ///< labels and depth, once `standing_things` were found
   ColorMaps color_maps;
   int smoothing = 0;   ///< its share
   TiledRegion region;  ///< to be drawn
