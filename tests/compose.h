@@ -27,7 +27,9 @@ class Composing {
     // With the light as it is in the surfaces.
     compositor_.lift_shadows(inputs, {}, {}, result);
     Inpainter& inpainter = inpainters_.get(options.inpaint);
-    compositor_.inpaint(inputs, inpainter, result);
+    if (!compositor_.inpaint(inputs, inpainter, result)) {
+      Compositor::mark_unknown(objects, result);
+    }
     compositor_.finish(inputs, modes_.get(options.mode), result);
   }
 

@@ -125,8 +125,8 @@ void Compositor::show_remembered(const Rect& part, DiminishedFrame& result) {
   });
 }
 
-void Compositor::inpaint(const Inputs& inputs, Inpainter& inpainter, DiminishedFrame& result) {
-  if (result.report.missing_pixels == 0) return;
+bool Compositor::inpaint(const Inputs& inputs, Inpainter& inpainter, DiminishedFrame& result) {
+  if (result.report.missing_pixels == 0) return true;
   const Mask& occlusion = inputs.occlusion;
   if (missing_.width() == occlusion.width() && missing_.height() == occlusion.height()) {
     missing_.fill(missing_part_, 0);
@@ -142,10 +142,13 @@ void Compositor::inpaint(const Inputs& inputs, Inpainter& inpainter, DiminishedF
   }
   const Holes holes{missing_,     occlusion, result.surfaces, result.reconstruction.depth_m,
                     inputs.lines, part};
-  if (inpainter.inpaint(holes, inputs.options, result.picture)) return;
-  for (int y = part.y; y < part.bottom(); ++y) {
-    std::uint8_t* const origin = result.provenance.row(y) + part.x;
-    std::replace(origin, origin + part.width, provenance::inpainted, provenance::unknown);
+  return inpainter.inpaint(holes, inputs.options, result.picture);
+}
+
+void Compositor::mark_unknown(const Rect& objects, DiminishedFrame& result) {
+  for (int y = objects.y; y < objects.bottom(); ++y) {
+    std::uint8_t* const origin = result.provenance.row(y) + objects.x;
+    std::replace(origin, origin + objects.width, provenance::inpainted, provenance::unknown);
   }
 }
 

@@ -45,9 +45,11 @@ class Compositor {
   /// Sorts what is behind a thing's side (surface_label::standing) into the pixels to inpaint.
   static void hide_behind_sides(const Inputs& inputs, DiminishedFrame& result);
 
-  /// Stage::inpainting. Fills the other pixels of the mask and marks those that cannot be filled as
-  /// unknown. Fills them from unsmoothed pixels, which is 0.1 dB better than from smoothed ones.
-  void inpaint(const Inputs& inputs, Inpainter& inpainter, DiminishedFrame& result);
+  /// Stage::inpainting. Fills the other pixels of the mask, from unsmoothed pixels, which is 0.1 dB
+  /// better than from smoothed ones. False if they cannot be filled. Changes the picture only.
+  bool inpaint(const Inputs& inputs, Inpainter& inpainter, DiminishedFrame& result);
+  /// Marks the pixels that were to be filled as unknown.
+  static void mark_unknown(const Rect& objects, DiminishedFrame& result);
 
   /// Stage::finish. Removes noise, restores the camera's picture outside the mask, bit for bit,
   /// softens the rim, and applies `mode`.

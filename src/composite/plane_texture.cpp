@@ -64,24 +64,38 @@ int floor_of(float value) {
 
 }  // namespace
 
-void PlaneTexture::add(const Inputs& inputs, DiminishedFrame& result) {
+void PlaneTexture::find(const Inputs& inputs, const DiminishedFrame& result) {
+  found_ = 0;
   if (result.surfaces.label.empty()) return;
   part_ = intersect(inputs.objects, result.surfaces.region);
   for (std::size_t k = 0; k < inputs.planes.size(); ++k) {
-    const BackgroundPlane& plane = inputs.planes[k];
-    const auto label = static_cast<std::uint8_t>(surface_label::first_plane + k);
-    const std::optional<float> depth_m = mean_depth_m(result, plane, label);
-    if (!depth_m) continue;
-    // In steps of half an octave: from frame to frame it stays the same.
-    const float wanted_m = brick_px * *depth_m / lens_.fx;
-    const Axes axes = axes_of(inputs, plane, std::exp2(std::round(2 * std::log2(wanted_m)) / 2));
-    example_.find(inputs.camera, inputs.occlusion, grow(part_, example_reach_px), inputs.samples,
-                  plane);
-    find_blocks(axes);
-    if (blocks_.empty() || !lay_bricks(axes, result, label)) continue;
-    for (const Brick& brick : bricks_) make_tile(axes, brick, inputs, result.picture);
-    for_rows(part_.height, [&](Rows rows) { add_rows(axes, label, rows, result); });
+    if (grains_.size() <= found_) grains_.emplace_back();
+    Grain& grain = grains_[found_];
+    grain.label = static_cast<std::uint8_t>(surface_label::first_plane + k);
+    if (find_grain(inputs, inputs.planes[k], result, grain)) ++found_;
   }
+}
+
+void PlaneTexture::add(const Inputs& inputs, DiminishedFrame& result) {
+  for (std::size_t k = 0; k < found_; ++k) {
+    Grain& grain = grains_[k];
+    for (const Brick& brick : grain.bricks) make_tile(brick, inputs, result.picture, grain);
+    for_rows(part_.height, [&](Rows rows) { add_rows(grain, rows, result); });
+  }
+}
+
+/// False if nothing of the plane is invented, or its grain cannot be had.
+bool PlaneTexture::find_grain(const Inputs& inputs, const BackgroundPlane& plane,
+                              const DiminishedFrame& result, Grain& grain) const {
+  const std::optional<float> depth_m = mean_depth_m(result, plane, grain.label);
+  if (!depth_m) return false;
+  // In steps of half an octave: from frame to frame it stays the same.
+  const float wanted_m = brick_px * *depth_m / lens_.fx;
+  grain.axes = axes_of(inputs, plane, std::exp2(std::round(2 * std::log2(wanted_m)) / 2));
+  grain.example.find(inputs.camera, inputs.occlusion, grow(part_, example_reach_px), inputs.samples,
+                     plane);
+  find_blocks(grain);
+  return !grain.blocks.empty() && lay_bricks(result, grain);
 }
 
 /// Calls visit(x, y) for every fourth pixel of every fourth row that was invented on a plane.
@@ -164,38 +178,43 @@ PlaneTexture::Brick PlaneTexture::brick_at(const Eigen::Vector2f& at) {
 }
 
 /// Finds the bricks of what is invented. False if there are too many.
-bool PlaneTexture::lay_bricks(const Axes& axes, const DiminishedFrame& result, std::uint8_t label) {
-  bricks_.clear();
-  for_some_open(result, label, [&](int x, int y) {
-    if (const auto at = coordinates(axes, x, y)) bricks_.push_back(brick_at(*at));
+bool PlaneTexture::lay_bricks(const DiminishedFrame& result, Grain& grain) const {
+  std::vector<Brick>& bricks = grain.bricks;
+  Image<Tile>& tiles = grain.tiles;
+  Brick& begin = grain.first;
+  bricks.clear();
+  for_some_open(result, grain.label, [&](int x, int y) {
+    if (const auto at = coordinates(grain.axes, x, y)) bricks.push_back(brick_at(*at));
   });
-  if (bricks_.empty()) return false;
-  Brick last = first_ = bricks_.front();
-  for (const Brick& brick : bricks_) {
-    first_ = {std::min(first_.i, brick.i), std::min(first_.j, brick.j)};
+  if (bricks.empty()) return false;
+  Brick last = begin = bricks.front();
+  for (const Brick& brick : bricks) {
+    begin = {std::min(begin.i, brick.i), std::min(begin.j, brick.j)};
     last = {std::max(last.i, brick.i), std::max(last.j, brick.j)};
   }
-  const int columns = last.i - first_.i + 1;
-  const int rows = last.j - first_.j + 1;
+  const int columns = last.i - begin.i + 1;
+  const int rows = last.j - begin.j + 1;
   if (columns > most_bricks || rows > most_bricks || columns * rows > most_bricks) return false;
-  tiles_.resize(columns, rows);
-  tiles_.fill(tiles_.bounds(), Tile{});
-  std::erase_if(bricks_, [&](const Brick& brick) {
-    return std::exchange(tiles_(brick.i - first_.i, brick.j - first_.j).is_wanted, true);
+  tiles.resize(columns, rows);
+  tiles.fill(tiles.bounds(), Tile{});
+  std::erase_if(bricks, [&](const Brick& brick) {
+    return std::exchange(tiles(brick.i - begin.i, brick.j - begin.j).is_wanted, true);
   });
   return true;
 }
 
 /// Places whose surroundings, as large as a brick, are nearly all in the example.
-void PlaneTexture::find_blocks(const Axes& axes) {
-  blocks_.clear();
+void PlaneTexture::find_blocks(Grain& grain) const {
+  const Axes& axes = grain.axes;
+  std::vector<Block>& blocks = grain.blocks;
+  blocks.clear();
   constexpr int cell = TextureExample::cell;
-  const Rect part = example_.part();
+  const Rect part = grain.example.part();
   Eigen::Vector2f least = Eigen::Vector2f::Constant(std::numeric_limits<float>::max());
   Eigen::Vector2f most = -least;
   for (int y = part.y + cell / 2; y < part.bottom(); y += cell) {
     for (int x = part.x + cell / 2; x < part.right(); x += cell) {
-      if (!example_.shows_plane(x, y)) continue;
+      if (!grain.example.shows_plane(x, y)) continue;
       const auto at = coordinates(axes, x, y);
       if (!at) continue;
       least = least.cwiseMin(*at);
@@ -206,16 +225,17 @@ void PlaneTexture::find_blocks(const Axes& axes) {
   if (!(size.minCoeff() >= 0 && (size.x() + 1) * (size.y() + 1) < most_bricks)) return;
   for (auto j = static_cast<int>(std::ceil(least.y())); static_cast<float>(j) <= most.y(); ++j) {
     for (auto i = static_cast<int>(std::ceil(least.x())); static_cast<float>(i) <= most.x(); ++i) {
-      add_block(axes, i, j);
+      add_block(i, j, grain);
     }
   }
-  if (blocks_.size() <= most_blocks) return;
-  std::nth_element(blocks_.begin(), blocks_.begin() + most_blocks, blocks_.end(),
+  if (blocks.size() <= most_blocks) return;
+  std::nth_element(blocks.begin(), blocks.begin() + most_blocks, blocks.end(),
                    [](const Block& a, const Block& b) { return a.luck > b.luck; });
-  blocks_.resize(most_blocks);
+  blocks.resize(most_blocks);
 }
 
-void PlaneTexture::add_block(const Axes& axes, int i, int j) {
+void PlaneTexture::add_block(int i, int j, Grain& grain) const {
+  const Axes& axes = grain.axes;
   constexpr int fewest_shown = 8;  // of 3 x 3 places
   const auto a = static_cast<float>(i);
   const auto b = static_cast<float>(j);
@@ -226,23 +246,23 @@ void PlaneTexture::add_block(const Axes& axes, int i, int j) {
       const auto looked = place(axes, a + da, b + db);
       if (!looked) return;
       const Pixel pixel = nearest_pixel(*looked);
-      if (!example_.shows_plane(pixel.x, pixel.y)) continue;
-      sum += example_.mean(pixel.x, pixel.y);
+      if (!grain.example.shows_plane(pixel.x, pixel.y)) continue;
+      sum += grain.example.mean(pixel.x, pixel.y);
       ++shown;
     }
   }
   Eigen::Matrix2f sides;
   if (shown < fewest_shown || !place(axes, a, b, sides)) return;
-  blocks_.push_back(
+  grain.blocks.push_back(
       {i, j, luck_of(i, j), sum / static_cast<float>(shown), std::abs(sides.determinant())});
 }
 
 /// The luckiest of those that look like the brick; null: none does.
-const PlaneTexture::Block* PlaneTexture::choose(Brick brick, const Eigen::Array3f& color,
-                                                float area_px) const {
+const PlaneTexture::Block* PlaneTexture::choose(const Grain& grain, Brick brick,
+                                                const Eigen::Array3f& color, float area_px) {
   const Block* best = nullptr;
   float best_luck = -1;
-  for (const Block& block : blocks_) {
+  for (const Block& block : grain.blocks) {
     if (block.area_px > most_scale * area_px || block.area_px * most_scale < area_px) continue;
     if ((block.mean - color).abs().maxCoeff() > most_away) continue;
     const float luck = luck_of(brick.i, brick.j, block.i, block.j);
@@ -253,8 +273,9 @@ const PlaneTexture::Block* PlaneTexture::choose(Brick brick, const Eigen::Array3
   return best;
 }
 
-void PlaneTexture::make_tile(const Axes& axes, Brick brick, const Inputs& inputs,
-                             const Image<Bgr>& picture) {
+void PlaneTexture::make_tile(Brick brick, const Inputs& inputs, const Image<Bgr>& picture,
+                             Grain& grain) const {
+  const Axes& axes = grain.axes;
   const float a = static_cast<float>(brick.i) + 0.5F - row_shift(brick.j);
   const float b = static_cast<float>(brick.j) + 0.5F;
   Eigen::Matrix2f sides;
@@ -265,14 +286,14 @@ void PlaneTexture::make_tile(const Axes& axes, Brick brick, const Inputs& inputs
   const Pixel pixel = nearest_pixel(*middle);
   const Bgr& color = picture(std::clamp(pixel.x, part_.x, part_.right() - 1),
                              std::clamp(pixel.y, part_.y, part_.bottom() - 1));
-  const Block* const block = choose(brick, to_channels(color), area_px);
+  const Block* const block = choose(grain, brick, to_channels(color), area_px);
   if (block == nullptr) return;
   Eigen::Matrix2f shown_sides;
   const auto shown =
       place(axes, static_cast<float>(block->i), static_cast<float>(block->j), shown_sides);
   if (!shown) return;
-  const Rect part = example_.part();
-  Tile& tile = tiles_(brick.i - first_.i, brick.j - first_.j);
+  const Rect part = grain.example.part();
+  Tile& tile = grain.tiles(brick.i - grain.first.i, brick.j - grain.first.j);
   tile.has_block = true;
   tile.turn = shown_sides * sides.inverse();
   tile.shift = *shown - tile.turn * *middle -
@@ -282,29 +303,29 @@ void PlaneTexture::make_tile(const Axes& axes, Brick brick, const Inputs& inputs
       shown_sides.cwiseAbs().rowwise().sum() / 2 + Eigen::Vector2f::Ones();
   const Pixel corner = nearest_pixel(*shown - reach);
   const Pixel end = nearest_pixel(*shown + reach);
-  example_.prepare(inputs.camera, {corner.x, corner.y, end.x - corner.x + 1, end.y - corner.y + 1});
+  grain.example.prepare(inputs.camera,
+                        {corner.x, corner.y, end.x - corner.x + 1, end.y - corner.y + 1});
 }
 
 /// Rows of the part.
-void PlaneTexture::add_rows(const Axes& axes, std::uint8_t label, Rows rows,
-                            DiminishedFrame& result) const {
+void PlaneTexture::add_rows(const Grain& grain, Rows rows, DiminishedFrame& result) const {
   for (int y = part_.y + rows.first; y < part_.y + rows.last; ++y) {
     const std::uint8_t* const origin = result.provenance.row(y);
     const std::uint8_t* const labels = result.surfaces.label.row(y);
     for_each_run(origin, part_.x, part_.right(), provenance::inpainted, [&](int first, int last) {
-      for_each_run(labels, first, last, label, [&](int begin, int end) {
-        add_run(axes, begin, end, y, result.picture.row(y));
+      for_each_run(labels, first, last, grain.label, [&](int begin, int end) {
+        add_run(grain, begin, end, y, result.picture.row(y));
       });
     });
   }
 }
 
 /// Columns [first, last).
-void PlaneTexture::add_run(const Axes& axes, int first, int last, int y, Bgr* colors) const {
+void PlaneTexture::add_run(const Grain& grain, int first, int last, int y, Bgr* colors) const {
   for (int begin = first; begin < last; begin += segment) {
     const int end = std::min(last, begin + segment);
-    const auto from = coordinates(axes, begin, y);
-    const auto to = coordinates(axes, end - 1, y);
+    const auto from = coordinates(grain.axes, begin, y);
+    const auto to = coordinates(grain.axes, end - 1, y);
     if (!from || !to) continue;
     const Eigen::Vector2f right = (*to - *from) / static_cast<float>(std::max(1, end - 1 - begin));
     const auto brick_of = [&](int x) {
@@ -316,23 +337,26 @@ void PlaneTexture::add_run(const Axes& axes, int first, int last, int y, Bgr* co
       const Brick brick = brick_of(x);
       int next = brick == last_brick ? end : x + 1;
       while (next < end && brick_of(next) == brick) ++next;
-      const int column = brick.i - first_.i;
-      const int row = brick.j - first_.j;
-      if (tiles_.bounds().contains(column, row)) add_tile(tiles_(column, row), x, next, y, colors);
+      const int column = brick.i - grain.first.i;
+      const int row = brick.j - grain.first.j;
+      if (grain.tiles.bounds().contains(column, row)) {
+        add_tile(grain, grain.tiles(column, row), x, next, y, colors);
+      }
       x = next;
     }
   }
 }
 
 /// Columns [first, last), which a tile covers.
-void PlaneTexture::add_tile(const Tile& tile, int first, int last, int y, Bgr* colors) const {
+void PlaneTexture::add_tile(const Grain& grain, const Tile& tile, int first, int last, int y,
+                            Bgr* colors) {
   if (!tile.has_block) return;
   constexpr float scale = strength / TextureExample::unit;
   const Eigen::Vector2f start = static_cast<float>(y) * tile.turn.col(1) + tile.shift;
   for (int x = first; x < last; ++x) {
     const Pixel shown = nearest_pixel(static_cast<float>(x) * tile.turn.col(0) + start);
-    const auto level =
-        static_cast<int>(std::lrint(scale * static_cast<float>(example_.grain(shown.x, shown.y))));
+    const auto level = static_cast<int>(
+        std::lrint(scale * static_cast<float>(grain.example.grain(shown.x, shown.y))));
     const auto add = [&](std::uint8_t& channel) {
       channel = static_cast<std::uint8_t>(std::clamp(channel + level, 0, 255));
     };

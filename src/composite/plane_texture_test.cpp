@@ -86,7 +86,9 @@ class Wall : public ::testing::Test {
     before = result.picture;
   }
   void add() {
-    texture.add({camera, occlusion, object, planes, samples, color_from_world}, result);
+    const PlaneTexture::Inputs inputs{camera, occlusion, object, planes, samples, color_from_world};
+    texture.find(inputs, result);
+    texture.add(inputs, result);
   }
 
   Eigen::Vector3d point_at(int x, int y) const {

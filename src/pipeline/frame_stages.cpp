@@ -368,7 +368,21 @@ void FrameStages::process(const FrameSet& given, DiminishedFrame& result) {
       std::swap(result.surfaces.standing_depth_m, with_sides.standing_depth_m);
       Compositor::hide_behind_sides(inputs, result);
     }
-    compositor.inpaint(inputs, *inpainter, result);
+    const bool has_grain =
+        methods.inpainting.wants_grain && background.planes() && report.missing_pixels > 0;
+    const auto grain = [&] {
+      return PlaneTexture::Inputs{frame.color,      masks.color,
+                                  objects,          *background.planes(),
+                                  samples.surfaces, report.poses.color_from_world};
+    };
+    bool is_filled = false;
+    const auto fill = [&] { is_filled = compositor.inpaint(inputs, *inpainter, result); };
+    if (has_grain) {
+      do_all(fill, [&] { plane_texture.find(grain(), result); });
+    } else {
+      fill();
+    }
+    if (!is_filled) Compositor::mark_unknown(objects, result);
     if (!bar_search.bars().empty()) {
       bar_painting.paint(
           {bar_search.bars(), bar_views, *background.planes(), frame.color, masks.color, objects},
@@ -378,11 +392,7 @@ void FrameStages::process(const FrameSet& given, DiminishedFrame& result) {
       steady_inventions.steady(
           {frame.stamp_s, report.poses.color_from_world, objects, background.planes()}, result);
     }
-    if (methods.inpainting.wants_grain && background.planes() && report.missing_pixels > 0) {
-      plane_texture.add({frame.color, masks.color, objects, *background.planes(), samples.surfaces,
-                         report.poses.color_from_world},
-                        result);
-    }
+    if (has_grain) plane_texture.add(grain(), result);
   });
   stage(Stage::finish, [&] { compositor.finish(inputs, *mode, result); });
 
