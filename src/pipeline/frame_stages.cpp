@@ -47,9 +47,10 @@ void begin(const FrameSet& frame, DiminishedFrame& result) {
   result.surfaces = {};
 }
 
-/// In the surfaces' region.
-void copy_labels(const Surfaces& from, Surfaces& to) {
+/// Copies the labels in the surfaces' region; the memory for depth goes over.
+void begin_sides(Surfaces& from, Surfaces& to) {
   const Rect& region = to.region = from.region;
+  std::swap(from.standing_depth_m, to.standing_depth_m);
   to.label.resize(from.label.width(), from.label.height());
   for (int y = region.y; y < region.bottom(); ++y) {
     std::copy_n(from.label.row(y) + region.x, region.width, to.label.row(y) + region.x);
@@ -345,7 +346,7 @@ void FrameStages::process(const FrameSet& given, DiminishedFrame& result) {
   const auto find_structure = [&] {
     stage(Stage::inpainting, [&] {
       if (has_sides) {
-        copy_labels(result.surfaces, with_sides);
+        begin_sides(result.surfaces, with_sides);
         standing_things.find(
             {frame, report.poses, masks, objects, result.reconstruction, *background.planes()},
             with_sides);
