@@ -138,11 +138,10 @@ void use_keys(const std::filesystem::path& folder, DomainParticipantQos& qos) {
 /// Of this user's programs that have the same shared memory, which containers may not have. Others
 /// could not write into what this user made. Nothing where there is little of it.
 std::optional<std::uint16_t> find_shared_domain() {
-  constexpr const char* folder = "/dev/shm";
   struct statvfs space {};
   struct stat mount {};
-  if (statvfs(folder, &space) != 0 || space.f_bavail * space.f_frsize < shared_bytes ||
-      stat(folder, &mount) != 0) {
+  if (statvfs(shared_memory_folder, &space) != 0 ||
+      space.f_bavail * space.f_frsize < shared_bytes || stat(shared_memory_folder, &mount) != 0) {
     return std::nullopt;
   }
   // A collision of two users in 65536 costs what they send to each other.

@@ -83,13 +83,11 @@ void OccluderStage::detect(const Observation& observation, std::vector<OccluderR
 }
 
 void OccluderStage::add(std::span<const Eigen::Vector2i> pixels) {
-  Rect part = parts_[0];
   for (const Eigen::Vector2i& pixel : pixels) {
     masks_.color(pixel.x(), pixel.y()) = 255;
-    part = join(part, {pixel.x(), pixel.y(), 1, 1});
+    objects_ = join(objects_, {pixel.x(), pixel.y(), 1, 1});
   }
-  parts_[0] = part;
-  if (!pixels.empty()) objects_ = bounding_box(masks_.color, part);
+  parts_[0] = join(parts_[0], objects_);
 }
 
 /// What is outlined, and the margins.

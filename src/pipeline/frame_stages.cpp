@@ -47,16 +47,6 @@ void begin(const FrameSet& frame, DiminishedFrame& result) {
   result.surfaces = {};
 }
 
-/// Copies the labels in the surfaces' region; the memory for depth goes over.
-void begin_sides(Surfaces& from, Surfaces& to) {
-  const Rect& region = to.region = from.region;
-  std::swap(from.standing_depth_m, to.standing_depth_m);
-  to.label.resize(from.label.width(), from.label.height());
-  for (int y = region.y; y < region.bottom(); ++y) {
-    std::copy_n(from.label.row(y) + region.x, region.width, to.label.row(y) + region.x);
-  }
-}
-
 }  // namespace
 
 FrameStages::FrameStages(const Rig& rig_, const Scene& scene_)
@@ -346,10 +336,11 @@ void FrameStages::process(const FrameSet& given, DiminishedFrame& result) {
   const auto find_structure = [&] {
     stage(Stage::inpainting, [&] {
       if (has_sides) {
-        begin_sides(result.surfaces, with_sides);
+        // Its memory, which comes back filled.
+        std::swap(result.surfaces.standing_depth_m, with_sides.standing_depth_m);
         standing_things.find(
             {frame, report.poses, masks, objects, result.reconstruction, *background.planes()},
-            with_sides);
+            result.surfaces, with_sides);
       }
       if (has_bars) {
         bar_views.begin(frame, report.poses, masks);

@@ -46,7 +46,7 @@ void write_options(MessageWriter& writer, const Options& options) {
 void read_options(MessageReader& reader, Options& options) {
   for_each_drawing_option(options, [&](const OptionInfo& info, auto& value) {
     using Value = std::decay_t<decltype(value)>;
-    if constexpr (std::is_same_v<Value, bool>) value = reader.number<std::uint8_t>() != 0;
+    if constexpr (std::is_same_v<Value, bool>) value = flag(reader);
     if constexpr (std::is_same_v<Value, double>) {
       value = within(reader, info.min, info.max, "expected options within their range");
     }

@@ -244,7 +244,7 @@ void StandingThings::close_slits(const View& view, Surfaces& surfaces) {
 }
 
 /// What touches nothing of its thing would have no colour: the old labels come back.
-void StandingThings::drop_loose(const View& view, Surfaces& surfaces) {
+void StandingThings::drop_loose(const View& view, const Surfaces& seen, Surfaces& surfaces) {
   regions_.begin();
   const int end = view.part.right();
   for (int y = view.part.y; y < view.part.bottom(); ++y) {
@@ -269,12 +269,17 @@ void StandingThings::drop_loose(const View& view, Surfaces& surfaces) {
   }
   for (const ConnectedRegions::Run& run : regions_.runs()) {
     if (is_held_[static_cast<std::size_t>(run.region)] != 0) continue;
-    std::copy(before_.row(run.y) + run.first, before_.row(run.y) + run.last,
+    std::copy(seen.label.row(run.y) + run.first, seen.label.row(run.y) + run.last,
               surfaces.label.row(run.y) + run.first);
   }
 }
 
-void StandingThings::find(const Input& input, Surfaces& surfaces) {
+void StandingThings::find(const Input& input, const Surfaces& seen, Surfaces& surfaces) {
+  const Rect& region = surfaces.region = seen.region;
+  surfaces.label.resize(seen.label.width(), seen.label.height());
+  for (int y = region.y; y < region.bottom(); ++y) {
+    std::copy_n(seen.label.row(y) + region.x, region.width, surfaces.label.row(y) + region.x);
+  }
   surfaces.standing_depth_m.resize(0, 0);
   const BackgroundPlane* const plane = find_support(input.planes);
   const Rect drawn = intersect(input.reconstruction.region, surfaces.label.bounds());
@@ -284,10 +289,6 @@ void StandingThings::find(const Input& input, Surfaces& surfaces) {
   place_cameras(input);
   surfaces.standing_depth_m.resize(surfaces.label.width(), surfaces.label.height());
   surfaces.standing_depth_m.fill(view.part, 0);
-  before_.resize(surfaces.label.width(), surfaces.label.height());
-  for (int row = part.y; row < part.bottom(); ++row) {
-    std::copy_n(surfaces.label.row(row) + part.x, part.width, before_.row(row) + part.x);
-  }
   const Rect inner = intersect(view.part, grow(drawn, -1));
   row_.resize(static_cast<std::size_t>(surfaces.label.width()));
   for (int y = inner.y; y < inner.bottom(); ++y) {
@@ -300,7 +301,7 @@ void StandingThings::find(const Input& input, Surfaces& surfaces) {
     }
   }
   close_slits(view, surfaces);
-  drop_loose(view, surfaces);
+  drop_loose(view, seen, surfaces);
 }
 
 }  // namespace diminish

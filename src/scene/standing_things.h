@@ -35,12 +35,12 @@ class StandingThings {
     const Reconstruction& reconstruction;
     const std::vector<BackgroundPlane>& planes;
   };
-  /// Labels the mask's pixels that would show such sides as surface_label::standing, and fills
-  /// `surfaces.standing_depth_m`; all other labels are there already. A side hides what an RGB-D
+  /// Copies the labels of `seen` in its region, labels the mask's pixels that would show such sides
+  /// as surface_label::standing, and fills `surfaces.standing_depth_m`. A side hides what an RGB-D
   /// camera sees behind it, but nothing that the colour camera saw there itself. Needs a plane that
   /// faces upwards in the picture. Deterministic. Cost: 5 million instructions a frame of the
   /// calendar, whose mask has 170,000 pixels.
-  void find(const Input& input, Surfaces& surfaces);
+  void find(const Input& input, const Surfaces& seen, Surfaces& surfaces);
 
  private:
   /// An RGB-D camera.
@@ -59,12 +59,11 @@ class StandingThings {
   void lower(const View& view, int x, int y, Surfaces& surfaces) const;
   static void find_edges(const View& view, int y, int begin, int end, std::uint8_t* edges);
   void close_slits(const View& view, Surfaces& surfaces);
-  void drop_loose(const View& view, Surfaces& surfaces);
+  void drop_loose(const View& view, const Surfaces& seen, Surfaces& surfaces);
 
   std::vector<Camera> cameras_;
   Projection color_;
   std::shared_ptr<const RayTable> rays_;
-  Image<std::uint8_t> before_;     ///< the labels of the mask's box
   std::vector<std::uint8_t> row_;  ///< what pixels of a row are
   ConnectedRegions regions_;
   std::vector<std::uint8_t> is_held_;  ///< by region

@@ -48,8 +48,10 @@ class OnATable : public ::testing::Test {
     const std::vector<BackgroundPlane> planes{
         {normal.cast<float>(), static_cast<float>(normal.dot(color_from_world.translation))}};
     before = surfaces.label;
+    const Surfaces labelled = surfaces;
     StandingThings(seen.rig).find(
-        {seen.frame, seen.poses, masks, color.bounds(), reconstruction, planes}, surfaces);
+        {seen.frame, seen.poses, masks, color.bounds(), reconstruction, planes}, labelled,
+        surfaces);
   }
   int count_standing() const {
     int count = 0;
