@@ -2,6 +2,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <memory>
@@ -42,21 +43,33 @@ double cpu_s() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-/// Counts from the frame on at which it is started.
+/// Counts frames from the end of a warm-up on, until there are enough of them and enough time has
+/// passed.
 class RateMeter {
  public:
-  void start() {
-    start_ = Clock::now();
-    cpu_s_ = cpu_s();
+  RateMeter(std::size_t warm_up, double seconds) : warm_up_(warm_up), seconds_(seconds) {}
+
+  /// True from the last frame on.
+  bool count() {
+    if (++frames_ == warm_up_) {
+      start_ = Clock::now();
+      cpu_s_ = cpu_s();
+    }
+    return frames_ >= warm_up_ + fewest_frames && seconds_since(start_) >= seconds_;
   }
-  Rate rate(std::size_t frames) const {
-    const auto count = static_cast<double>(frames);
-    return {count / seconds_since(start_), 1000 * (cpu_s() - cpu_s_) / count};
+  Rate rate() const {
+    const auto timed = static_cast<double>(frames_ - warm_up_);
+    return {timed / seconds_since(start_), 1000 * (cpu_s() - cpu_s_) / timed};
   }
 
  private:
-  Clock::time_point start_ = Clock::now();
-  double cpu_s_ = cpu_s();
+  static constexpr std::size_t fewest_frames = 20;
+
+  std::size_t warm_up_;
+  double seconds_;
+  std::size_t frames_ = 0;
+  Clock::time_point start_;
+  double cpu_s_ = 0;
 };
 
 struct BenchCommand {
@@ -235,39 +248,39 @@ void BenchCommand::measure_memory(const Recording& input, const std::vector<Fram
 
 void BenchCommand::measure_throughput(const Recording& input, std::vector<FrameSet> loaded,
                                       BenchFigures& figures) const {
-  const double frame_s = figures.times_ms[whole_frame_row].average / 1000;
-  const auto count =
-      warm_up() + std::max<std::size_t>(
-                      20, static_cast<std::size_t>(seconds / std::max(frame_s, 1e-6) * threads));
-  PreloadedSource preloaded(std::move(loaded), count);
+  PreloadedSource preloaded(std::move(loaded));
   figures.throughput_fps = run_rate(input, preloaded).fps;
-  LoopedRecording to_read(input, options, count);
+  LoopedRecording to_read(input, options);
   figures.reading = reading_rate(to_read);
-  LoopedRecording to_run(input, options, count);
+  LoopedRecording to_run(input, options);
   figures.run = run_rate(input, to_run);
 }
 
 /// Of a run that writes nothing.
 Rate BenchCommand::run_rate(const Recording& input, FrameSource& source) const {
   NoSink sink;
+  std::atomic<bool> enough = false;
   RunnerOptions runner;
   runner.threads = threads;
   runner.reconstructions = false;
-  RateMeter meter;
-  std::size_t timed = 0;
-  runner.progress = [&](std::size_t done) {
-    if (done == warm_up()) meter.start();
-    timed = done - std::min(done, warm_up());
+  runner.stop = &enough;
+  RateMeter meter(warm_up(), seconds);
+  Rate rate;
+  runner.progress = [&](std::size_t) {
+    if (enough || !meter.count()) return;
+    rate = meter.rate();
+    enough = true;
   };
   run(source, input.rig, input.scene, options, sink, runner);
-  return meter.rate(timed);
+  return rate;
 }
 
 /// Of as many threads that read and decode.
 Rate BenchCommand::reading_rate(FrameSource& source) const {
   std::mutex order;
-  std::size_t begun = 0;
-  RateMeter meter;
+  RateMeter meter(warm_up(), seconds);
+  Rate rate;
+  bool enough = false;
   {
     std::vector<std::jthread> readers;
     readers.reserve(static_cast<std::size_t>(threads));
@@ -275,13 +288,14 @@ Rate BenchCommand::reading_rate(FrameSource& source) const {
       readers.emplace_back([&] {
         for (FrameSet frame;; source.read_images(frame)) {
           const std::lock_guard lock(order);
-          if (!source.begin(frame)) return;
-          if (begun++ == warm_up()) meter.start();
+          if (enough || !source.begin(frame)) return;
+          enough = meter.count();
+          if (enough) rate = meter.rate();
         }
       });
     }
   }
-  return meter.rate(begun - warm_up());
+  return rate;
 }
 
 int BenchCommand::execute() const {

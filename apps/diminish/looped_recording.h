@@ -8,11 +8,11 @@
 
 namespace diminish {
 
-/// A recording's frames again and again, `count` in all, read from its files each time.
+/// A recording's frames again and again, without end, read from its files each time.
 class LoopedRecording : public FrameSource {
  public:
-  LoopedRecording(const Recording& recording, const Options& options, std::size_t count)
-      : recording_(recording), options_(options), count_(count) {}
+  LoopedRecording(const Recording& recording, const Options& options)
+      : recording_(recording), options_(options) {}
 
   bool next(FrameSet& frame) override {
     if (!begin(frame)) return false;
@@ -21,12 +21,10 @@ class LoopedRecording : public FrameSource {
   }
 
   bool begin(FrameSet& frame) override {
-    if (done_ == count_) return false;
     if (laps_.empty() || !laps_.back()->begin(frame)) {
       laps_.push_back(open_recording(recording_, options_));
       if (!laps_.back()->begin(frame)) return false;
     }
-    ++done_;
     return true;
   }
 
@@ -36,8 +34,6 @@ class LoopedRecording : public FrameSource {
  private:
   const Recording& recording_;
   const Options& options_;
-  std::size_t count_;
-  std::size_t done_ = 0;
   std::vector<std::unique_ptr<FrameSource>> laps_;
 };
 

@@ -8,15 +8,13 @@
 
 namespace diminish {
 
-/// Hands out decoded frames again and again, `count` in all, without copying: a frame is exchanged
+/// Hands out decoded frames again and again, without end and without copying: a frame is exchanged
 /// for the one that the caller had before.
 class PreloadedSource : public FrameSource {
  public:
-  PreloadedSource(std::vector<FrameSet> frames, std::size_t count)
-      : frames_(std::move(frames)), count_(count) {}
+  explicit PreloadedSource(std::vector<FrameSet> frames) : frames_(std::move(frames)) {}
 
   bool next(FrameSet& frame) override {
-    if (done_ == count_) return false;
     FrameSet& stored = frames_[done_ % frames_.size()];
     if (frame.color.empty()) {
       frame = stored;
@@ -29,7 +27,6 @@ class PreloadedSource : public FrameSource {
 
  private:
   std::vector<FrameSet> frames_;
-  std::size_t count_;
   std::size_t done_ = 0;
 };
 
