@@ -53,6 +53,10 @@ struct StandingThings::View {
   Rect part;  ///< of the mask's box, what was drawn
 
   float depth_m(int x, int y) const { return input.reconstruction.depth_m(x, y); }
+  /// What is only remembered may have gone.
+  bool is_remembered(int x, int y) const {
+    return input.reconstruction.source(x, y) == provenance::remembered;
+  }
   /// Whether something at this depth hides what was drawn at a pixel.
   bool hides(int x, int y, float z_m) const {
     return input.masks.color(x, y) != 0 &&
@@ -210,9 +214,8 @@ void StandingThings::close_slits(const View& view, Surfaces& surfaces) {
     const int begin = std::max(view.part.x, standing - widest_slit_px);
     std::uint8_t* const things = row_.data();
     for (int x = begin; x < end; ++x) {
-      things[x] = any_of(label[x] == surface_label::standing, label[x] == surface_label::foreground)
-                      ? 1
-                      : 0;
+      const bool is_thing = label[x] == surface_label::foreground && !view.is_remembered(x, y);
+      things[x] = is_thing || label[x] == surface_label::standing ? 1 : 0;
     }
     const auto depth_m = [&](int x) {
       return label[x] == surface_label::standing ? surfaces.standing_depth_m(x, y)
@@ -294,6 +297,7 @@ void StandingThings::find(const Input& input, const Surfaces& seen, Surfaces& su
   for (int y = inner.y; y < inner.bottom(); ++y) {
     find_edges(view, y, inner.x, inner.right(), row_.data());
     for (int x = inner.x; (x = find_equal(row_.data(), x, inner.right(), 1)) < inner.right(); ++x) {
+      if (view.is_remembered(x, y)) continue;
       const float z = view.depth_m(x, y);
       const bool hides =
           view.hides(x - 1, y, z) || view.hides(x + 1, y, z) || view.hides(x, y + 1, z);

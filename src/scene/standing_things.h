@@ -23,6 +23,7 @@ namespace diminish {
 /// a floor reach down to it. Where an RGB-D camera sees the edge of a thing's top and, in front of
 /// what is below that edge, the thing's other side, the rest of it is there, too: below the edge,
 /// all the way down.
+/// What is only remembered has no such sides: they would hide what is seen now.
 class StandingThings {
  public:
   explicit StandingThings(const Rig& rig);

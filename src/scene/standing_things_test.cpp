@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "analytic_scene.h"
+#include "diminish/diminished_frame.h"
 
 namespace diminish {
 namespace {
@@ -37,7 +38,8 @@ class OnATable : public ::testing::Test {
       const bool is_seen = (first.point - hit.point).norm() < 1e-3;
       const float z = depth_in_picture(hit.point);
       reconstruction.depth_m(x, y) = is_seen ? z : 0;
-      reconstruction.source(x, y) = is_seen ? 1 : 0;
+      const std::uint8_t source = hit.on_box ? box_source : std::uint8_t{1};
+      reconstruction.source(x, y) = is_seen ? source : std::uint8_t{0};
       surfaces.label(x, y) =
           is_seen && hit.on_box ? surface_label::foreground : surface_label::first_plane;
       side_m(x, y) = !is_seen && hit.on_box ? z : 0;
@@ -61,6 +63,7 @@ class OnATable : public ::testing::Test {
     return count;
   }
 
+  std::uint8_t box_source = 1;
   Reconstruction reconstruction;
   Surfaces surfaces;
   Image<std::uint8_t> before;
@@ -88,6 +91,15 @@ TEST_F(OnATable, FindsTheSideThatOnlyTheUserWouldSee) {
   ASSERT_GT(either, 400);
   EXPECT_GT(both, 0.75 * either);
   EXPECT_LT(error_m / both, 0.015);
+}
+
+TEST_F(OnATable, ABoxThatIsOnlyRememberedHidesNothing) {
+  AnalyticScene scene;
+  scene.box_min.z() = 0;
+  scene.box_max.z() = 0.2;
+  box_source = provenance::remembered;
+  set_up(scene);
+  EXPECT_EQ(count_standing(), 0);
 }
 
 // The RGB-D camera looks through below it.
