@@ -1,4 +1,3 @@
-#include <fmt/format.h>
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
@@ -11,15 +10,15 @@
 
 #include "core/set_text.h"
 #include "core/thread_name.h"
-#include "core/turns.h"
 #include "diminish/error.h"
 #include "diminish/live.h"
 #include "diminish/pipeline.h"
 #include "live/camera_feed.h"
 #include "live/frame_assembler.h"
 #include "live/frame_listeners.h"
+#include "live/lane.h"
+#include "live/live_settings.h"
 #include "live/pool.h"
-#include "live/quality_ladder.h"
 #include "live/remote_camera.h"
 #include "live/session_status.h"
 #include "sink/distribution.h"
@@ -31,8 +30,6 @@ namespace {
 constexpr std::size_t window_frames = 150;
 /// With fewer, a second frame would only delay the first.
 constexpr int threads_for_two_frames = 4;
-/// A frame that takes longer is said to be stuck.
-constexpr double stuck_after_s = 2;
 
 void check_cameras(const Rig& rig, const std::vector<LiveCamera>& cameras) {
   const auto is_used = [&](const std::string& name) {
@@ -56,45 +53,6 @@ void check_cameras(const Rig& rig, const std::vector<LiveCamera>& cameras) {
   }
 }
 
-/// A frame in flight: a pipeline and the thread that works on it.
-struct Lane {
-  Lane(const Rig& rig, const Scene& scene, const Options& options) : pipeline(rig, scene, options) {
-    pipeline.want_reconstruction(false);
-  }
-
-  Pipeline pipeline;
-  /// To the cameras on other machines, about its frame; null: a local one.
-  std::vector<std::unique_ptr<RemoteCamera::Question>> questions;
-  Turn publishing;
-  std::size_t options_version = 0;         ///< of those that the pipeline has
-  std::atomic<double> begun_s = 0;         ///< its frame, on the monotonic clock; 0: none
-  std::atomic<std::thread::id> thread_id;  ///< may be read while `thread` is waited for
-  std::thread thread;
-};
-
-/// While a lane works on a frame.
-class Busy {
- public:
-  explicit Busy(Lane& lane) : lane_(lane) { lane.begun_s = monotonic_now_s(); }
-  ~Busy() { lane_.begun_s = 0; }
-  Busy(const Busy&) = delete;
-  Busy& operator=(const Busy&) = delete;
-
- private:
-  Lane& lane_;
-};
-
-/// The watchdog: names the stage that does not end.
-void describe_stuck_frame(const Lane& lane, double now_s, LiveStatus& status) {
-  const double begun_s = lane.begun_s;
-  if (begun_s == 0 || now_s - begun_s < stuck_after_s) return;
-  const auto stage = lane.pipeline.stage();
-  status.problems.push_back(
-      fmt::format("a frame takes {:.0f} s so far, in stage: {}", now_s - begun_s,
-                  stage ? stage_names[static_cast<std::size_t>(*stage)]
-                        : "none (a change of options, or a call of on_frame)"));
-}
-
 }  // namespace
 
 struct LiveSession::Implementation {
@@ -102,14 +60,13 @@ struct LiveSession::Implementation {
                  const std::vector<LiveCamera>& cameras, const LiveOptions& live_options_)
       : rig(rig_),
         scene(scene_),
-        options(options_),
         live_options(live_options_),
-        last_good_options(options_),
+        settings(options_, live_options_.budget_ms),
         assembler{make_inboxes(), rgbd_inboxes()} {  // braces: evaluated from left to right
     check_cameras(rig, cameras);
     const int lane_count = frames_in_flight();
     for (int i = 0; i < lane_count; ++i) {
-      lanes.push_back(std::make_unique<Lane>(rig, scene, options));
+      lanes.push_back(std::make_unique<Lane>(rig, scene, settings.options()));
       if (i > 0) lanes.back()->pipeline.share_memory(lanes.front()->pipeline);
     }
     if (live_options.background) {
@@ -206,8 +163,8 @@ struct LiveSession::Implementation {
       try {
         if (!frame) frame = pool.take();
         if (!begin_frame(lane, *frame)) continue;
-        const Busy busy(lane);
-        apply_options(lane);
+        const Lane::Busy busy(lane);
+        settings.apply(lane.pipeline, lane.options_version);
         for (std::size_t k = 0; k < lane.questions.size(); ++k) {
           if (lane.questions[k]) lane.questions[k]->wait(frame->input.rgbd[k]);
         }
@@ -248,8 +205,7 @@ struct LiveSession::Implementation {
   }
 
   FrameAssembler::Settings sync_settings() const {
-    const std::lock_guard lock(mutex);
-    return {options.sync_tolerance_s, live_options.sync_wait_s};
+    return {settings.options().sync_tolerance_s, live_options.sync_wait_s};
   }
 
   static std::chrono::duration<double> waiting_time(std::optional<double> deadline_s) {
@@ -273,31 +229,6 @@ struct LiveSession::Implementation {
     return true;
   }
 
-  /// Without the mutex while the pipeline takes them: that may compile shaders.
-  void apply_options(Lane& lane) {
-    std::unique_lock lock(mutex);
-    if (lane.options_version == options_version) return;
-    lane.options_version = options_version;
-    const Options wanted = options;
-    const int level = ladder.level();
-    lock.unlock();
-    try {
-      lane.pipeline.set_options(QualityLadder::simplified(wanted, level));
-      lock.lock();
-      last_good_options = wanted;
-    } catch (const Error& error) {  // a backend that does not work here
-      lock.lock();
-      settings_problem = error.what();
-      const Options good = last_good_options;
-      if (lane.options_version == options_version) {
-        options = good;
-        lane.options_version = ++options_version;
-      }
-      lock.unlock();
-      lane.pipeline.set_options(QualityLadder::simplified(good, level));
-    }
-  }
-
   void publish(const std::shared_ptr<LiveFrame>& frame) {
     frame->published_s = monotonic_now_s();
     frame->latency_ms = 1000 * (frame->published_s - frame->input.stamp_s);
@@ -307,11 +238,9 @@ struct LiveSession::Implementation {
       latest = frame;
       latencies_ms.add(frame->latency_ms);
       publish_times_s.add(frame->published_s);
-      const int level = ladder.level();
-      const double frame_ms = frame->result.report.frame_ms;
-      if (ladder.next_level(frame_ms, live_options.budget_ms, options) != level) ++options_version;
       failure.clear();
     }
+    settings.keep_budget(frame->result.report.frame_ms);
     listeners.call(frame);
     published.notify();
   }
@@ -326,17 +255,14 @@ struct LiveSession::Implementation {
 
   const Rig rig;
   const Scene scene;
+  const LiveOptions live_options;  ///< the budget: as it was at first
+  LiveSettings settings;
   mutable std::mutex mutex;  ///< guards the members up to the next blank line
-  Options options;
-  LiveOptions live_options;
-  QualityLadder ladder;
   std::shared_ptr<const LiveFrame> latest;
   SlidingWindow latencies_ms{window_frames};
   SlidingWindow publish_times_s{window_frames};
   std::size_t skipped = 0, failed = 0;
-  std::string failure, settings_problem;
-  Options last_good_options;
-  std::size_t options_version = 1;
+  std::string failure;
 
   std::mutex intake;  ///< guards the assembler, and the order of frames
   std::vector<std::unique_ptr<CameraInbox>> inboxes;  ///< "color" and each RGB-D camera's
@@ -374,11 +300,11 @@ LiveStatus LiveSession::Implementation::status() const {
   status.frames_per_second = publish_times_s.rate();
   const Distribution latency = distribution_of(latencies_ms.values());
   status.latency_ms = {latency.p50, latency.p95, latency.p99};
-  status.budget_ms = live_options.budget_ms;
-  status.quality_level = ladder.level();
-  status.quality = QualityLadder::description(options, ladder.level());
-  if (!settings_problem.empty()) status.problems.push_back(settings_problem);
-  for (const auto& lane : lanes) describe_stuck_frame(*lane, now_s, status);
+  settings.describe(status);
+  for (const auto& lane : lanes) {
+    std::string stuck = lane->stuck_frame(now_s);
+    if (!stuck.empty()) status.problems.push_back(std::move(stuck));
+  }
   if (!failure.empty()) status.problems.push_back("the last frame failed: " + failure);
   if (latest) describe_last_frame(*latest, status);
   return status;
@@ -402,23 +328,19 @@ const Scene& LiveSession::scene() const {
   return implementation_->scene;
 }
 Options LiveSession::options() const {
-  const std::lock_guard lock(implementation_->mutex);
-  return implementation_->options;
+  return implementation_->settings.options();
 }
 void LiveSession::set_options(const Options& options) {
   check(options, implementation_->rig, implementation_->scene);
-  const std::lock_guard lock(implementation_->mutex);
-  implementation_->options = options;
-  ++implementation_->options_version;
-  implementation_->settings_problem.clear();
+  implementation_->settings.set_options(options);
 }
 LiveOptions LiveSession::live_options() const {
-  const std::lock_guard lock(implementation_->mutex);
-  return implementation_->live_options;
+  LiveOptions live_options = implementation_->live_options;
+  live_options.budget_ms = implementation_->settings.budget_ms();
+  return live_options;
 }
 void LiveSession::set_budget_ms(double budget_ms) {
-  const std::lock_guard lock(implementation_->mutex);
-  implementation_->live_options.budget_ms = budget_ms;
+  implementation_->settings.set_budget_ms(budget_ms);
 }
 void LiveSession::forget() {
   implementation_->forget_wanted = true;

@@ -63,20 +63,12 @@ FrameStages::FrameStages(const Rig& rig_, const Scene& scene_)
       sampler(rig),
       refinement(rig.color, PoseRefinement::usual_width, PoseRefinement::usual_last_step, false,
                  PoseRefinement::usual_coarser),
-      lens_trial(rig, scene),
-      fit(rig.color),
-      delay(rig.color),
-      scale(rig, scene),
-      agreement(rig, scene),
-      object_place(rig, scene),
+      evidence(rig, scene),
       background(rig.color),
       contact_line(rig.color),
-      bar_views(rig),
-      standing_things(rig),
       backend(rig),
       memory(rig),
-      steady_inventions(rig.color),
-      plane_texture(rig.color) {}
+      inventions(rig) {}
 
 void FrameStages::set_options(const Options& wanted) {
   check(wanted, rig, scene);
@@ -89,6 +81,12 @@ void FrameStages::set_options(const Options& wanted) {
   mode = &modes.get(options.mode);
   methods = {corrector->declaration(), inpainter->declaration(), options.mode,
              options.memory != "off"};
+  const Inpainter::Declaration inpainting = methods.inpainting;
+  inventions.choose({.lines = inpainting.uses_lines,
+                     .sides = options.complete_sides && inpainting.uses_surfaces,
+                     .bars = options.draw_bars && inpainting.uses_surfaces && !rig.rgbd.empty(),
+                     .grain = inpainting.wants_grain,
+                     .steady = methods.remembers});
 }
 
 /// The mask may still grow by the objects' contact line.
@@ -111,19 +109,10 @@ Background::Wanted FrameStages::wanted_background() const {
   return {shadows || methods.inpainting.uses_surfaces, shadows, options.refine_shadows};
 }
 
-bool FrameStages::completes_sides() const {
-  return options.complete_sides && methods.inpainting.uses_surfaces && background.planes();
-}
-
 void FrameStages::find_contact_line(const FrameSet& frame) {
   if (!background.planes()) return;
   contact_line.find({frame.color, occluders.masks().color, occluders.vertices_m(),
                      *background.planes(), options.mask_margin_px, options.contact_line_px});
-}
-
-/// If there is an object that hides them. They are looked for in front of the background's planes.
-bool FrameStages::draws_bars() const {
-  return options.draw_bars && methods.inpainting.uses_surfaces && !rig.rgbd.empty();
 }
 
 void FrameStages::choose_region() {
@@ -153,14 +142,6 @@ void FrameStages::refine_poses(const FrameSet& frame, Poses& poses) {
   if (!options.refine_poses) return;
   const auto correction = refinement.refine(frame, occluders.masks().color, samples);
   if (correction) refinement.apply(*correction, poses, samples);
-}
-
-void FrameStages::find_delays(const FrameSet& frame, const Poses& poses) {
-  late_s.assign(rig.rgbd.size(), std::nullopt);
-  if (!methods.remembers || !poses.color_from_world) return;
-  delay.find(
-      {frame.color, frame.stamp_s, *poses.color_from_world, occluders.masks().color, samples},
-      late_s);
 }
 
 void FrameStages::find_smoothing(const FrameSet& frame) {
@@ -236,17 +217,8 @@ void FrameStages::process(const FrameSet& given, DiminishedFrame& result) {
   // Nothing that is drawn waits for this; what is learnt from the frame does.
   const auto judge = [&] {
     stage(Stage::refinement, [&] {
-      report.fit.resize(rig.rgbd.size());
-      fit.find(frame.color, masks.color, samples, report.fit);
-      scale.find(frame, report.markers, scales);
-      agreement.find(frame, report.markers, report.poses, shifts);
-      object_place.find(frame, report.markers, report.poses, places);
-      find_delays(frame, report.poses);
-      std::optional<double> focal_factor;
-      if (options.refine_poses) {
-        focal_factor = lens_trial.find(report.markers, measured_poses, refinement);
-      }
-      Doubt::judge(rig, options, {scales, shifts, places, late_s, focal_factor}, report);
+      evidence.judge({frame, measured_poses, masks, samples, options, methods.remembers},
+                     refinement, report);
     });
   };
   const auto estimate = [&](const Rect& part) {
@@ -269,12 +241,7 @@ void FrameStages::process(const FrameSet& given, DiminishedFrame& result) {
     });
   };
   const auto prepare = [&] {
-    stage(Stage::inpainting, [&] {
-      rim_lines.clear();
-      if (!objects.empty() && (methods.inpainting.uses_lines || draws_bars())) {
-        rim_lines.find(frame.color, masks.color, objects);
-      }
-    });
+    stage(Stage::inpainting, [&] { inventions.find_lines(frame, masks.color, objects); });
   };
   // What is learnt of the scene may be needed only after the drawing: then both are done together.
   choose_region();
@@ -318,7 +285,7 @@ void FrameStages::process(const FrameSet& given, DiminishedFrame& result) {
 
   // 3.4 Compositing, colour correction, inpainting; a backend may have done these
   const Compositor::Inputs inputs{frame.color, masks.color, objects,
-                                  options,     smoothing,   rim_lines.lines()};
+                                  options,     smoothing,   inventions.lines()};
   stage(Stage::compositing, [&] {
     background.label(result.reconstruction, result.surfaces);
     Compositor::sort(inputs, result);
@@ -329,63 +296,17 @@ void FrameStages::process(const FrameSet& given, DiminishedFrame& result) {
       compositor.lift_shadows(inputs, background.shadows(), samples, result);
     });
   };
-  const bool has_sides = completes_sides();
-  const bool has_bars = draws_bars() && !objects.empty() && background.planes();
-  bar_search.clear();
   // Of what is behind the objects. Shadows need the planes' labels meanwhile.
-  const auto find_structure = [&] {
-    stage(Stage::inpainting, [&] {
-      if (has_sides) {
-        // Its memory, which comes back filled.
-        std::swap(result.surfaces.standing_depth_m, with_sides.standing_depth_m);
-        standing_things.find(
-            {frame, report.poses, masks, objects, result.reconstruction, *background.planes()},
-            result.surfaces, with_sides);
-      }
-      if (has_bars) {
-        bar_views.begin(frame, report.poses, masks);
-        bar_search.find({rim_lines.lines(), bar_views, *background.planes(),
-                         has_sides ? with_sides : result.surfaces, masks.color});
-      }
-    });
-  };
-  if (has_sides || has_bars) {
-    do_all(find_structure, correct_colors);
+  const Inventions::Inputs inventing{frame,   report.poses,        masks,
+                                     objects, background.planes(), samples};
+  if (inventions.looks_for_structure(inventing)) {
+    do_all([&] { stage(Stage::inpainting, [&] { inventions.find_structure(inventing, result); }); },
+           correct_colors);
   } else {
     correct_colors();
   }
-  stage(Stage::inpainting, [&] {
-    if (has_sides) {
-      std::swap(result.surfaces.label, with_sides.label);
-      std::swap(result.surfaces.standing_depth_m, with_sides.standing_depth_m);
-      Compositor::hide_behind_sides(inputs, result);
-    }
-    const bool has_grain =
-        methods.inpainting.wants_grain && background.planes() && report.missing_pixels > 0;
-    const auto grain = [&] {
-      return PlaneTexture::Inputs{frame.color,      masks.color,
-                                  objects,          *background.planes(),
-                                  samples.surfaces, report.poses.color_from_world};
-    };
-    bool is_filled = false;
-    const auto fill = [&] { is_filled = compositor.inpaint(inputs, *inpainter, result); };
-    if (has_grain) {
-      do_all(fill, [&] { plane_texture.find(grain(), result); });
-    } else {
-      fill();
-    }
-    if (!is_filled) Compositor::mark_unknown(objects, result);
-    if (!bar_search.bars().empty()) {
-      bar_painting.paint(
-          {bar_search.bars(), bar_views, *background.planes(), frame.color, masks.color, objects},
-          result);
-    }
-    if (methods.remembers) {
-      steady_inventions.steady(
-          {frame.stamp_s, report.poses.color_from_world, objects, background.planes()}, result);
-    }
-    if (has_grain) plane_texture.add(grain(), result);
-  });
+  stage(Stage::inpainting,
+        [&] { inventions.fill(inventing, inputs, compositor, *inpainter, result); });
   stage(Stage::finish, [&] { compositor.finish(inputs, *mode, result); });
 
   for (const std::string* message : {&occluders.message(), &backend.message()}) {

@@ -5,35 +5,25 @@
 #include <tuple>
 #include <vector>
 
-#include "bars/bar_painting.h"
-#include "bars/bar_search.h"
-#include "bars/bar_views.h"
 #include "composite/compositor.h"
-#include "composite/plane_texture.h"
-#include "composite/steady_inventions.h"
 #include "depth/camera_choice.h"
 #include "depth/depth_stage.h"
 #include "detect/occlusion_masks.h"
 #include "estimate/depth_estimation.h"
-#include "inpaint/rim_lines.h"
 #include "memory/memory_stage.h"
 #include "pipeline/backend.h"
 #include "pipeline/doubt.h"
 #include "pipeline/frame_texture.h"
+#include "pipeline/inventions.h"
 #include "pipeline/methods.h"
+#include "pipeline/set_up_evidence.h"
 #include "pose/camera_poses.h"
-#include "pose/depth_scale.h"
 #include "pose/frame_markers.h"
-#include "pose/lens_trial.h"
-#include "pose/object_place.h"
 #include "pose/pose_refinement.h"
 #include "scene/background.h"
 #include "scene/color_maps.h"
 #include "scene/contact_line.h"
-#include "scene/scene_fit.h"
 #include "scene/scene_sampler.h"
-#include "scene/standing_things.h"
-#include "scene/stream_delay.h"
 
 namespace diminish {
 
@@ -49,24 +39,20 @@ struct FrameStages {
   /// Whether anything is to be drawn. A shadow may be in view without its object.
   bool looks_at_scene() const;
   Background::Wanted wanted_background() const;
-  bool completes_sides() const;
   void find_contact_line(const FrameSet& frame);
-  bool draws_bars() const;
   void choose_region();
   void narrow_region();
   /// Those that add nothing to what is drawn get no pose.
   void spare_cameras(const FrameSet& frame, FrameReport& report);
   void refine_poses(const FrameSet& frame, Poses& poses);
-
-  /// From what earlier frames showed.
-  void find_delays(const FrameSet& frame, const Poses& poses);
-
   void find_smoothing(const FrameSet& frame);
 
   /// All stages. The caller has taken the frame's turn in what is shared.
   void process(const FrameSet& frame, DiminishedFrame& result);
   /// What the frames of one sequence share, each in its turn.
-  auto shared() { return std::tie(memory, occluders, doubt, delay, steady_inventions); }
+  auto shared() {
+    return std::tie(memory, occluders, doubt, evidence.delay(), inventions.steady());
+  }
 
   Rig rig;
   Scene scene;
@@ -89,35 +75,19 @@ struct FrameStages {
   SceneSampler sampler;
   SceneSamples samples;
   PoseRefinement refinement;
-  LensTrial lens_trial;
-  SceneFit fit;
-  StreamDelay delay;
-  std::vector<std::optional<double>> late_s;
-  DepthScale scale;
-  std::vector<std::optional<MarkerScale>> scales;
-  MarkerAgreement agreement;
-  std::vector<std::optional<MarkerShift>> shifts;
-  ObjectPlace object_place;
-  std::vector<std::optional<PlaceOfObject>> places;
+  SetUpEvidence evidence;
   Background background;
   ContactLine contact_line;
-  RimLines rim_lines;
-  BarViews bar_views;
-  BarSearch bar_search;
-  BarPainting bar_painting;
-  StandingThings standing_things;
-  Surfaces with_sides;  ///< labels and depth, once `standing_things` were found
   ColorMaps color_maps;
-  int smoothing = 0;   ///< its share
   TiledRegion region;  ///< to be drawn
   Backend backend;
   MemoryStage memory;
   Compositor compositor;
-  SteadyInventions steady_inventions;
-  PlaneTexture plane_texture;
-  bool wants_reconstruction = true;
+  Inventions inventions;
   Doubt doubt;
   FrameTexture texture;
+  int smoothing = 0;  ///< the share of smoothed colours
+  bool wants_reconstruction = true;
   static constexpr int no_stage = -1;
   std::atomic<int> begun_stage = no_stage;
 };

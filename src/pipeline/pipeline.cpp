@@ -61,7 +61,7 @@ void Pipeline::pass_turn() {
 void Pipeline::forget() {
   implementation_->memory.forget();
   implementation_->doubt.forget();
-  implementation_->steady_inventions.forget();
+  implementation_->inventions.steady().forget();
 }
 
 void Pipeline::set_background(const Scan& scan) {
