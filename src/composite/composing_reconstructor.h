@@ -36,7 +36,7 @@ struct FrameInputs {
   const FrameMethods& methods;
   // What a backend that only draws is not told: it may be learnt at the same time.
   const std::vector<BackgroundPlane>* planes = nullptr;  ///< null: not looked for
-  std::span<const CastShadows::Shadow> shadows = {};
+  std::span<const CastShadow> shadows = {};
   ColorMapsBySource color_maps = {};
   int smoothing_share = 0;           ///< of ColorSmoothing's change
   bool wants_reconstruction = true;  ///< in the result

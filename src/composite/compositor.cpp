@@ -97,7 +97,7 @@ void Compositor::correct_colors(const Inputs& inputs, ColorMapsBySource maps,
   }
 }
 
-void Compositor::lift_shadows(const Inputs& inputs, std::span<const CastShadows::Shadow> shadows,
+void Compositor::lift_shadows(const Inputs& inputs, std::span<const CastShadow> shadows,
                               const SceneSamples& samples, DiminishedFrame& result) {
   if (!result.surfaces.light.empty()) {
     if (inputs.options.refine_shadows) {

@@ -39,7 +39,7 @@ class Compositor {
 
   /// Stage::colors. Removes the objects' shadows, outside the mask, too, and shows what is
   /// remembered.
-  void lift_shadows(const Inputs& inputs, std::span<const CastShadows::Shadow> shadows,
+  void lift_shadows(const Inputs& inputs, std::span<const CastShadow> shadows,
                     const SceneSamples& samples, DiminishedFrame& result);
 
   /// Sorts what is behind a thing's side (surface_label::standing) into the pixels to inpaint.

@@ -98,7 +98,7 @@ void ShadowGain::Scale::resize(int width, int height) {
 void ShadowGain::apply(const Inputs& inputs, Surfaces& surfaces) {
   constexpr int smallest = cell_px << (scales - 1);
   if (surfaces.region.width < smallest || surfaces.region.height < smallest) return;
-  for (const CastShadows::Shadow& shadow : inputs.shadows) {
+  for (const CastShadow& shadow : inputs.shadows) {
     if (!gather(inputs, surfaces, shadow.label)) continue;
     gather_samples(inputs, shadow, surfaces.region);
     bool is_found = true;
@@ -156,7 +156,7 @@ bool ShadowGain::gather(const Inputs& inputs, const Surfaces& surfaces, std::uin
 }
 
 /// Of the plane around the region, where nothing hides light from it.
-void ShadowGain::gather_samples(const Inputs& inputs, const CastShadows::Shadow& shadow,
+void ShadowGain::gather_samples(const Inputs& inputs, const CastShadow& shadow,
                                 const Rect& region) {
   cells_.clear();
   const Rect whole = inputs.picture.bounds();

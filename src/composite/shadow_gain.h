@@ -44,7 +44,7 @@ class ShadowGain {
   struct Inputs {
     const Image<Bgr>& picture;
     const Image<std::uint8_t>& provenance;
-    std::span<const CastShadows::Shadow> shadows;
+    std::span<const CastShadow> shadows;
     const std::vector<SceneSample>& samples;
   };
   /// Changes `surfaces.light` in its region. Cost: 14 million instructions for the calendar (500 by
@@ -82,7 +82,7 @@ class ShadowGain {
   };
 
   bool gather(const Inputs& inputs, const Surfaces& surfaces, std::uint8_t label);
-  void gather_samples(const Inputs& inputs, const CastShadows::Shadow& shadow, const Rect& region);
+  void gather_samples(const Inputs& inputs, const CastShadow& shadow, const Rect& region);
   Terms monomials(float x, float y) const;
   Terms monomials(std::size_t scale, int column, int row) const;
   bool fit_field(bool only_lit);

@@ -25,7 +25,7 @@ struct ShadowBlock {
   float origin[3], label, along_u[4], along_v[4];
 
   ShadowBlock() = default;
-  explicit ShadowBlock(const CastShadows::Shadow& shadow)
+  explicit ShadowBlock(const CastShadow& shadow)
       : plane(shadow.ground.plane),
         origin{shadow.ground.origin.x(), shadow.ground.origin.y(), shadow.ground.origin.z()},
         label(shadow.label),

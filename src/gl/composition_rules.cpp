@@ -41,10 +41,10 @@ std::string composition_rules() {
          define("SURFACE_UNKNOWN", surface_label::unknown) +
          define("SURFACE_FIRST_PLANE", surface_label::first_plane) +
          define("SURFACE_FOREGROUND", surface_label::foreground) +
-         define("GRID_CELLS", CastShadows::grid_cells) + define("CELL_M", CastShadows::cell_m) +
+         define("GRID_CELLS", CastShadow::grid_cells) + define("CELL_M", CastShadow::cell_m) +
          define("LIGHT_NODE_PX", CastShadows::node_px) +
          define("LIGHT_NODE_ROWS_PX", CastShadows::node_rows_px) +
-         define("INVISIBLE_SHADOW", CastShadows::invisible) +
+         define("INVISIBLE_SHADOW", CastShadow::invisible) +
          define("SHADOW_FADING_HEIGHT", CastShadows::fading_height) +
          define("SHADOW_FADING_PX", ShadowLifting::fading_px) +
          define("LEAST_FIELD", ColorMap::least_field) +

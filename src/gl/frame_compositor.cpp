@@ -24,7 +24,7 @@ std::string mode_file(const std::string& mode) {
 constexpr const char* plain_mode = "mode_remove.glsl";
 
 constexpr std::size_t cells_of_a_shadow =
-    std::size_t{CastShadows::grid_cells} * CastShadows::grid_cells;
+    std::size_t{CastShadow::grid_cells} * CastShadow::grid_cells;
 using Light = Eigen::Array3f;
 static_assert(sizeof(Light) == 3 * sizeof(float));
 
@@ -134,7 +134,7 @@ void FrameCompositor::pack(const FrameInputs& inputs, Stage last, FrameUpload& u
   std::byte* const light = upload.add(inputs.shadows.size() * light_bytes, begin);
   block_.light_at = static_cast<std::uint32_t>(begin / 4);
   block_.shadow_count = 0;
-  for (const CastShadows::Shadow& shadow : inputs.shadows) {
+  for (const CastShadow& shadow : inputs.shadows) {
     std::memcpy(light + block_.shadow_count * light_bytes, shadow.light.data(), light_bytes);
     block_.shadows[block_.shadow_count++] = ShadowBlock(shadow);
   }

@@ -51,7 +51,7 @@ class Composition : public ::testing::Test, protected testing::DiminishedWall {
   void compose_on_gpu(bool with_shadows) {
     const FrameMethods declared = methods();
     maps.fit(frame.frame.color, masks.color, samples, declared.color.maps);
-    const auto cast = with_shadows ? shadows.shadows() : std::span<const CastShadows::Shadow>();
+    const auto cast = with_shadows ? shadows.shadows() : std::span<const CastShadow>();
     const FrameInputs inputs{frame.frame,
                              depths,
                              frame.poses,

@@ -34,7 +34,7 @@ class Background {
   const std::vector<BackgroundPlane>* planes() const {
     return has_planes_ ? &planes_.planes() : nullptr;
   }
-  std::span<const CastShadows::Shadow> shadows() const { return shadows_.shadows(); }
+  std::span<const CastShadow> shadows() const { return shadows_.shadows(); }
   /// The shadows' place in the colour camera's picture.
   Rect shaded_part() const { return shadows_.bounds(); }
 

@@ -48,10 +48,10 @@ Eigen::Vector3f facing(const Image<float>& inverse_depth, int column, int row,
 
 /// The share of the light that is left at a point of a surface.
 Eigen::Array3f light_on(const Eigen::Vector3f& point_m, const Eigen::Vector3f& normal,
-                        const CastShadows::Shadow& shadow) {
+                        const CastShadow& shadow) {
   Eigen::Array3f all = Eigen::Array3f::Ones();
   Eigen::Array3f dark = Eigen::Array3f::Zero();
-  for (const CastShadows::Beam& beam : shadow.beams()) {
+  for (const CastShadow::Beam& beam : shadow.beams()) {
     const float facing = std::clamp(normal.dot(beam.toward), 0.F, 1.F);
     all -= (1 - facing) * beam.share;
     if (shadow.is_hidden(point_m, beam)) dark += facing * beam.share;
@@ -61,7 +61,7 @@ Eigen::Array3f light_on(const Eigen::Vector3f& point_m, const Eigen::Vector3f& n
 
 }  // namespace
 
-void ThingLight::shade(std::span<const CastShadows::Shadow> shadows, const RayGrid& rays,
+void ThingLight::shade(std::span<const CastShadow> shadows, const RayGrid& rays,
                        const Image<float>& depth_m, Surfaces& surfaces) {
   find_depths(depth_m, surfaces);
   if (!find_light(shadows, rays, surfaces.region)) return;
@@ -94,7 +94,7 @@ void ThingLight::find_depths(const Image<float>& depth_m, const Surfaces& surfac
 }
 
 /// Returns whether any is lost.
-bool ThingLight::find_light(std::span<const CastShadows::Shadow> shadows, const RayGrid& rays,
+bool ThingLight::find_light(std::span<const CastShadow> shadows, const RayGrid& rays,
                             const Rect& region) {
   light_.resize(inverse_depth_.width(), inverse_depth_.height());
   const int shaded = sum_over_rows(light_.height(), [&](Rows rows) {
@@ -110,17 +110,17 @@ bool ThingLight::find_light(std::span<const CastShadows::Shadow> shadows, const 
         const int y = region.y + row * block_px + block_px / 2;
         const RayGrid::Segment segment = rays.segment(x, y, x + 1);
         const Eigen::Vector3f point_m = segment.first.homogeneous() / inverse_depth;
-        const auto is_shaded = [&](const CastShadows::Shadow& shadow) {
+        const auto is_shaded = [&](const CastShadow& shadow) {
           return std::any_of(shadow.beams().begin(), shadow.beams().end(),
                              [&](const auto& beam) { return shadow.is_hidden(point_m, beam); });
         };
         if (std::none_of(shadows.begin(), shadows.end(), is_shaded)) continue;
         const Eigen::Vector3f normal =
             facing(inverse_depth_, column, row, segment.first, block_px * segment.slope.x());
-        for (const CastShadows::Shadow& shadow : shadows) {
+        for (const CastShadow& shadow : shadows) {
           light.head<3>() = light.head<3>().min(light_on(point_m, normal, shadow));
         }
-        count += light.head<3>().minCoeff() < 1 - CastShadows::invisible ? 1 : 0;
+        count += light.head<3>().minCoeff() < 1 - CastShadow::invisible ? 1 : 0;
       }
     }
     return count;
@@ -165,7 +165,7 @@ void ThingLight::apply(Surfaces& surfaces) const {
         const Levels right = between(column + 1);
         const int first = block_px * column + block_px / 2;
         const int end = column == last_column ? region.width : first + block_px;
-        if (left.min(right).head<3>().minCoeff() < 1 - CastShadows::invisible) {
+        if (left.min(right).head<3>().minCoeff() < 1 - CastShadow::invisible) {
           const Levels step = 255 * (right - left) / block_px;
           Levels level = 255 * left + 0.5F * step + 0.5F;
           for (int x = first; x < end; ++x, level += step) {

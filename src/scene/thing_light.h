@@ -28,16 +28,15 @@ class ThingLight {
 
   /// Lowers `surfaces.light` where the label is `foreground`. Cost: 6 million instructions
   /// for the calendar.
-  void shade(std::span<const CastShadows::Shadow> shadows, const RayGrid& rays,
-             const Image<float>& depth_m, Surfaces& surfaces);
+  void shade(std::span<const CastShadow> shadows, const RayGrid& rays, const Image<float>& depth_m,
+             Surfaces& surfaces);
 
  private:
   /// Blue, green, red, and how much is known.
   using Levels = Eigen::Array4f;
 
   void find_depths(const Image<float>& depth_m, const Surfaces& surfaces);
-  bool find_light(std::span<const CastShadows::Shadow> shadows, const RayGrid& rays,
-                  const Rect& region);
+  bool find_light(std::span<const CastShadow> shadows, const RayGrid& rays, const Rect& region);
   void smooth();
   void apply(Surfaces& surfaces) const;
 
