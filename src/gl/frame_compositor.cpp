@@ -110,7 +110,7 @@ FrameCompositor::FrameCompositor(const Rig& rig)
   const std::size_t bytes = rays.nodes().size() * sizeof(Eigen::Vector2f);
   MappedBuffer staging(MappedBuffer::Use::upload);
   staging.reserve(bytes);
-  std::memcpy(staging.data(), rays.nodes().data(), bytes);
+  std::memcpy(staging.data(), rays.nodes().data()->data(), bytes);
   ray_nodes_.reserve(bytes);
   ray_texture_.create(ray_nodes_, GL_RG32F, rays.nodes().size());
   copy(staging.name(), ray_nodes_.name(), bytes);
@@ -120,7 +120,7 @@ FrameCompositor::FrameCompositor(const Rig& rig)
 void FrameCompositor::pack(const FrameInputs& inputs, Stage last, FrameUpload& upload) {
   last_ = last;
   const Options& options = inputs.options;
-  region_ = inputs.region;
+  region_ = static_cast<const Rect&>(inputs.region);
   std::size_t begin = 0;
   std::byte* const picture = upload.add(pixels_of(region_) * sizeof(std::uint32_t), begin);
   block_.camera_at = static_cast<std::uint32_t>(begin / 4);
@@ -135,7 +135,8 @@ void FrameCompositor::pack(const FrameInputs& inputs, Stage last, FrameUpload& u
   block_.light_at = static_cast<std::uint32_t>(begin / 4);
   block_.shadow_count = 0;
   for (const CastShadow& shadow : inputs.shadows) {
-    std::memcpy(light + block_.shadow_count * light_bytes, shadow.light.data(), light_bytes);
+    std::memcpy(light + block_.shadow_count * light_bytes, shadow.light.data()->data(),
+                light_bytes);
     block_.shadows[block_.shadow_count++] = ShadowBlock(shadow);
   }
 

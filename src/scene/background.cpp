@@ -17,7 +17,7 @@ void Background::label(const Reconstruction& reconstruction, Surfaces& surfaces)
   if (has_planes_) {
     planes_.label(reconstruction, surfaces);
   } else {
-    surfaces.region = reconstruction.region;
+    surfaces.region = static_cast<const Rect&>(reconstruction.region);
     surfaces.label.resize(0, 0);
   }
   if (shadows_.any()) {
