@@ -100,7 +100,9 @@ BagSurvey survey_bag(const std::filesystem::path& bag) {
         measure(*image, stream);
         stream.images = 1;
         survey.streams.push_back(std::move(stream));
+        continue;
       }
+      survey.others.emplace(message.topic, message.type);
     } catch (const Error&) {
       // What is broken is counted when it is converted.
     }

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,7 +36,8 @@ struct BagStream {
 
 /// What a bag holds, from its beginning to its end.
 struct BagSurvey {
-  std::vector<BagStream> streams;  ///< in the order of their first images
+  std::vector<BagStream> streams;             ///< in the order of their first images
+  std::map<std::string, std::string> others;  ///< topics of other messages, and their types
   ros::FrameTree frames;
 };
 /// Cost: reads the whole bag. Throws Error that names the file.

@@ -31,7 +31,17 @@ std::string listed(const BagSurvey& survey) {
     text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", stream.topic,
                         stream.sensor == Sensor::color ? "colour" : "depth");
   }
-  return text.empty() ? "no images" : text;
+  if (!text.empty()) return text;
+  // So that its owner sees what it is.
+  constexpr std::size_t most_topics = 5;
+  text = "no images";
+  std::size_t count = 0;
+  for (const auto& [topic, type] : survey.others) {
+    if (count == most_topics) return text + fmt::format(", {} more", survey.others.size() - count);
+    text +=
+        fmt::format("{}{} ({})", count++ == 0 ? ", but " : ", ", printable(topic), printable(type));
+  }
+  return text;
 }
 
 const BagStream& find(const BagSurvey& survey, const std::string& topic, Sensor sensor) {

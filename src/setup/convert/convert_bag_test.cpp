@@ -191,6 +191,17 @@ TEST(ConvertBag, TopicsMayBeChosen) {
                 convert_bag(folder.write("empty.bag", Bag().bytes()), folder.path() / "c", {});
               }),
               HasSubstr("expected topics of colour and of depth images, got no images"));
+  Bag without_images;
+  for (const char* topic : {"/b", "/a", "/c", "/d", "/e", "/f", "/g"}) {
+    without_images.add_bytes(topic, "std_msgs/String", std::string(4, '\0'), 1);
+  }
+  EXPECT_THAT(
+      error_of([&] {
+        convert_bag(folder.write("words.bag", without_images.bytes()), folder.path() / "d", {});
+      }),
+      HasSubstr(
+          "got no images, but /a (std_msgs/msg/String), /b (std_msgs/msg/String), /c "
+          "(std_msgs/msg/String), /d (std_msgs/msg/String), /e (std_msgs/msg/String), 2 more"));
 }
 
 }  // namespace
