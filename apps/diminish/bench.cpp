@@ -29,6 +29,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+/// Of any measurement, however short.
+constexpr std::size_t fewest_frames = 20;
+
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
@@ -63,8 +66,6 @@ class RateMeter {
   }
 
  private:
-  static constexpr std::size_t fewest_frames = 20;
-
   std::size_t warm_up_;
   double seconds_;
   std::size_t frames_ = 0;
@@ -150,7 +151,6 @@ void BenchCommand::measure_latency(const Recording& input, const std::vector<Fra
                                    BenchFigures& figures) const {
   DiminishedFrame result;
   Pipeline pipeline = warm_pipeline(input, loaded, options, result);
-  constexpr std::size_t fewest_frames = 20;
   std::array<std::vector<double>, time_row_count> times;
   std::vector<double> bytes;
   std::vector<double> counts;
@@ -177,7 +177,6 @@ void BenchCommand::measure_latency(const Recording& input, const std::vector<Fra
 template <class Each>
 void process_in_turn(Pipeline& first, Pipeline& second, const std::vector<FrameSet>& loaded,
                      double seconds, const Each& each) {
-  constexpr std::size_t fewest_frames = 20;
   constexpr std::size_t warm_up = fewest_frames / 2;  // lets memory grow to its size
   DiminishedFrame result;
   const auto ms_of = [&](Pipeline& pipeline, const FrameSet& frame) {

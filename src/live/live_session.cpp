@@ -205,7 +205,7 @@ struct LiveSession::Implementation {
   }
 
   FrameAssembler::Settings sync_settings() const {
-    return {settings.options().sync_tolerance_s, live_options.sync_wait_s};
+    return {settings.sync_tolerance_s(), live_options.sync_wait_s};
   }
 
   static std::chrono::duration<double> waiting_time(std::optional<double> deadline_s) {

@@ -9,6 +9,11 @@ Options LiveSettings::options() const {
   return options_;
 }
 
+double LiveSettings::sync_tolerance_s() const {
+  const std::lock_guard lock(mutex_);
+  return options_.sync_tolerance_s;
+}
+
 void LiveSettings::set_options(const Options& options) {
   const std::lock_guard lock(mutex_);
   options_ = options;

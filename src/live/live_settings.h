@@ -20,6 +20,7 @@ class LiveSettings {
       : options_(options), last_good_(options), budget_ms_(budget_ms) {}
 
   Options options() const;
+  double sync_tolerance_s() const;
   /// They have been checked.
   void set_options(const Options& options);
   double budget_ms() const;

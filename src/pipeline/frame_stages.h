@@ -1,9 +1,7 @@
 #pragma once
 
 #include <atomic>
-#include <optional>
 #include <tuple>
-#include <vector>
 
 #include "composite/compositor.h"
 #include "depth/camera_choice.h"

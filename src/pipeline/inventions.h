@@ -50,8 +50,9 @@ class Inventions {
 
   /// Whether sides or bars are looked for: there must be an object and planes.
   bool looks_for_structure(const Inputs& inputs) const;
-  /// Sides and bars behind the objects. Reads `result`; others may read it, too, and write what is
-  /// no label meanwhile.
+  /// Finds sides and bars behind the objects, for `fill`. Takes the memory of the result's
+  /// `surfaces.standing_depth_m`, and reads its reconstruction and labels: others may work on the
+  /// picture meanwhile.
   void find_structure(const Inputs& inputs, DiminishedFrame& result);
 
   /// Fills what is missing in the picture.

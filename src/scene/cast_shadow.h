@@ -11,7 +11,7 @@
 
 namespace diminish {
 
-/// The light that an object to remove leaves on a plane of the background, in cells around the
+/// The light that the objects to remove leave on a plane of the background, in cells around the
 /// ground's origin. Cell centres are at whole numbers.
 struct CastShadow {
   /// A plane with coordinates on it, in metres from the point below the centre of the objects.

@@ -38,6 +38,11 @@ ShadowSearch::Directions::Directions() {
   }
 }
 
+const ShadowSearch::Directions& ShadowSearch::Directions::all() {
+  static const Directions directions;
+  return directions;
+}
+
 bool ShadowSearch::find(const Inputs& inputs) {
   found_.ground = inputs.ground;
   choose_blockers(inputs);
@@ -53,15 +58,14 @@ bool ShadowSearch::find(const Inputs& inputs) {
 /// The points that are on no plane.
 void ShadowSearch::choose_blockers(const Inputs& inputs) {
   const CastShadow::Ground& ground = inputs.ground;
-  const std::vector<BackgroundPlane>& planes = inputs.planes;
-  const std::vector<Eigen::Vector3f>& object_points_m = inputs.object_points_m;
   blockers_.clear();
-  const std::size_t step = 1 + object_points_m.size() / most_blockers;
-  for (std::size_t i = 0; i < object_points_m.size(); i += step) {
-    const Eigen::Vector3f& point = object_points_m[i];
-    const bool stands_out = std::all_of(planes.begin(), planes.end(), [&](const auto& plane) {
-      return plane.height_m(point) >= least_height_m + shadow_noise.at(point.z());
-    });
+  const std::size_t step = 1 + inputs.object_points_m.size() / most_blockers;
+  for (std::size_t i = 0; i < inputs.object_points_m.size(); i += step) {
+    const Eigen::Vector3f& point = inputs.object_points_m[i];
+    const bool stands_out =
+        std::all_of(inputs.planes.begin(), inputs.planes.end(), [&](const auto& plane) {
+          return plane.height_m(point) >= least_height_m + shadow_noise.at(point.z());
+        });
     if (stands_out) blockers_.push_back({ground.coordinates(point), ground.plane.height_m(point)});
   }
 }
@@ -109,8 +113,8 @@ void ShadowSearch::find_hidden() {
   constexpr int width = grid_cells + 2 * rim;
   constexpr float last = width - 1;
   struck_.resize(words * width, width, 0);
-  const ByDirection along_u = directions_.along_u / cell_m;
-  const ByDirection along_v = directions_.along_v / cell_m;
+  const ByDirection along_u = Directions::all().along_u / cell_m;
+  const ByDirection along_v = Directions::all().along_v / cell_m;
   for (const Blocker& blocker : blockers_) {
     // Rounds: adds half a cell and truncates.
     const Eigen::Vector2f at =
@@ -160,6 +164,7 @@ bool ShadowSearch::fit() {
 
 void ShadowSearch::keep_beams() {
   const CastShadow::Ground& ground = found_.ground;
+  const Directions& light_from = Directions::all();
   float top_m = 0;
   for (const Blocker& blocker : blockers_) top_m = std::max(top_m, blocker.height_m);
   found_.step_m = top_m / 255;
@@ -170,7 +175,7 @@ void ShadowSearch::keep_beams() {
     if (found_.beams_.size() == found_.beam_count_) found_.beams_.emplace_back();
     CastShadow::Beam& beam = found_.beams_[found_.beam_count_++];
     const auto i = static_cast<Eigen::Index>(d);
-    const Eigen::Vector2f slope(directions_.along_u[i], directions_.along_v[i]);
+    const Eigen::Vector2f slope(light_from.along_u[i], light_from.along_v[i]);
     beam.toward = ground.plane.normal + slope.x() * ground.along_u + slope.y() * ground.along_v;
     beam.share = share;
     beam.height.resize(grid_cells, grid_cells, 0);

@@ -46,8 +46,13 @@ class ShadowSearch {
 
   /// Where light may come from: metres along the plane per metre of height.
   struct Directions {
-    Directions();
     ByDirection along_u, along_v;
+
+    /// The same for all searches.
+    static const Directions& all();
+
+   private:
+    Directions();
   };
   struct Blocker {
     Eigen::Vector2f place;
@@ -67,7 +72,6 @@ class ShadowSearch {
   template <class Visit>
   static void for_each_direction(const std::uint64_t* bits, const Visit& visit);
 
-  Directions directions_;
   std::vector<Blocker> blockers_;
   std::vector<Lit> lit_;
   std::vector<std::uint32_t> on_plane_;  ///< samples
