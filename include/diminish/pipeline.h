@@ -18,9 +18,10 @@ namespace diminish {
 /// camera has seen in earlier frames is used; else nothing of a frame influences the next. One
 /// object may be used by one thread at a time.
 ///
-/// Threads are the caller's: `process` shares its work among those of the oneTBB arena that it is
-/// called in (oneapi::tbb::task_arena), and starts none itself. Outside any arena that is one of
-/// all cores, within the process's oneapi::tbb::global_control. The result does not depend on it.
+/// `process` runs on as many threads as the oneTBB arena that it is called in allows
+/// (oneapi::tbb::task_arena): the caller's, and helpers, which all pipelines of a process share.
+/// Outside any arena that is one for each core, within the process's oneapi::tbb::global_control.
+/// The result does not depend on it.
 /// What a frame uses of OpenCV runs in the calling thread.
 class DIMINISH_EXPORT Pipeline {
  public:

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <oneapi/tbb/task_arena.h>
-
 #include <memory>
 #include <mutex>
 #include <utility>
@@ -23,9 +21,7 @@ std::shared_ptr<const Table> shared_table(const Intrinsics& camera) {
     auto table = held.lock();
     if (table && intrinsics == camera) return table;
   }
-  std::shared_ptr<const Table> table;
-  // While this thread waits for the others, it must not begin what would ask for a table, too.
-  oneapi::tbb::this_task_arena::isolate([&] { table = std::make_shared<const Table>(camera); });
+  auto table = std::make_shared<const Table>(camera);
   tables.emplace_back(camera, table);
   return table;
 }

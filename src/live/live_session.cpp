@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/set_text.h"
+#include "core/shared_tasks.h"
 #include "core/thread_name.h"
 #include "diminish/error.h"
 #include "diminish/live.h"
@@ -72,7 +73,6 @@ struct LiveSession::Implementation {
     if (live_options.background) {
       lanes.front()->pipeline.set_background(*live_options.background);
     }
-    arena.initialize(std::max(threads(), lane_count), static_cast<unsigned>(lane_count));
     const double epoch_s = monotonic_now_s();
     open_remote(cameras);
     for (const LiveCamera& camera : cameras) {
@@ -164,11 +164,12 @@ struct LiveSession::Implementation {
         if (!frame) frame = pool.take();
         if (!begin_frame(lane, *frame)) continue;
         const Lane::Busy busy(lane);
+        const ThreadBudget::Use use(budget);
         settings.apply(lane.pipeline, lane.options_version);
         for (std::size_t k = 0; k < lane.questions.size(); ++k) {
           if (lane.questions[k]) lane.questions[k]->wait(frame->input.rgbd[k]);
         }
-        arena.execute([&] { lane.pipeline.process(frame->input, frame->result); });
+        lane.pipeline.process(frame->input, frame->result);
         lane.publishing.wait(publishing);
         // Whatever fails from here on, what others may hold by then is not used again.
         publish(std::exchange(frame, nullptr));
@@ -277,7 +278,7 @@ struct LiveSession::Implementation {
       0;  ///< the count of `arrived` up to which everything is shown
   std::vector<std::unique_ptr<CameraFeed>> feeds;
   std::vector<std::unique_ptr<RemoteCamera>> remotes;  ///< of each RGB-D camera; null: local
-  oneapi::tbb::task_arena arena;
+  ThreadBudget budget{std::max(threads(), frames_in_flight())};  ///< of all lanes together
   std::mutex ending;
   std::vector<std::unique_ptr<Lane>> lanes;
 };

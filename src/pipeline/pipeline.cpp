@@ -80,7 +80,7 @@ void Pipeline::process(const FrameSet& frame, DiminishedFrame& result) {
       pipeline.pass_turn();
     }
   } pass{*this};
-  // A thread that waits for another within this frame must not begin something else.
+  // Our own loops begin nothing else while they wait; a registered method may use oneTBB's.
   oneapi::tbb::this_task_arena::isolate([&] { implementation_->process(frame, result); });
 }
 

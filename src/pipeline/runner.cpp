@@ -1,145 +1,143 @@
 #include "diminish/runner.h"
 
-#include <oneapi/tbb/parallel_pipeline.h>
-#include <oneapi/tbb/task_arena.h>
-
 #include <atomic>
 #include <exception>
 #include <memory>
 #include <mutex>
+#include <system_error>
+#include <thread>
 #include <vector>
 
-#include "core/happens_before.h"
+#include "core/shared_tasks.h"
+#include "core/thread_name.h"
+#include "core/turns.h"
 #include "diminish/pipeline.h"
 
 namespace diminish {
 namespace {
 
-/// A frame in progress and the pipeline that works on it: everything that one thread needs.
-struct Slot {
-  explicit Slot(Pipeline pipeline_) : pipeline(std::move(pipeline_)) {}
+/// A thread's frame, and the pipeline that works on it.
+struct Lane {
+  explicit Lane(Pipeline pipeline_) : pipeline(std::move(pipeline_)) {}
 
   Pipeline pipeline;
   FrameSet frame;
   DiminishedFrame result;
+  Turn finishing;
   std::exception_ptr error;  ///< why the frame could not be done
 };
 
-/// Those that no frame is in.
-class FreeSlots {
+/// Takes frames from the source to the sink, in lanes that each have a thread.
+class Run {
  public:
-  void put(Slot* slot) {
-    const std::lock_guard lock(mutex_);
-    slots_.push_back(slot);
+  Run(FrameSource& source, FrameSink& sink, const RunnerOptions& options, int threads)
+      : source_(source), sink_(sink), options_(options), budget_(threads) {}
+
+  /// One lane's thread. When lanes end, helpers take their place in the frames of others.
+  void work(Lane& lane) {
+    const ThreadBudget::Use use(budget_);
+    while (begin(lane)) {
+      process(lane);
+      lane.finishing.wait(finishing_);
+      finish(lane);
+      lane.finishing.end();
+    }
   }
-  /// Null if there is none.
-  Slot* take() {
-    const std::lock_guard lock(mutex_);
-    if (slots_.empty()) return nullptr;
-    Slot* const slot = slots_.back();
-    slots_.pop_back();
-    return slot;
+
+  /// Throws what went wrong first.
+  std::size_t frames_done() const {
+    if (first_error_) std::rethrow_exception(first_error_);
+    return frames_done_;
   }
 
  private:
-  std::mutex mutex_;
-  std::vector<Slot*> slots_;
+  // The frames before one that failed are delivered, then its error is thrown.
+  template <class Action>
+  void attempt(std::exception_ptr& error, const Action& action) {
+    try {
+      action();
+    } catch (...) {
+      error = std::current_exception();
+      failed_ = true;
+    }
+  }
+
+  /// False if there are no more frames.
+  bool begin(Lane& lane) {
+    const std::lock_guard lock(intake_);
+    if (ended_ || failed_ || (options_.stop && options_.stop->load())) return false;
+    lane.error = nullptr;
+    bool is_there = false;
+    attempt(lane.error, [&] { is_there = source_.begin(lane.frame); });
+    ended_ = !is_there;
+    if (is_there) lane.pipeline.take_turn();
+    if (is_there || lane.error) lane.finishing.take(finishing_);
+    return is_there || lane.error;
+  }
+
+  void process(Lane& lane) {
+    if (lane.error) return;
+    attempt(lane.error, [&] {
+      source_.read_images(lane.frame);
+      lane.pipeline.process(lane.frame, lane.result);
+      if (!lane.result.report.skipped) sink_.write_images(lane.frame, lane.result);
+    });
+    lane.pipeline.pass_turn();
+  }
+
+  void finish(const Lane& lane) {
+    if (!first_error_) first_error_ = lane.error;
+    if (first_error_) return;
+    attempt(first_error_, [&] {
+      sink_.append(lane.frame, lane.result);
+      ++frames_done_;
+      if (options_.progress) options_.progress(frames_done_);
+    });
+  }
+
+  FrameSource& source_;
+  FrameSink& sink_;
+  const RunnerOptions& options_;
+  ThreadBudget budget_;
+  std::atomic<bool> failed_ = false;
+  std::mutex intake_;  ///< guards the source's order, and the next member
+  bool ended_ = false;
+  Turns finishing_;  ///< guards what follows
+  std::size_t frames_done_ = 0;
+  std::exception_ptr first_error_;
 };
 
 }  // namespace
 
 std::size_t run(FrameSource& source, const Rig& rig, const Scene& scene, const Options& options,
                 FrameSink& sink, const RunnerOptions& runner_options) {
-  namespace tbb = oneapi::tbb;
   const int threads = std::max(1, runner_options.threads);
-  std::vector<std::unique_ptr<Slot>> slots;
-  FreeSlots free_slots;
+  std::vector<std::unique_ptr<Lane>> lanes;
   for (int i = 0; i < threads; ++i) {
-    slots.push_back(std::make_unique<Slot>(Pipeline(rig, scene, options)));
-    slots.back()->pipeline.want_reconstruction(runner_options.reconstructions);
-    if (i > 0) slots.back()->pipeline.share_memory(slots.front()->pipeline);
-    free_slots.put(slots.back().get());
+    lanes.push_back(std::make_unique<Lane>(Pipeline(rig, scene, options)));
+    lanes.back()->pipeline.want_reconstruction(runner_options.reconstructions);
+    if (i > 0) lanes.back()->pipeline.share_memory(lanes.front()->pipeline);
   }
-
   if (runner_options.background) {
-    slots.front()->pipeline.set_background(*runner_options.background);
+    lanes.front()->pipeline.set_background(*runner_options.background);
   }
 
-  // An exception from a filter would cancel the loops inside other frames in progress. So the error
-  // waits for its turn: the frames before it are delivered, then it is thrown.
-  std::size_t frames_done = 0;
-  std::exception_ptr first_error;
-  std::atomic<bool> failed = false;
-  const auto attempt = [&](std::exception_ptr& error, const auto& action) {
+  Run run(source, sink, runner_options, threads);
+  {
+    std::vector<std::jthread> others;
     try {
-      action();
-    } catch (...) {
-      error = std::current_exception();
-      failed = true;
+      for (std::size_t i = 1; i < lanes.size(); ++i) {
+        others.emplace_back([&run, &lane = *lanes[i]] {
+          name_this_thread("frames");
+          run.work(lane);
+        });
+      }
+    } catch (const std::system_error&) {
+      // Fewer frames at a time.
     }
-  };
-  const auto read = [&](tbb::flow_control& control) -> Slot* {
-    happens_after(&failed);
-    happens_after(&source);
-    const bool stopped = failed || (runner_options.stop && runner_options.stop->load());
-    // There are as many slots as frames in progress, so one is always free here.
-    Slot* const slot = stopped ? nullptr : free_slots.take();
-    if (!slot) {
-      happens_before(&source);
-      control.stop();
-      return nullptr;
-    }
-    bool is_there = false;
-    slot->error = nullptr;
-    attempt(slot->error, [&] { is_there = source.begin(slot->frame); });
-    if (is_there) slot->pipeline.take_turn();
-    happens_before(slot);
-    happens_before(&source);
-    if (is_there || slot->error) return slot;
-    control.stop();
-    return nullptr;
-  };
-  const auto process = [&](Slot* slot) {
-    happens_after(&failed);
-    happens_after(slot);
-    if (slot->error) return slot;
-    attempt(slot->error, [&] {
-      source.read_images(slot->frame);
-      slot->pipeline.process(slot->frame, slot->result);
-      if (!slot->result.report.skipped) sink.write_images(slot->frame, slot->result);
-    });
-    slot->pipeline.pass_turn();
-    happens_before(slot);
-    return slot;
-  };
-  const auto finish = [&](Slot* slot) {
-    happens_after(&failed);
-    happens_after(slot);
-    happens_after(&sink);
-    if (!first_error) first_error = slot->error;
-    if (!first_error) {
-      attempt(first_error, [&] {
-        sink.append(slot->frame, slot->result);
-        ++frames_done;
-        if (runner_options.progress) runner_options.progress(frames_done);
-      });
-    }
-    free_slots.put(slot);
-    happens_before(&sink);
-  };
-
-  happens_before(&failed);
-  tbb::task_arena(threads).execute([&] {
-    tbb::parallel_pipeline(
-        static_cast<std::size_t>(threads),
-        tbb::make_filter<void, Slot*>(tbb::filter_mode::serial_in_order, read) &
-            tbb::make_filter<Slot*, Slot*>(tbb::filter_mode::parallel, process) &
-            tbb::make_filter<Slot*, void>(tbb::filter_mode::serial_in_order, finish));
-  });
-  happens_after(&source);
-  happens_after(&sink);
-  if (first_error) std::rethrow_exception(first_error);
-  return frames_done;
+    run.work(*lanes.front());
+  }
+  return run.frames_done();
 }
 
 }  // namespace diminish

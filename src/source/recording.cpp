@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <oneapi/tbb/task_arena.h>
 
 #include <optional>
 #include <system_error>
@@ -116,8 +115,7 @@ class RecordingSource final : public FrameSource {
         read(*streams.depth, partner(*streams.depth, frame), part, rgbd.depth.own(), fault);
       }
     };
-    // A thread that waits for an image must not begin something else.
-    oneapi::tbb::this_task_arena::isolate([&] { for_tasks(frame.faults.size(), read_sensor); });
+    for_tasks(frame.faults.size(), read_sensor);
   }
 
   template <class Pixel>
