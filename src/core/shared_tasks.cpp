@@ -91,7 +91,6 @@ class Crew {
  public:
   /// Begins threads until there are `helpers`, or as many as the system lets it have.
   void open(Region& region, int helpers) {
-    std::size_t wanted = 0;
     {
       const std::lock_guard lock(mutex_);
       begin_threads(helpers);
@@ -102,12 +101,12 @@ class Crew {
       for (const Region* outer = region.around; outer; outer = outer->around) {
         if (outer->sleeper) outer->sleeper->notify_one();
       }
-      const int left = region.budget.left();
-      if (left <= 0) return;
+      if (region.budget.left() <= 0) return;
       ++offers_;
-      wanted = std::min({sleeping_, region.count - 1, static_cast<std::size_t>(left)});
+      if (sleeping_ == 0) return;
     }
-    for (std::size_t i = 0; i < wanted; ++i) offered_.notify_one();
+    // It wakes the next: the owner has better things to do.
+    offered_.notify_one();
   }
 
   /// All that nobody else does.
@@ -206,9 +205,10 @@ class Crew {
       if (Region* region = find([](const Region& any) { return any.budget.left() > 0; })) {
         ThreadBudget& budget = region->budget;
         const ThreadBudget::Use use(budget);
-        // It makes room for a thread that came later.
-        help(
-            *region, [&] { return budget.left() >= 0; }, lock);
+        if (sleeping_ > 0 && budget.left() > 0 && region->has_more()) offered_.notify_one();
+        // For threads that come later it makes room.
+        const auto has_room = [&budget] { return budget.left() >= 0; };
+        help(*region, has_room, lock);
         continue;
       }
       lock.unlock();
