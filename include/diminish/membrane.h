@@ -21,8 +21,8 @@ class MembraneSolver;
 /// not its area. Memory is kept for the next call and does not grow for similar sets. Results do
 /// not depend on earlier calls or the number of threads.
 ///
-/// One object serves one thread at a time. Inside a call oneTBB shares the work of large sets
-/// among threads.
+/// One object serves one thread at a time. Inside a call the work of large sets is shared
+/// among as many threads as the caller's oneTBB arena allows.
 class Membrane {
  public:
   /// A view of 8-bit pixels that belong to someone else: rows `stride` bytes apart (negative:

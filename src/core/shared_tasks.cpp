@@ -26,15 +26,15 @@ struct Region {
   void (*call)(const void* what, std::size_t i);
   const void* what;
   ThreadBudget& budget;
-  const Region* around;  ///< one of whose tasks shares these; null: none
+  Region* around;  ///< one of whose tasks shares these; null: none
   std::atomic<std::size_t> next = 0;
   std::atomic<int> helpers = 0;  ///< who are at work; written under the crew's mutex
 
   // Guarded by the crew's mutex.
   Region* older = nullptr;
   Region* newer = nullptr;
-  mutable std::condition_variable* sleeper = nullptr;  ///< the owner's, while it sleeps
-  std::size_t failed = 0;                              ///< the first task that threw
+  std::condition_variable* sleeper = nullptr;  ///< the owner's, while it sleeps
+  std::size_t failed = 0;                      ///< the first task that threw
   std::exception_ptr error;
 
   bool has_more() const { return next.load(std::memory_order_relaxed) < count; }
@@ -45,7 +45,7 @@ struct Region {
   }
 };
 
-thread_local const Region* current_region = nullptr;  ///< whose task this thread does
+thread_local Region* current_region = nullptr;  ///< whose task this thread does
 thread_local ThreadBudget* current_budget = nullptr;
 
 void relax() {
@@ -98,7 +98,7 @@ class Crew {
       (newest_ ? newest_->newer : oldest_) = &region;
       newest_ = &region;
       ++opened_;
-      for (const Region* outer = region.around; outer; outer = outer->around) {
+      for (Region* outer = region.around; outer; outer = outer->around) {
         if (outer->sleeper) outer->sleeper->notify_one();
       }
       if (region.budget.left() <= 0) return;
@@ -162,7 +162,7 @@ class Crew {
   /// Does tasks while go_on(). Throws nothing.
   template <class GoOn>
   void do_tasks(Region& region, const GoOn& go_on) {
-    const Region* const before = std::exchange(current_region, &region);
+    Region* const before = std::exchange(current_region, &region);
     while (go_on()) {
       const std::size_t i = region.next.fetch_add(1, std::memory_order_relaxed);
       if (i >= region.count) break;
