@@ -28,6 +28,7 @@ class MemoryTest : public ::testing::Test {
     bool is_witnessed = true;   ///< the RGB-D camera delivers
     double user_m = 0;          ///< how far the user has moved sidewards
     double rgbd_m = 0;          ///< and the RGB-D camera
+    double rgbd_turn = 0;       ///< an error of both cameras' poses in the world; radians
     double light = 1;           ///< everywhere: the share that is left
     double wave_m = 0;          ///< of the wall's pattern; 0: the usual
     double turn = 0;            ///< an error of the user's camera's pose, about its axis; radians
@@ -66,6 +67,15 @@ class MemoryTest : public ::testing::Test {
     RigidTransform error;
     error.rotation = Eigen::AngleAxisd(moment.turn, Eigen::Vector3d::UnitZ()).toRotationMatrix();
     now.poses.color_from_world = error * *now.poses.color_from_world;
+    if (now.poses.depth_from_world[0]) {
+      error.rotation =
+          Eigen::AngleAxisd(moment.rgbd_turn, Eigen::Vector3d::UnitY()).toRotationMatrix();
+      now.poses.depth_from_world[0] = error * *now.poses.depth_from_world[0];
+      if (moment.rgbd_turn != 0) {
+        now.poses.color_from_world =
+            *now.poses.color_from_depth[0] * *now.poses.depth_from_world[0];
+      }
+    }
     if (!moment.has_world || !moment.has_pose) {
       now.poses.color_from_world.reset();
       now.poses.depth_from_world[0].reset();

@@ -164,7 +164,7 @@ void for_each_option(AnyOptions& options, Visit&& visit) {
         options.color_correct);
   visit(OptionInfo{.name = "memory",
                    .unit = "method",
-                   .help = "What the colour camera saw earlier: not shown, only where an RGB-D "
+                   .help = "What the cameras saw earlier: not shown, only where an RGB-D "
                            "camera sees that it is still there, or also where none looks now",
                    .choices = {"off", "witnessed", "on"}},
         options.memory);

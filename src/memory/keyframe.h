@@ -40,11 +40,14 @@ class Sight {
   std::uint32_t bits_ = 0;
 };
 
-/// What the user's camera saw at one moment, apart from the objects to remove. It is drawn like an
-/// RGB-D camera's images; `depth` is in the camera's own view, on KeyframeGrid.
+/// What a camera saw at one moment, apart from the objects to remove: the user's, or an RGB-D
+/// camera's colour sensor through the user's lens (RgbdViewpoint). It is drawn like an RGB-D
+/// camera's images; `depth` is in the camera's own view, on KeyframeGrid.
 struct Keyframe {
   double stamp_s = 0;
-  bool is_background = false;  ///< of a scan: its time says nothing, and it does not age
+  bool is_background = false;       ///< of a scan: its time says nothing, and it does not age
+  std::optional<std::size_t> rgbd;  ///< the RGB-D camera; nothing: the user's
+  bool is_current = false;          ///< that camera still stands there: it shows as much now
   RigidTransform color_from_world;
   std::vector<std::optional<RigidTransform>> color_from_depth;  ///< of each RGB-D camera
   Image<Bgr> picture;
@@ -60,6 +63,8 @@ struct Keyframe {
   Image<float> confirmed_s;
   std::vector<SceneSample> samples;  ///< in the keyframe's frame
 
+  /// Whether its pose was measured as the user's is now, so that both are wrong alike.
+  bool is_users() const { return !rgbd && !is_background; }
   std::size_t bytes() const;
 };
 

@@ -31,8 +31,12 @@ void draw_planes(std::span<const InversePlane> planes, const KeyframeGrid& grid,
 
 }  // namespace
 
-KeyframeDepth::KeyframeDepth(const Rig& rig, const KeyframeGrid& grid)
-    : grid_(grid), measured_(rig, grid), planes_(grid.intrinsics()), carried_(grid) {}
+KeyframeDepth::KeyframeDepth(const Rig& rig, const KeyframeGrid& grid, bool is_users)
+    : grid_(grid),
+      gap_doubt_(is_users ? 0 : plane_doubt),
+      measured_(rig, grid),
+      planes_(grid.intrinsics()),
+      carried_(grid) {}
 
 void KeyframeDepth::draw(const FrameSet& frame, const Poses& poses, const OcclusionMasks& masks,
                          const SceneSamples& samples, std::span<const InversePlane> planes,
@@ -95,7 +99,7 @@ void KeyframeDepth::find_columns() {
   for (int y = height - 1; y >= 0; --y) follow(y, y + 1, below_, to_below_);
 }
 
-KeyframeDepth::Guess KeyframeDepth::between(const Ends& ends) {
+KeyframeDepth::Guess KeyframeDepth::between(const Ends& ends) const {
   constexpr float same_surface = 0.06F;
   const int span = ends.to_first + ends.to_last;
   if (ends.first == 0 || ends.last == 0)
@@ -104,7 +108,7 @@ KeyframeDepth::Guess KeyframeDepth::between(const Ends& ends) {
   const float further = std::min(ends.first, ends.last);
   if (nearer - further > same_surface * nearer) return {further, span, false, guess_doubt};
   const float part = static_cast<float>(ends.to_first) / static_cast<float>(span);
-  return {ends.first + part * (ends.last - ends.first), span, true, 0};
+  return {ends.first + part * (ends.last - ends.first), span, true, gap_doubt_};
 }
 
 bool KeyframeDepth::continues(const BackgroundPlane& plane, int x, int y, const End& end) const {

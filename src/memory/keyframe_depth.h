@@ -23,7 +23,9 @@ namespace diminish {
 /// doubtful; less so where the picture looks like the plane.
 class KeyframeDepth {
  public:
-  KeyframeDepth(const Rig& rig, const KeyframeGrid& grid);
+  /// is_users: the camera is the user's. Else it is beside a depth sensor: a gap in a surface is
+  /// something that the sensor does not see, and that may stand in front of it.
+  KeyframeDepth(const Rig& rig, const KeyframeGrid& grid, bool is_users = true);
 
   /// Two steps, between which other frames may come. First what the RGB-D cameras see is drawn.
   /// poses and samples: after refinement. Cost: MeasuredDepth's, and 1 ms.
@@ -48,7 +50,7 @@ class KeyframeDepth {
     bool is_same = false;  ///< a single surface on both sides
     float doubt = 0;       ///< how much of the depth it may be wrong by
   };
-  static Guess between(const Ends& ends);
+  Guess between(const Ends& ends) const;
 
   void label(const SceneSamples& samples);
   void find_columns();
@@ -73,6 +75,7 @@ class KeyframeDepth {
   bool continues(const BackgroundPlane& plane, int x, int y, const End& end) const;
 
   KeyframeGrid grid_;
+  float gap_doubt_;  ///< between two places of one surface
   MeasuredDepth measured_;
   BackgroundPlanes planes_;
   CarriedDepth carried_;

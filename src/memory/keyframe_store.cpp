@@ -32,7 +32,7 @@ bool keep_confirmed_since(double stamp_s, Keyframe& keyframe) {
     if (y % step != 0) continue;
     float* const overview_m = keyframe.overview_m.row(y / step);
     for (int x = 0; x < keyframe.overview_m.width(); ++x) {
-      if (depth[x * step] == 0) overview_m[x] = 0;
+      if (keyframe.depth(x * step, y) == 0) overview_m[x] = 0;
     }
   }
   return any;
@@ -119,11 +119,9 @@ std::size_t KeyframeStore::bytes() const {
 }
 
 void KeyframeStore::forget_before(double stamp_s) {
-  std::erase_if(keyframes_, [&](const auto& keyframe) {
-    if (keyframe->is_background || keyframe->stamp_s >= stamp_s) return false;
-    const bool is_empty = !keep_confirmed_since(stamp_s, *keyframe);
-    if (is_empty) let_go(keyframe);
-    return is_empty;
+  forget_if([&](Keyframe& keyframe) {
+    return !keyframe.is_background && keyframe.stamp_s < stamp_s &&
+           !keep_confirmed_since(stamp_s, keyframe);
   });
 }
 
@@ -160,8 +158,8 @@ void KeyframeStore::find_shown(const Keyframe& keyframe, const RigidTransform& c
       if (pixels[x] < 0) continue;
       const int row = pixels[x] / picture_width_;
       const int column = pixels[x] - row * picture_width_;
-      shown[static_cast<std::size_t>((row - region.y) / cell * cells.width +
-                                     (column - region.x) / cell)] = 1;
+      const int i = (row - region.y) / cell * cells.width + (column - region.x) / cell;
+      shown[static_cast<std::size_t>(i)] = 1;
     }
   }
 }
@@ -180,7 +178,8 @@ void KeyframeStore::find_part(const std::vector<std::uint8_t>& shown, const Rect
   const auto shows = [&](const Rect& among) {
     for (int y = among.y; y < among.bottom(); ++y) {
       for (int x = among.x; x < among.right(); ++x) {
-        const auto i = static_cast<std::size_t>(y * cells.width + x);
+        const int cell_index = y * cells.width + x;
+        const auto i = static_cast<std::size_t>(cell_index);
         if (shown[i] != 0 && hidden_[i] != 0) return true;
       }
     }
@@ -210,7 +209,8 @@ std::size_t KeyframeStore::choose(std::size_t most, const Mask& objects, const T
   hidden_.assign(static_cast<std::size_t>(cells.width) * static_cast<std::size_t>(cells.height), 0);
   int all = 0;
   for (int y = region.y; y < region.bottom(); y += sampled_rows) {
-    int* const hidden = hidden_.data() + (y - region.y) / cell * cells.width;
+    const int row = (y - region.y) / cell;
+    int* const hidden = hidden_.data() + std::ptrdiff_t{row} * cells.width;
     const std::uint8_t* const masked = objects.row(y) + region.x;
     for (int i = 0; i < cells.width; ++i) {
       const int last = std::min(region.width, (i + 1) * cell);
@@ -225,6 +225,8 @@ std::size_t KeyframeStore::choose(std::size_t most, const Mask& objects, const T
   shown_.resize(size());
   weights_.resize(size());
   for_tasks(size(), [&](std::size_t k) {
+    weights_[k] = 0;
+    if (keyframes_[k]->is_current) return;
     const RigidTransform motion = color_from_world * keyframes_[k]->color_from_world.inverse();
     weights_[k] = 1 / (1 + motion.translation.norm() / near_m);
     find_shown(*keyframes_[k], motion, region, shown_[k]);
@@ -234,6 +236,7 @@ std::size_t KeyframeStore::choose(std::size_t most, const Mask& objects, const T
     std::size_t best = size();
     double best_value = 0;
     for (std::size_t k = size(); k-- > 0;) {
+      if (weights_[k] == 0) continue;
       int count = 0;
       for (std::size_t i = 0; i < wanted_.size(); ++i) count += shown_[k][i] * wanted_[i];
       const double value = count < fewest ? 0 : weights_[k] * count;

@@ -34,6 +34,15 @@ class KeyframeStore {
   void forget_before(double stamp_s);
   /// An RGB-D camera saw some of a keyframe's places unchanged. confirmed: by place.
   void refresh(const Keyframe& keyframe, const Mask& confirmed, const Rect& part, double stamp_s);
+  /// Forgets the keyframes for which it says so. predicate(Keyframe&): bool; called once for each.
+  template <class Predicate>
+  void forget_if(const Predicate& predicate) {
+    std::erase_if(keyframes_, [&](const auto& keyframe) {
+      const bool is_gone = predicate(*keyframe);
+      if (is_gone) let_go(keyframe);
+      return is_gone;
+    });
+  }
   void clear();
 
   /// A keyframe, and the part of the picture in which it shows what the objects hide.

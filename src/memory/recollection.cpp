@@ -25,8 +25,14 @@ Recollection::Recollection(const Rig& rig, const KeyframeGrid& grid)
     : rig_(keyframe_rig(rig, grid)),
       grid_(grid),
       color_(Lens(rig.color)),
-      coarse_(rig.color, PoseRefinement::usual_width, 5 * PoseRefinement::usual_last_step, true),
-      fine_(rig.color, 2 * PoseRefinement::usual_width, 2 * PoseRefinement::usual_last_step, true),
+      far_(rig.color, {.last_step = 5 * PoseRefinement::usual_last_step,
+                       .extrapolates = true,
+                       .coarser = PoseRefinement::usual_coarser + 1,
+                       .reach = 3}),
+      coarse_(rig.color, {.last_step = 5 * PoseRefinement::usual_last_step, .extrapolates = true}),
+      fine_(rig.color, {.small_width = 2 * PoseRefinement::usual_width,
+                        .last_step = 2 * PoseRefinement::usual_last_step,
+                        .extrapolates = true}),
       witness_(rig, grid),
       drawer_(Registry<Reconstructor>::get("cpu")(rig_)),
       depth_(1),
@@ -55,7 +61,8 @@ void Recollection::move(const std::optional<RigidTransform>& motion) {
 }
 
 std::optional<RigidTransform> Recollection::align(const RecallInputs& inputs) {
-  std::optional<RigidTransform> motion = coarse_.refine(frame_, inputs.masks.color, samples_);
+  PoseRefinement& refinement = keyframe_->is_users() ? coarse_ : far_;
+  std::optional<RigidTransform> motion = refinement.refine(frame_, inputs.masks.color, samples_);
   move(motion);
   return motion;
 }

@@ -5,29 +5,15 @@
 #include <optional>
 #include <vector>
 
-#include "diminish/options.h"
 #include "diminish/reconstructor.h"
-#include "estimate/plane_depth.h"
 #include "memory/keyframe_store.h"
+#include "memory/recall_inputs.h"
 #include "memory/torn_edges.h"
 #include "memory/witness.h"
 #include "pose/pose_refinement.h"
 #include "scene/color_maps.h"
 
 namespace diminish {
-
-/// What there is of a frame when something is to be remembered in it.
-struct RecallInputs {
-  const FrameSet& frame;
-  const Poses& poses;  ///< refined; color_from_world is known
-  const OcclusionMasks& masks;
-  const Rect& objects;        ///< their box in the picture
-  const TiledRegion& region;  ///< that is drawn
-  const Options& options;
-  const bool& is_in_doubt;  ///< known once the frame's samples are taken: nothing is learnt then
-  /// Of a rig without RGB-D cameras: where the user's camera sees a surface; in its frame.
-  std::span<const InversePlane> planes = {};
-};
 
 /// Draws a keyframe as an RGB-D camera's images, from the viewpoint of another frame.
 class Recollection {
@@ -36,9 +22,9 @@ class Recollection {
 
   /// Begins with a keyframe, where the frame's pose says.
   void begin(const KeyframeStore::Choice& choice, const RecallInputs& inputs);
-  /// Moves the keyframe so that it about matches the frame's picture. Returns how: mostly the error
-  /// of the frame's pose, so that other keyframes are moved likewise before. Nothing if that is not
-  /// known.
+  /// Moves the keyframe so that it about matches the frame's picture. Returns how: for the user's
+  /// own mostly the error of the frame's pose, so that other keyframes are moved likewise before.
+  /// Nothing if that is not known.
   std::optional<RigidTransform> align(const RecallInputs& inputs);
   void move(const std::optional<RigidTransform>& motion);
   /// Aligns it further (the same camera: to a tenth of a pixel), finds its gain, and what has
@@ -80,7 +66,7 @@ class Recollection {
   Rig rig_;  ///< the user's camera, and the keyframe
   KeyframeGrid grid_;
   Projection color_;
-  PoseRefinement coarse_, fine_;
+  PoseRefinement far_, coarse_, fine_;
   ColorMaps color_maps_;
   Witness witness_;
   std::unique_ptr<Reconstructor> drawer_;

@@ -1,11 +1,9 @@
 #include "memory/scene_memory.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 
-#include "core/rows.h"
 #include "core/tasks.h"
 #include "memory/stands_still.h"
 
@@ -14,11 +12,14 @@ namespace diminish {
 SceneMemory::SceneMemory(const Rig& rig)
     : rig_(rig),
       grid_(rig.color),
-      depth_(rig, grid_),
-      novelty_(grid_),
+      users_(rig, grid_, std::nullopt),
       store_(rig, grid_),
       testimonies_(rig.rgbd.size()) {
-  for (const RgbdCamera& camera : rig.rgbd) takers_.emplace_back(camera);
+  for (const RgbdCamera& camera : rig.rgbd) testimony_takers_.emplace_back(camera);
+  viewpoints_.reserve(rig.rgbd.size());
+  for (std::size_t k = 0; k < rig.rgbd.size(); ++k) {
+    viewpoints_.push_back({RgbdViewpoint(rig, k), {rig, grid_, k}});
+  }
 }
 
 void SceneMemory::forget() {
@@ -27,12 +28,10 @@ void SceneMemory::forget() {
 }
 
 void SceneMemory::begin_anew() {
-  pending_.steps = 0;
+  pending_ = nullptr;
   store_.forget_before(std::numeric_limits<double>::infinity());
-  depth_.forget();
-  novelty_.forget();
-  last_keyframe_from_world_.reset();
-  last_from_world_.reset();
+  users_.forget();
+  for (Viewpoint& viewpoint : viewpoints_) viewpoint.taker.forget();
 }
 
 void SceneMemory::set_background(std::vector<Keyframe> keyframes) {
@@ -45,22 +44,11 @@ void SceneMemory::set_background(std::vector<Keyframe> keyframes) {
 void SceneMemory::look(const RecallInputs& inputs) {
   if (has_looked_) return;
   has_looked_ = true;
-  for_tasks(takers_.size(), [&](std::size_t k) {
-    takers_[k].take(inputs.frame.rgbd[k], inputs.poses.depth_from_world[k],
-                    inputs.masks.rgbd_depth[k], inputs.masks.rgbd_color[k], testimonies_[k]);
+  for_tasks(testimony_takers_.size(), [&](std::size_t k) {
+    testimony_takers_[k].take(inputs.frame.rgbd[k], inputs.poses.depth_from_world[k],
+                              inputs.masks.rgbd_depth[k], inputs.masks.rgbd_color[k],
+                              testimonies_[k]);
   });
-}
-
-bool SceneMemory::has_jumped(const RigidTransform& color_from_world, double elapsed_s) const {
-  if (!last_from_world_) return false;
-  constexpr double reach_m = 0.05;
-  constexpr double fastest_m_per_s = 3;
-  constexpr double reach_deg = 5;
-  constexpr double fastest_deg_per_s = 300;
-  const RigidTransform motion = color_from_world * last_from_world_->inverse();
-  return motion.translation.norm() > reach_m + fastest_m_per_s * elapsed_s ||
-         rotation_difference_deg(motion.rotation, Eigen::Matrix3d::Identity()) >
-             reach_deg + fastest_deg_per_s * elapsed_s;
 }
 
 bool SceneMemory::has_lost_its_world(const RecallInputs& inputs) {
@@ -69,9 +57,22 @@ bool SceneMemory::has_lost_its_world(const RecallInputs& inputs) {
     return !keyframe.testimonies[0].is_given ||
            stands_still(keyframe.testimonies[0], testimonies_[0]);
   };
-  return testimonies_[0].is_given && !(pending_.steps > 0 && stood(*pending_.keyframe)) &&
+  return testimonies_[0].is_given && !(pending_ != nullptr && stood(*pending_->pending())) &&
          std::none_of(store_.all().begin(), store_.all().end(),
                       [&](const auto& keyframe) { return stood(*keyframe); });
+}
+
+void SceneMemory::leave_places(const RecallInputs& inputs) {
+  constexpr double moment_s = 0.5;
+  for (auto& [view, taker] : viewpoints_) view.go(inputs);
+  store_.forget_if([&](Keyframe& keyframe) {
+    if (!keyframe.rgbd) return false;
+    const auto& now = viewpoints_[*keyframe.rgbd].view.color_from_world();
+    const bool was_current = keyframe.is_current;
+    keyframe.is_current = now && !has_moved(keyframe.color_from_world, *now);
+    return was_current && !keyframe.is_current &&
+           inputs.frame.stamp_s - keyframe.stamp_s > moment_s;
+  });
 }
 
 std::size_t SceneMemory::recall(const RecallInputs& inputs, bool is_anchored,
@@ -81,16 +82,16 @@ std::size_t SceneMemory::recall(const RecallInputs& inputs, bool is_anchored,
   const RigidTransform& color_from_world = *inputs.poses.color_from_world;
   // A recording that begins anew.
   if (now_s < last_stamp_s_) begin_anew();
-  has_jumped_ = has_jumped(color_from_world, now_s - last_stamp_s_);
+  users_.follow(color_from_world, now_s);
   last_stamp_s_ = now_s;
-  last_from_world_ = color_from_world;
   // The last keyframe's steps come one a frame, but within a moment.
   constexpr double moment_s = 0.1;
   do {
     take_step();
-  } while (pending_.steps > 0 && now_s >= pending_.keyframe->stamp_s + moment_s);
+  } while (pending_ != nullptr && now_s >= pending_->pending()->stamp_s + moment_s);
   store_.forget_before(now_s - inputs.options.memory_max_age_s);
   if (is_anchored && keyframes() > 0 && has_lost_its_world(inputs)) begin_anew();
+  leave_places(inputs);
   if (store_.empty() || inputs.region.empty()) return 0;
   const std::size_t count =
       store_.choose(most_recalled, inputs.masks.color, inputs.region, color_from_world, chosen_);
@@ -98,9 +99,14 @@ std::size_t SceneMemory::recall(const RecallInputs& inputs, bool is_anchored,
   look(inputs);
   while (recollections.size() < count) recollections.emplace_back(rig_, grid_);
   for_tasks(count, [&](std::size_t i) { recollections[i].begin(chosen_[i], inputs); });
-  const std::optional<RigidTransform> motion = recollections[0].align(inputs);
+  // The frame's pose is wrong by about what the user's own keyframes show.
+  const auto own = std::find_if(chosen_.begin(), chosen_.begin() + count,
+                                [](const auto& choice) { return choice.keyframe->is_users(); });
+  const auto first =
+      own == chosen_.begin() + count ? 0 : static_cast<std::size_t>(own - chosen_.begin());
+  const std::optional<RigidTransform> motion = recollections[first].align(inputs);
   for_tasks(count, [&](std::size_t i) {
-    if (i > 0) {
+    if (i != first) {
       recollections[i].move(motion);
       recollections[i].align(inputs);  // its own pose is wrong, too
     }
@@ -114,29 +120,6 @@ std::size_t SceneMemory::recall(const RecallInputs& inputs, bool is_anchored,
   return count;
 }
 
-bool SceneMemory::is_worth_a_keyframe(const RecallInputs& inputs) const {
-  if (pending_.steps > 0) return false;
-  if (!last_keyframe_from_world_) return true;
-  constexpr double shortest_s = 0.2;
-  constexpr double longest_s = 2;
-  constexpr int moved_share = 16;  // of the objects' size: 1 / 16
-  constexpr double moved_m = 0.04;
-  constexpr double turned_deg = 2;
-  const double since_s = inputs.frame.stamp_s - last_keyframe_s_;
-  if (since_s < shortest_s) return false;
-  if (since_s >= longest_s) return true;
-  const RigidTransform motion =
-      *inputs.poses.color_from_world * last_keyframe_from_world_->inverse();
-  const Rect& objects = inputs.objects;
-  const int objects_moved =
-      std::max({std::abs(objects.x - last_objects_.x), std::abs(objects.y - last_objects_.y),
-                std::abs(objects.right() - last_objects_.right()),
-                std::abs(objects.bottom() - last_objects_.bottom())});
-  const int size = std::max(objects.width, objects.height);
-  return moved_share * objects_moved > size || motion.translation.norm() > moved_m ||
-         rotation_difference_deg(motion.rotation, Eigen::Matrix3d::Identity()) > turned_deg;
-}
-
 bool SceneMemory::has_just_lost(const std::vector<OccluderReport>& objects, double stamp_s) {
   constexpr double moment_s = 2;
   found_s_.resize(objects.size(), -std::numeric_limits<double>::infinity());
@@ -148,31 +131,24 @@ bool SceneMemory::has_just_lost(const std::vector<OccluderReport>& objects, doub
   return lost;
 }
 
-void SceneMemory::leave_out_objects(Keyframe& keyframe) {
-  const Mask& objects = pending_.objects;
-  const int step = grid_.step();
-  const int margin = object_margin_px(step);
-  const Rect part = grow(last_objects_, margin);
-  object_columns_.resize(static_cast<std::size_t>(objects.width()));
-  for (int y = 0; y < keyframe.depth.height(); ++y) {
-    const Rect band = intersect({0, y * step - margin, objects.width(), 2 * margin + 1},
-                                intersect(part, objects.bounds()));
-    if (band.empty()) continue;
-    std::uint8_t* const columns = object_columns_.data();
-    std::fill_n(columns + band.x, band.width, std::uint8_t{0});
-    for (int row = band.y; row < band.bottom(); ++row) {
-      const std::uint8_t* const masked = objects.row(row);
-      for (int x = band.x; x < band.right(); ++x) columns[x] |= masked[x];
-    }
-    for (int x = 0; x < keyframe.depth.width(); ++x) {
-      const int first = std::max(band.x, x * step - margin);
-      const int last = std::min(band.right(), x * step + margin + 1);
-      if (std::any_of(columns + first, columns + std::max(first, last),
-                      [](std::uint8_t any) { return any != 0; })) {
-        keyframe.depth(x, y) = 0;
-      }
-    }
+KeyframeTaker* SceneMemory::find_due(const RecallInputs& inputs) {
+  KeyframeTaker* due = users_.is_due(inputs.objects) ? &users_ : nullptr;
+  for (auto& [view, taker] : viewpoints_) {
+    if (!view.go(inputs)) continue;
+    taker.follow(*view.color_from_world(), inputs.frame.stamp_s);
+    if (due == nullptr && !taker.has_jumped() && taker.is_due(inputs.objects)) due = &taker;
   }
+  return due;
+}
+
+KeyframeView SceneMemory::view_of(const KeyframeTaker& taker, const RecallInputs& inputs,
+                                  const SceneSamples& samples) {
+  for (auto& [view, own] : viewpoints_) {
+    // With the poses as they are refined by now.
+    if (&own == &taker && view.go(inputs)) return view.look(inputs, samples);
+  }
+  return {inputs.poses, inputs.frame.color.view(), inputs.masks.color, inputs.objects, samples,
+          inputs.planes};
 }
 
 void SceneMemory::learn(const RecallInputs& inputs, const SceneSamples& samples,
@@ -180,48 +156,37 @@ void SceneMemory::learn(const RecallInputs& inputs, const SceneSamples& samples,
                         const std::function<void()>& sample) {
   const FrameSet& frame = inputs.frame;
   const bool lost = has_just_lost(objects, frame.stamp_s);
-  if (lost || has_jumped_ || !is_worth_a_keyframe(inputs)) return;
+  if (lost || users_.has_jumped() || pending_ != nullptr) return;
   bool sees = !inputs.planes.empty();
   for (std::size_t k = 0; k < frame.rgbd.size(); ++k) {
     sees = sees || (frame.rgbd[k].available() && inputs.poses.depth_from_world[k]);
   }
   if (!sees) return;
+  KeyframeTaker* const due = find_due(inputs);
+  if (due == nullptr) return;
   if (sample) {
     sample();
     has_looked_ = false;  // at depth that is estimated only now
   }
   if (inputs.is_in_doubt) return;
   look(inputs);
-  last_keyframe_s_ = frame.stamp_s;
-  last_keyframe_from_world_ = inputs.poses.color_from_world;
-  last_objects_ = inputs.objects;
-  pending_.keyframe = store_.take();
-  Keyframe& keyframe = *pending_.keyframe;
-  keyframe.is_background = false;
-  keyframe.stamp_s = frame.stamp_s;
-  keyframe.color_from_world = *inputs.poses.color_from_world;
-  keyframe.color_from_depth = inputs.poses.color_from_depth;
-  keyframe.testimonies = testimonies_;
-  copy(frame.color.view(), keyframe.picture);
-  pending_.objects = inputs.masks.color;
-  pending_.is_uncertain = std::any_of(objects.begin(), objects.end(),
-                                      [](const auto& object) { return !object.message.empty(); });
-  depth_.draw(frame, inputs.poses, inputs.masks, samples, inputs.planes, inputs.options);
-  pending_.steps = 2;
+  const bool is_uncertain = std::any_of(objects.begin(), objects.end(),
+                                        [](const auto& object) { return !object.message.empty(); });
+  due->begin(view_of(*due, inputs, samples), inputs, testimonies_, is_uncertain, store_.take());
+  pending_ = due;
 }
 
 const std::vector<std::shared_ptr<Keyframe>>& SceneMemory::all() {
-  while (pending_.steps > 0) take_step();
+  while (pending_ != nullptr) take_step();
   return store_.all();
 }
 
 void SceneMemory::take_step() {
-  if (pending_.steps == 0) return;
-  Keyframe& keyframe = *pending_.keyframe;
-  if (--pending_.steps > 0) return depth_.complete(pending_.objects, keyframe);
-  leave_out_objects(keyframe);
-  novelty_.filter(pending_.is_uncertain, keyframe);
-  store_.add(std::exchange(pending_.keyframe, nullptr));
+  if (pending_ == nullptr) return;
+  if (auto keyframe = pending_->take_step()) {
+    pending_ = nullptr;
+    store_.add(std::move(keyframe));
+  }
 }
 
 void anchor(const Poses& poses, Poses& result) {

@@ -6,19 +6,21 @@
 #include <vector>
 
 #include "diminish/diminished_frame.h"
-#include "memory/keyframe_depth.h"
 #include "memory/keyframe_store.h"
-#include "memory/novelty.h"
 #include "memory/recollection.h"
+#include "memory/rgbd_viewpoint.h"
 
 namespace diminish {
 
-/// What the user's camera has seen so far. Frames must come in order.
+/// What the user's camera has seen so far, and RGB-D cameras that move. Frames must come in order.
 class SceneMemory {
  public:
   static constexpr std::size_t most_recalled = 3;
 
   explicit SceneMemory(const Rig& rig);
+  ~SceneMemory() = default;
+  SceneMemory(const SceneMemory&) = delete;
+  SceneMemory& operator=(const SceneMemory&) = delete;
 
   /// Prepares what this frame is to be reminded of (at most `most_recalled`), and forgets what the
   /// RGB-D cameras see to be gone. inputs.poses: anchored. is_anchored: the world is where the
@@ -42,51 +44,46 @@ class SceneMemory {
   const std::vector<std::shared_ptr<Keyframe>>& all();
 
   /// With the one that is pending.
-  std::size_t keyframes() const { return store_.size() + (pending_.steps > 0 ? 1 : 0); }
+  std::size_t keyframes() const { return store_.size() + (pending_ != nullptr ? 1 : 0); }
   std::size_t bytes() const {
-    return store_.bytes() + (pending_.steps > 0 ? pending_.keyframe->bytes() : 0);
+    return store_.bytes() + (pending_ != nullptr ? pending_->pending()->bytes() : 0);
   }
 
  private:
+  /// An RGB-D camera as the user's, and its keyframes.
+  struct Viewpoint {
+    RgbdViewpoint view;
+    KeyframeTaker taker;
+  };
   void begin_anew();
-  bool is_worth_a_keyframe(const RecallInputs& inputs) const;
   /// Whether an object is lost that was there a moment ago: it may be anywhere.
   bool has_just_lost(const std::vector<OccluderReport>& objects, double stamp_s);
-  /// Whether the camera cannot have come here since the last frame: it was moved between two
-  /// recordings, or a pose is wrong.
-  bool has_jumped(const RigidTransform& color_from_world, double elapsed_s) const;
   /// Whether the camera that is the world still stands where it stood.
   bool has_lost_its_world(const RecallInputs& inputs);
+  /// An RGB-D camera that leaves a place where it stood for a while may have seen things change
+  /// that its keyframe still shows: it is forgotten. The camera takes the next one two centimetres
+  /// on.
+  void leave_places(const RecallInputs& inputs);
+  /// Who is to take a keyframe of this frame: the user's camera first. Nobody: nullptr.
+  KeyframeTaker* find_due(const RecallInputs& inputs);
+  KeyframeView view_of(const KeyframeTaker& taker, const RecallInputs& inputs,
+                       const SceneSamples& samples);
   void look(const RecallInputs& inputs);
   /// The next one towards a keyframe, if one is pending.
   void take_step();
-  void leave_out_objects(Keyframe& keyframe);
 
   Rig rig_;
   KeyframeGrid grid_;
-  KeyframeDepth depth_;
-  Novelty novelty_;
+  KeyframeTaker users_;
+  std::vector<Viewpoint> viewpoints_;  ///< of each RGB-D camera
+  KeyframeTaker* pending_ = nullptr;   ///< whose keyframe is not ready yet
   KeyframeStore store_;
   std::vector<KeyframeStore::Choice> chosen_;
-  std::vector<TestimonyTaker> takers_;
+  std::vector<TestimonyTaker> testimony_takers_;
   std::vector<Testimony> testimonies_;
-  /// A keyframe that is not ready yet, of the frame that gave it.
-  struct Pending {
-    int steps = 0;  ///< that are left
-    std::shared_ptr<Keyframe> keyframe;
-    Mask objects;
-    bool is_uncertain = false;
-  };
-  Pending pending_;
-  std::vector<std::uint8_t> object_columns_;
-  bool has_looked_ = false;                        ///< in this frame
-  bool has_jumped_ = false;                        ///< since the last frame
-  std::optional<RigidTransform> last_from_world_;  ///< the colour camera's pose in the last frame
-  double last_stamp_s_ = 0;                        ///< of any frame
-  double last_keyframe_s_ = 0;
-  std::optional<RigidTransform> last_keyframe_from_world_;  ///< nothing: none was taken
-  Rect last_objects_;                                       ///< in the last keyframe
-  std::vector<double> found_s_;                             ///< when each object was last found
+  bool has_looked_ = false;      ///< in this frame
+  double last_stamp_s_ = 0;      ///< of any frame
+  std::vector<double> found_s_;  ///< when each object was last found
 };
 
 /// result: the poses with a world: if none is known, it is where the first RGB-D camera's depth

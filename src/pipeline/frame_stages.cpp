@@ -61,8 +61,7 @@ FrameStages::FrameStages(const Rig& rig_, const Scene& scene_)
       choice(rig),
       depth(rig),
       sampler(rig),
-      refinement(rig.color, PoseRefinement::usual_width, PoseRefinement::usual_last_step, false,
-                 PoseRefinement::usual_coarser),
+      refinement(rig.color, {.coarser = PoseRefinement::usual_coarser}),
       evidence(rig, scene),
       background(rig.color),
       contact_line(rig.color),
@@ -205,7 +204,7 @@ void FrameStages::process(const FrameSet& given, DiminishedFrame& result) {
   drawing.wants_reconstruction = wants_reconstruction;
   drawing.texture = texture.output();
   const auto draw = [&] { stage(Stage::drawing, [&] { backend.draw(drawing, result); }); };
-  // Not in the paper: what the colour camera saw earlier
+  // Not in the paper: what the cameras saw earlier
   const RecallInputs recalling{
       frame,  report.poses, masks,           objects,
       region, options,      report.in_doubt, estimation.own_planes(report.markers, report.poses)};

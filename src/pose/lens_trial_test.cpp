@@ -44,9 +44,7 @@ class LensTrialTest : public ::testing::Test {
     }
     SceneSamples samples;
     SceneSampler(rig).sample(frame.frame, measured, masks, samples);
-    PoseRefinement refinement(rig.color, PoseRefinement::usual_width,
-                              PoseRefinement::usual_last_step, false,
-                              PoseRefinement::usual_coarser);
+    PoseRefinement refinement(rig.color, {.coarser = PoseRefinement::usual_coarser});
     refinement.refine(frame.frame, masks.color, samples);
     return LensTrial(rig, scene).find(markers, measured, refinement);
   }

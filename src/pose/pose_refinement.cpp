@@ -17,10 +17,10 @@ constexpr float rotation_deviation = 0.5F * std::numbers::pi_v<float> / 180;
 constexpr float translation_deviation_m = 0.012F;
 constexpr float largest_deviations = 4;
 
-DirectAlignment::Twist deviations() {
+DirectAlignment::Twist deviations(float reach) {
   DirectAlignment::Twist all;
-  all.head<3>().setConstant(translation_deviation_m);
-  all.tail<3>().setConstant(rotation_deviation);
+  all.head<3>().setConstant(reach * translation_deviation_m);
+  all.tail<3>().setConstant(reach * rotation_deviation);
   return all;
 }
 
@@ -39,17 +39,19 @@ std::array<int, 1 + PoseRefinement::usual_coarser> PoseRefinement::usual_spacing
   return spacings;
 }
 
-PoseRefinement::PoseRefinement(const Intrinsics& color, int small_width, float last_step,
-                               bool extrapolates, int coarser)
-    : fine_(color, {shrinkage_of(color, small_width), most_points, last_step, extrapolates},
-            deviations()),
+PoseRefinement::PoseRefinement(const Intrinsics& color, const PoseRefinementSettings& settings)
+    : reach_(settings.reach),
+      fine_(color,
+            {shrinkage_of(color, settings.small_width), most_points, settings.last_step,
+             settings.extrapolates},
+            deviations(settings.reach)),
       projection_(Lens(color)) {
-  const int shrinkage = shrinkage_of(color, small_width);
-  for (; coarser > 0; --coarser) {
-    coarser_.emplace_back(
-        color,
-        DirectAlignment::Settings{shrinkage << coarser, most_points / 2, 5 * last_step, true},
-        deviations());
+  const int shrinkage = shrinkage_of(color, settings.small_width);
+  for (int coarser = settings.coarser; coarser > 0; --coarser) {
+    coarser_.emplace_back(color,
+                          DirectAlignment::Settings{shrinkage << coarser, most_points / 2,
+                                                    5 * settings.last_step, true},
+                          deviations(settings.reach));
   }
 }
 
@@ -74,8 +76,8 @@ std::optional<RigidTransform> PoseRefinement::refine(const FrameSet& frame, cons
   estimate_ = estimate;
   costs_ = {measured.cost, estimate.cost};
   if (!(estimate.cost < measured.cost) ||
-      estimate.twist.head<3>().norm() > largest_deviations * translation_deviation_m ||
-      estimate.twist.tail<3>().norm() > largest_deviations * rotation_deviation) {
+      estimate.twist.head<3>().norm() > reach_ * largest_deviations * translation_deviation_m ||
+      estimate.twist.tail<3>().norm() > reach_ * largest_deviations * rotation_deviation) {
     return std::nullopt;
   }
   return estimate.correction;

@@ -14,6 +14,16 @@
 
 namespace diminish {
 
+struct PoseRefinementSettings {
+  /// About what the picture is shrunk to, to blur what is misplaced by a few pixels into one
+  /// another.
+  int small_width = 320;
+  float last_step = 1e-4F;    ///< smaller ones end the iteration, in metres and radians
+  bool extrapolates = false;  ///< gets there in fewer steps, by going further than each says
+  int coarser = 0;            ///< pictures, each half as wide as the next, that are aligned before
+  float reach = 1;            ///< how many times as far off as a marker's the pose may be
+};
+
 /// Corrects the colour camera's pose by what it and the RGB-D cameras see in this frame: one
 /// nearly frontal marker leaves half a degree open, which moves the background by many pixels.
 ///
@@ -23,19 +33,13 @@ namespace diminish {
 /// smallest first. The pose that was measured is held to within its uncertainty.
 class PoseRefinement {
  public:
-  static constexpr int usual_width = 320;
+  static constexpr int usual_width = PoseRefinementSettings{}.small_width;
   /// Smaller steps move no pixel by a tenth.
-  static constexpr float usual_last_step = 1e-4F;
+  static constexpr float usual_last_step = PoseRefinementSettings{}.last_step;
   /// From 80 pixels' width on, an error of 16 pixels in 1280 is one of a pixel.
   static constexpr int usual_coarser = 2;
 
-  /// small_width: about what the picture is shrunk to, to blur what is misplaced by a few pixels
-  /// into one another. last_step: smaller ones end the iteration, in metres and radians.
-  /// extrapolates: gets there in fewer steps, by going further than each says. coarser: how many
-  /// pictures, each half as wide as the next, are aligned before.
-  explicit PoseRefinement(const Intrinsics& color, int small_width = usual_width,
-                          float last_step = usual_last_step, bool extrapolates = false,
-                          int coarser = 0);
+  explicit PoseRefinement(const Intrinsics& color, const PoseRefinementSettings& settings = {});
 
   /// The spacings of neighbourhood_brightness that the usual refinement looks at.
   static std::array<int, 1 + usual_coarser> usual_spacings_px(const Intrinsics& color);
@@ -63,6 +67,7 @@ class PoseRefinement {
   void apply(const RigidTransform& correction, Poses& poses, SceneSamples& samples) const;
 
  private:
+  float reach_;
   DirectAlignment fine_;
   DirectAlignment::Estimate estimate_;  ///< of the last `refine`
   std::optional<Costs> costs_;

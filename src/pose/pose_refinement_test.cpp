@@ -78,8 +78,7 @@ TEST_F(PoseRefinementTest, FindsBackByFurtherSteps) {
   const double before = error_px(poses);
   SceneSamples samples;
   SceneSampler(frame.rig).sample(frame.frame, poses, masks, samples);
-  PoseRefinement refinement(frame.rig.color, PoseRefinement::usual_width,
-                            PoseRefinement::usual_last_step, true);
+  PoseRefinement refinement(frame.rig.color, {.extrapolates = true});
   const auto correction = refinement.refine(frame.frame, masks.color, samples);
   ASSERT_TRUE(correction);
   refinement.apply(*correction, poses, samples);
@@ -97,8 +96,7 @@ TEST_F(PoseRefinementTest, FindsBackFromFarByTheSmallestPictureFirst) {
   SceneSamples samples;
   SceneSampler(frame.rig).sample(frame.frame, poses, masks, samples);
   const auto left_px = [&](int coarser) {
-    PoseRefinement refinement(frame.rig.color, PoseRefinement::usual_width,
-                              PoseRefinement::usual_last_step, false, coarser);
+    PoseRefinement refinement(frame.rig.color, {.coarser = coarser});
     const auto correction = refinement.refine(frame.frame, masks.color, samples);
     Poses refined = poses;
     SceneSamples moved = samples;

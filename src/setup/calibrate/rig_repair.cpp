@@ -192,8 +192,7 @@ RigidTransform polish(const Rig& rig, const std::vector<Kept>& frames, std::uint
                       const RigidTransform& before, RigidTransform pose) {
   constexpr int rounds = 3;
   const Lens lens(rig.color);
-  PoseRefinement refinement(rig.color, PoseRefinement::usual_width, PoseRefinement::usual_last_step,
-                            false, PoseRefinement::usual_coarser);
+  PoseRefinement refinement(rig.color, {.coarser = PoseRefinement::usual_coarser});
   SceneSamples samples;
   for (int round = 0; round < rounds; ++round) {
     Vector6 sum = Vector6::Zero();
