@@ -67,14 +67,11 @@ class MemoryTest : public ::testing::Test {
     RigidTransform error;
     error.rotation = Eigen::AngleAxisd(moment.turn, Eigen::Vector3d::UnitZ()).toRotationMatrix();
     now.poses.color_from_world = error * *now.poses.color_from_world;
-    if (now.poses.depth_from_world[0]) {
+    if (moment.rgbd_turn != 0) {
       error.rotation =
           Eigen::AngleAxisd(moment.rgbd_turn, Eigen::Vector3d::UnitY()).toRotationMatrix();
       now.poses.depth_from_world[0] = error * *now.poses.depth_from_world[0];
-      if (moment.rgbd_turn != 0) {
-        now.poses.color_from_world =
-            *now.poses.color_from_depth[0] * *now.poses.depth_from_world[0];
-      }
+      now.poses.color_from_world = *now.poses.color_from_depth[0] * *now.poses.depth_from_world[0];
     }
     if (!moment.has_world || !moment.has_pose) {
       now.poses.color_from_world.reset();

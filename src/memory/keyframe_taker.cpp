@@ -6,13 +6,23 @@
 
 namespace diminish {
 
+namespace {
+
+/// Whether a camera has moved by more than a distance or an angle.
+bool has_moved_by(double moved_m, double turned_deg, const RigidTransform& before_from_world,
+                  const RigidTransform& now_from_world) {
+  const RigidTransform motion = now_from_world * before_from_world.inverse();
+  return motion.translation.norm() > moved_m ||
+         rotation_difference_deg(motion.rotation, Eigen::Matrix3d::Identity()) > turned_deg;
+}
+
+}  // namespace
+
 bool has_moved(const RigidTransform& before_from_world, const RigidTransform& now_from_world,
                double reach) {
   constexpr double moved_m = 0.02;
   constexpr double turned_deg = 1;
-  const RigidTransform motion = now_from_world * before_from_world.inverse();
-  return motion.translation.norm() > reach * moved_m ||
-         rotation_difference_deg(motion.rotation, Eigen::Matrix3d::Identity()) > reach * turned_deg;
+  return has_moved_by(reach * moved_m, reach * turned_deg, before_from_world, now_from_world);
 }
 
 KeyframeTaker::KeyframeTaker(const Rig& rig, const KeyframeGrid& grid,
@@ -34,13 +44,9 @@ void KeyframeTaker::follow(const RigidTransform& color_from_world, double stamp_
   constexpr double reach_deg = 5;
   constexpr double fastest_deg_per_s = 300;
   const double elapsed_s = stamp_s - last_stamp_s_;
-  has_jumped_ = false;
-  if (last_from_world_) {
-    const RigidTransform motion = color_from_world * last_from_world_->inverse();
-    has_jumped_ = motion.translation.norm() > reach_m + fastest_m_per_s * elapsed_s ||
-                  rotation_difference_deg(motion.rotation, Eigen::Matrix3d::Identity()) >
-                      reach_deg + fastest_deg_per_s * elapsed_s;
-  }
+  has_jumped_ = last_from_world_ && has_moved_by(reach_m + fastest_m_per_s * elapsed_s,
+                                                 reach_deg + fastest_deg_per_s * elapsed_s,
+                                                 *last_from_world_, color_from_world);
   last_stamp_s_ = stamp_s;
   last_from_world_ = color_from_world;
   if (!first_from_world_) first_from_world_ = color_from_world;

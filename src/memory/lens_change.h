@@ -7,8 +7,8 @@
 
 namespace diminish {
 
-/// What a camera would show through another camera's lens, from the same place. Cost: 10 ns a
-/// pixel, and 7 bytes of memory.
+/// What a camera would show through another camera's lens, from the same place. Cost: 3 ns a
+/// pixel, and 6 bytes of memory.
 class LensChange {
  public:
   LensChange(const Intrinsics& from, const Intrinsics& to);

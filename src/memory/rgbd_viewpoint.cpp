@@ -18,14 +18,7 @@ bool RgbdViewpoint::go(const RecallInputs& inputs) {
       !inputs.poses.color_from_depth[index_]) {
     return false;
   }
-  poses_.depth_from_world = inputs.poses.depth_from_world;
   poses_.color_from_world = camera_.color_from_depth * *depth_from_world;
-  poses_.color_from_depth = inputs.poses.color_from_depth;
-  const RigidTransform here_from_user =
-      *poses_.color_from_world * inputs.poses.color_from_world->inverse();
-  for (auto& pose : poses_.color_from_depth) {
-    if (pose) pose = here_from_user * *pose;
-  }
   return true;
 }
 
@@ -33,11 +26,17 @@ KeyframeView RgbdViewpoint::look(const RecallInputs& inputs, const SceneSamples&
   if (!change_) change_.emplace(camera_.color, users_);
   change_->show(inputs.frame.rgbd[index_].color, picture_);
   change_->hide(inputs.masks.rgbd_color[index_], objects_);
-  const FloatTransform here_from_user(*poses_.color_from_world *
-                                      inputs.poses.color_from_world->inverse());
+  const RigidTransform here_from_user =
+      *poses_.color_from_world * inputs.poses.color_from_world->inverse();
+  poses_.depth_from_world = inputs.poses.depth_from_world;
+  poses_.color_from_depth = inputs.poses.color_from_depth;
+  for (auto& pose : poses_.color_from_depth) {
+    if (pose) pose = here_from_user * *pose;
+  }
+  const FloatTransform to_here(here_from_user);
   samples_.surfaces.clear();
   for (SceneSample sample : samples.surfaces) {
-    sample.point_m = transform(here_from_user, sample.point_m);
+    sample.point_m = transform(to_here, sample.point_m);
     const auto pixel = project(lens_, sample.point_m);
     if (!pixel || !box_.contains(pixel->x, pixel->y)) continue;
     sample.pixel = {static_cast<float>(pixel->x), static_cast<float>(pixel->y)};

@@ -134,7 +134,7 @@ bool SceneMemory::has_just_lost(const std::vector<OccluderReport>& objects, doub
 KeyframeTaker* SceneMemory::find_due(const RecallInputs& inputs) {
   KeyframeTaker* due = users_.is_due(inputs.objects) ? &users_ : nullptr;
   for (auto& [view, taker] : viewpoints_) {
-    if (!view.go(inputs)) continue;
+    if (!view.color_from_world()) continue;
     taker.follow(*view.color_from_world(), inputs.frame.stamp_s);
     if (due == nullptr && !taker.has_jumped() && taker.is_due(inputs.objects)) due = &taker;
   }
