@@ -11,6 +11,7 @@ inline Options gpu_options() {
   options.inpaint = "surfaces";
   options.complete_sides = false;
   options.draw_bars = false;
+  options.close_gaps = false;
   options.refine_shadows = false;
   return options;
 }

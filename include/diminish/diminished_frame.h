@@ -24,8 +24,9 @@ inline constexpr std::uint8_t first_rgbd = 1;
 inline constexpr std::uint8_t witnessed = 200;
 /// Seen by the colour camera earlier. No camera looks there now.
 inline constexpr std::uint8_t remembered = 201;
-/// Part of a bar that depth sensors do not see, such as a steel pipe. An RGB-D camera's picture
-/// shows that it is there; the colours are the colour camera's, from where the bar leaves the mask.
+/// Seen by an RGB-D camera's colour sensor, but not by its depth sensor: where it is was estimated.
+/// Part of a bar, such as a steel pipe, whose colours are the colour camera's, from where the bar
+/// leaves the mask (Options::draw_bars); or a gap between measured depths (Options::close_gaps).
 inline constexpr std::uint8_t estimated = 202;
 inline constexpr std::uint8_t inpainted = 254;
 inline constexpr std::uint8_t unknown = 255;  ///< part of the object, with nothing to show there

@@ -25,6 +25,7 @@ struct Options {
   bool snap_edges = true;
   bool smooth_colors = true;
   bool complete_sides = true;
+  bool close_gaps = true;
   bool draw_bars = true;
   bool lift_shadows = true;
   bool refine_shadows = true;
@@ -122,6 +123,10 @@ void for_each_option(AnyOptions& options, Visit&& visit) {
       OptionInfo{"complete_sides", "",
                  "Complete the sides, seen by no RGB-D camera, of what stands on a table or floor"},
       options.complete_sides);
+  visit(OptionInfo{"close_gaps", "",
+                   "Show what an RGB-D camera sees without depth (black, shiny), where the colour "
+                   "camera's picture beside the objects confirms it"},
+        options.close_gaps);
   visit(OptionInfo{"draw_bars", "",
                    "Draw steel pipes and other bars that depth sensors do not see, where an RGB-D "
                    "camera's picture shows them"},

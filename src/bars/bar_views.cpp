@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/bilinear.h"
+#include "core/channels.h"
 #include "core/shrunk_picture.h"
 
 namespace diminish {
@@ -63,20 +64,40 @@ void BarViews::look_at(const PointRow& points, Places& places) const {
   }
 }
 
-std::optional<float> BarViews::level(std::size_t k, const Eigen::Vector3f& point_m) const {
-  const Camera& camera = cameras_[k];
+std::optional<Eigen::Vector2f> BarViews::in_picture(const Camera& camera,
+                                                    const Eigen::Vector3f& point_m) {
   if (camera.depth.empty()) return std::nullopt;
-  const auto at = project_exactly(camera.color_lens, transform(camera.color_from_user, point_m));
+  auto at = project_exactly(camera.color_lens, transform(camera.color_from_user, point_m));
   const Rect inner = grow(camera.color.bounds(), -1);
   if (!at || !inner.contains(nearest_pixel(*at).x, nearest_pixel(*at).y)) return std::nullopt;
   const auto [x, y] = nearest_pixel(*at);
   if (camera.color_objects.bounds().contains(x, y) && camera.color_objects(x, y) != 0) {
     return std::nullopt;
   }
+  return at;
+}
+
+std::optional<float> BarViews::level(std::size_t k, const Eigen::Vector3f& point_m) const {
+  const auto at = in_picture(cameras_[k], point_m);
+  if (!at) return std::nullopt;
   return bilinear(at->x(), at->y(), [&](int column, int row) {
-    const Bgr& color = camera.color(column, row);
+    const Bgr& color = cameras_[k].color(column, row);
     return brightness(color.b, color.g, color.r);
   });
+}
+
+std::optional<Eigen::Array3f> BarViews::color(std::size_t k, const Eigen::Vector3f& point_m) const {
+  const auto at = in_picture(cameras_[k], point_m);
+  if (!at) return std::nullopt;
+  return bilinear(at->x(), at->y(), [&](int column, int row) -> Eigen::Array3f {
+    return to_channels(cameras_[k].color(column, row));
+  });
+}
+
+bool BarViews::is_in_gap(std::size_t k, const Eigen::Vector3f& point_m) const {
+  constexpr float tolerance = 0.03F;
+  constexpr float tolerance_m = 0.02F;
+  return cameras_[k].depth.is_in_gap(point_m, tolerance, tolerance_m);
 }
 
 std::optional<Eigen::Vector3f> BarViews::centre(std::size_t k) const {

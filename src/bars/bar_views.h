@@ -18,7 +18,8 @@
 
 namespace diminish {
 
-/// What the cameras say of places where a bar may be. Points are in the colour camera's frame.
+/// What the cameras say of places where a bar may be, or another surface without depth. Points are
+/// in the colour camera's frame.
 class BarViews {
  public:
   explicit BarViews(const Rig& rig);
@@ -40,6 +41,11 @@ class BarViews {
   std::size_t size() const { return cameras_.size(); }
   /// The grey level in camera k's picture, 0 to 255; nothing outside it or on an object.
   std::optional<float> level(std::size_t k, const Eigen::Vector3f& point_m) const;
+  /// Whether camera k has no depth there, but nearer and further ones around the gap (within the
+  /// errors of a pose), or the same.
+  bool is_in_gap(std::size_t k, const Eigen::Vector3f& point_m) const;
+  /// The colour in camera k's picture; nothing outside it or on an object.
+  std::optional<Eigen::Array3f> color(std::size_t k, const Eigen::Vector3f& point_m) const;
   /// Where camera k is; nothing if it has no pose or no image.
   std::optional<Eigen::Vector3f> centre(std::size_t k) const;
 
@@ -64,6 +70,10 @@ class BarViews {
     FloatTransform color_from_user{RigidTransform{}};
     Eigen::Vector3f centre = Eigen::Vector3f::Zero();
   };
+  /// Where a point is in the camera's picture, with neighbours on all sides; nothing outside it or
+  /// on an object.
+  static std::optional<Eigen::Vector2f> in_picture(const Camera& camera,
+                                                   const Eigen::Vector3f& point_m);
   /// What is said of a place, when one more camera has been asked.
   static Place add(Place so_far, const DepthView::Depth& depth);
 

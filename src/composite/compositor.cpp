@@ -12,11 +12,11 @@ namespace {
 
 /// Pixels.
 struct Counts {
-  std::size_t mask = 0, missing = 0, witnessed = 0, remembered = 0;
+  std::size_t mask = 0, missing = 0, witnessed = 0, remembered = 0, estimated = 0;
 
   friend Counts operator+(const Counts& a, const Counts& b) {
     return {a.mask + b.mask, a.missing + b.missing, a.witnessed + b.witnessed,
-            a.remembered + b.remembered};
+            a.remembered + b.remembered, a.estimated + b.estimated};
   }
 };
 
@@ -61,13 +61,15 @@ void Compositor::sort(const Inputs& inputs, DiminishedFrame& result) {
     };
     return Counts{count_nonzero(occlusion, sorted), count(provenance::inpainted),
                   remembers ? count(provenance::witnessed) : 0,
-                  remembers ? count(provenance::remembered) : 0};
+                  remembers ? count(provenance::remembered) : 0,
+                  inputs.options.close_gaps ? count(provenance::estimated) : 0};
   });
   FrameReport& report = result.report;
   report.mask_pixels = counts.mask;
   report.missing_pixels = counts.missing;
   report.witnessed_pixels = counts.witnessed;
   report.remembered_pixels = counts.remembered;
+  report.estimated_pixels = counts.estimated;
   report.valid_pixels = report.mask_pixels - report.missing_pixels;
 }
 
@@ -75,6 +77,7 @@ void Compositor::hide_behind_sides(const Inputs& inputs, DiminishedFrame& result
   if (result.surfaces.standing_depth_m.empty()) return;
   const Rect part = intersect(inputs.objects, result.surfaces.region);
   std::size_t hidden = 0;
+  std::size_t estimated = 0;
   for (int y = part.y; y < part.bottom(); ++y) {
     const std::uint8_t* const label = result.surfaces.label.row(y);
     std::uint8_t* const origin = result.provenance.row(y);
@@ -82,11 +85,14 @@ void Compositor::hide_behind_sides(const Inputs& inputs, DiminishedFrame& result
       hidden += static_cast<std::size_t>(last - first) -
                 static_cast<std::size_t>(
                     std::count(origin + first, origin + last, provenance::inpainted));
+      estimated += static_cast<std::size_t>(
+          std::count(origin + first, origin + last, provenance::estimated));
       std::fill(origin + first, origin + last, provenance::inpainted);
     });
   }
   result.report.missing_pixels += hidden;
   result.report.valid_pixels -= hidden;
+  result.report.estimated_pixels -= estimated;
 }
 
 void Compositor::correct_colors(const Inputs& inputs, ColorMapsBySource maps,

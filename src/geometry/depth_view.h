@@ -43,6 +43,11 @@ class DepthView {
     if (!pixel || !depth_.bounds().contains(pixel->x, pixel->y)) return std::nullopt;
     return at(pixel->x, pixel->y, point.z());
   }
+  /// Whether no depth was measured there, and the point lies between depths that were, up to
+  /// `gap_reach` pixels away in the pixel's row and column; or up to `tolerance` beyond, which is
+  /// relative, and then `tolerance_m`.
+  bool is_in_gap(const Eigen::Vector3f& point_m, float tolerance, float tolerance_m) const;
+  static constexpr int gap_reach = 60;
   static constexpr int few = 16;
   /// The same of up to `few` points, on vector instructions: calls visit(i, depth) for those of
   /// which there is something to tell.

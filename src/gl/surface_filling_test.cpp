@@ -277,6 +277,7 @@ TEST_P(GlSurfaceFillingOnRecordings, FillsAsTheCpuDoes) {
   Options options;
   options.complete_sides = false;  // not on the GPU
   options.draw_bars = false;       // likewise
+  options.close_gaps = false;      // likewise
   Pipeline pipeline(recording.rig, recording.scene, options);
   Gpu gpu;
   FrameSet frame;

@@ -49,6 +49,7 @@ constexpr std::array<Step, QualityLadder::last_level> steps = {{
        o.inpaint = simpler<Inpainter>(o.inpaint);
        o.complete_sides = false;
        o.draw_bars = false;
+       o.close_gaps = false;
        o.smooth_colors = false;
        o.merge_cameras = "choose";
      }},

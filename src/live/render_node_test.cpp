@@ -40,6 +40,7 @@ class RenderNodeTest : public ::testing::Test {
     options_.memory = "off";
     options_.complete_sides = false;
     options_.draw_bars = false;
+    options_.close_gaps = false;
     options_.smooth_colors = false;
   }
 

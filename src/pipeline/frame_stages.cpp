@@ -67,6 +67,7 @@ FrameStages::FrameStages(const Rig& rig_, const Scene& scene_)
       contact_line(rig.color),
       backend(rig),
       memory(rig),
+      gaps(rig),
       inventions(rig) {}
 
 void FrameStages::set_options(const Options& wanted) {
@@ -286,6 +287,9 @@ void FrameStages::process(const FrameSet& given, DiminishedFrame& result) {
   const Compositor::Inputs inputs{frame.color, masks.color, objects,
                                   options,     smoothing,   inventions.lines()};
   stage(Stage::compositing, [&] {
+    if (options.close_gaps && !objects.empty()) {
+      gaps.draw({frame, report.poses, masks, color_maps.by_source()}, result.reconstruction);
+    }
     background.label(result.reconstruction, result.surfaces);
     Compositor::sort(inputs, result);
   });

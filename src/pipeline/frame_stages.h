@@ -3,6 +3,7 @@
 #include <atomic>
 #include <tuple>
 
+#include "bars/depth_gaps.h"
 #include "composite/compositor.h"
 #include "depth/camera_choice.h"
 #include "depth/depth_stage.h"
@@ -81,6 +82,7 @@ struct FrameStages {
   Backend backend;
   MemoryStage memory;
   Compositor compositor;
+  DepthGaps gaps;
   Inventions inventions;
   Doubt doubt;
   FrameTexture texture;

@@ -86,6 +86,7 @@ Options comparable() {
   options.memory = "off";
   options.complete_sides = false;
   options.draw_bars = false;
+  options.close_gaps = false;
   options.smooth_colors = false;
   return options;
 }
@@ -107,6 +108,7 @@ TEST_F(RemoteImagesTest, GiveThePictureOfLocalOnesBitForBit) {
 Options without_bars() {
   Options options;
   options.draw_bars = false;
+  options.close_gaps = false;
   return options;
 }
 

@@ -1,0 +1,227 @@
+#include "bars/depth_gaps.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core/channels.h"
+#include "diminish/diminished_frame.h"
+
+namespace diminish {
+namespace {
+
+/// Nodes across the picture: enough to tell what is where.
+constexpr int most_node_columns = 320;
+/// Nodes: what is further away says nothing.
+constexpr int gap_rim_reach = 32;
+/// A surface is at most this share nearer or further away than what is around it.
+constexpr float range_slack = 0.03F;
+constexpr int tried_depths = 6;
+/// Of these, an RGB-D camera must look at.
+constexpr int fewest_looks = 2;
+/// Levels: colours that are alike.
+constexpr float same_color = 25;
+/// Nodes around the objects that must confirm a group, and how well half of them must, in levels.
+constexpr std::size_t fewest_witnesses = 5;
+constexpr float confirmed_error = 15;
+
+constexpr float not_looked_at = -1;
+
+}  // namespace
+
+DepthGaps::DepthGaps(const Rig& rig)
+    : views_(rig), step_((rig.color.width + most_node_columns - 1) / most_node_columns) {}
+
+void DepthGaps::find_known(const Reconstruction& reconstruction) {
+  const int columns = (part_.width + step_ - 1) / step_;
+  const int rows = (part_.height + step_ - 1) / step_;
+  known_.resize(columns, rows);
+  above_.resize(columns, rows);
+  below_.resize(columns, rows);
+  nodes_.resize(columns, rows);
+  const auto next_to = [&](int x, int y, const End& end) -> End {
+    if (known_(x, y) > 0) return {known_(x, y), 1};
+    return end.away == 0 || end.away >= gap_rim_reach ? End{0, 0}
+                                                      : End{end.inverse_m, end.away + 1};
+  };
+  for (int y = 0; y < rows; ++y) {
+    for (int x = 0; x < columns; ++x) {
+      const int px = column(x);
+      const int py = row(y);
+      if (!reconstruction.region.keeps(px, py)) {
+        known_(x, y) = not_looked_at;
+      } else {
+        known_(x, y) = reconstruction.source(px, py) != 0 ? 1 / reconstruction.depth_m(px, py) : 0;
+      }
+      above_(x, y) = y == 0 ? End{0, 0} : next_to(x, y - 1, above_(x, y - 1));
+    }
+  }
+  for (int y = rows - 1; y >= 0; --y) {
+    for (int x = 0; x < columns; ++x) {
+      below_(x, y) = y == rows - 1 ? End{0, 0} : next_to(x, y + 1, below_(x, y + 1));
+    }
+  }
+}
+
+/// Guesses along the row or column whose ends are more alike.
+DepthGaps::Range DepthGaps::range_of(const End& left, const End& right, const End& above,
+                                     const End& below) {
+  Range range{std::numeric_limits<float>::max(), 0, 0};
+  float least_difference = std::numeric_limits<float>::max();
+  for (const auto& [a, b] : {std::pair(left, right), std::pair(above, below)}) {
+    for (const End& end : {a, b}) {
+      if (end.away == 0) continue;
+      range.low = std::min(range.low, end.inverse_m);
+      range.high = std::max(range.high, end.inverse_m);
+    }
+    const float difference = std::abs(a.inverse_m - b.inverse_m);
+    if (a.away == 0 || b.away == 0 || difference >= least_difference) continue;
+    least_difference = difference;
+    const auto to_a = static_cast<float>(a.away);
+    const auto to_b = static_cast<float>(b.away);
+    range.guess = (a.inverse_m * to_b + b.inverse_m * to_a) / (to_a + to_b);
+  }
+  range.low *= 1 - range_slack;
+  range.high *= 1 + range_slack;
+  return range;
+}
+
+DepthGaps::Node DepthGaps::look(const Input& input, int x, int y, const Range& range) const {
+  const Eigen::Vector3f ray = views_.ray(column(x), row(y));
+  const auto px = static_cast<float>(column(x));
+  const auto py = static_cast<float>(row(y));
+  Eigen::Array3f low = Eigen::Array3f::Constant(std::numeric_limits<float>::max());
+  Eigen::Array3f high = -low;
+  Node node;
+  float nearest = std::numeric_limits<float>::max();
+  int looks = 0;
+  for (int i = 0; i < tried_depths; ++i) {
+    const float share = static_cast<float>(i) / (tried_depths - 1);
+    const float inverse_m = range.low + share * (range.high - range.low);
+    const Eigen::Vector3f point_m = ray / inverse_m;
+    for (std::size_t k = 0; k < views_.size(); ++k) {
+      if (!views_.is_in_gap(k, point_m)) continue;
+      const auto color = views_.color(k, point_m);
+      if (!color) continue;
+      const Eigen::Array3f mapped = input.color_maps[k + 1](*color, px, py);
+      low = low.min(mapped);
+      high = high.max(mapped);
+      if ((high - low).maxCoeff() > same_color) return {};
+      ++looks;
+      const float away = std::abs(inverse_m - range.guess);
+      if (away >= nearest) continue;
+      nearest = away;
+      node = {mapped, inverse_m, k};
+    }
+  }
+  return looks < fewest_looks ? Node{} : node;
+}
+
+void DepthGaps::look_along_row(const Input& input, int y, std::vector<End>& rights) {
+  const float* const known = known_.row(y);
+  Node* const nodes = nodes_.row(y);
+  const int columns = known_.width();
+  // From the right end on: for each node what is to its right.
+  rights.resize(static_cast<std::size_t>(columns));
+  End end{0, 0};
+  const auto step_on = [&](int x) {
+    if (known[x] > 0) {
+      end = {known[x], 1};
+    } else if (end.away != 0) {
+      end = end.away >= gap_rim_reach ? End{0, 0} : End{end.inverse_m, end.away + 1};
+    }
+  };
+  for (int x = columns - 1; x >= 0; --x) {
+    rights[static_cast<std::size_t>(x)] = end;
+    step_on(x);
+  }
+  end = {0, 0};
+  for (int x = 0; x < columns; ++x) {
+    nodes[x].inverse_m = 0;
+    if (known[x] == 0) {
+      const Range range =
+          range_of(end, rights[static_cast<std::size_t>(x)], above_(x, y), below_(x, y));
+      if (range.guess > 0) nodes[x] = look(input, x, y, range);
+    }
+    step_on(x);
+  }
+}
+
+void DepthGaps::confirm(const Input& input) {
+  found_.resize(nodes_.width(), nodes_.height());
+  for (int y = 0; y < nodes_.height(); ++y) {
+    for (int x = 0; x < nodes_.width(); ++x) {
+      std::uint8_t any = 0;
+      for (int row = std::max(0, y - 1); row <= std::min(y + 1, nodes_.height() - 1); ++row) {
+        for (int at = std::max(0, x - 1); at <= std::min(x + 1, nodes_.width() - 1); ++at) {
+          if (nodes_(at, row).inverse_m > 0) any = 255;
+        }
+      }
+      found_(x, y) = any;
+    }
+  }
+  regions_.find(found_, Pixels::set, Connectivity::eight);
+  for (const ConnectedRegions::Region& region : regions_.regions()) {
+    errors_.clear();
+    const auto for_each_node = [&](const auto& visit) {
+      regions_.for_each_run(region, [&](const ConnectedRegions::Run& run) {
+        for (int x = run.first; x < run.last; ++x) {
+          if (nodes_(x, run.y).inverse_m > 0) visit(x, run.y);
+        }
+      });
+    };
+    for_each_node([&](int x, int y) {
+      if (input.masks.color(column(x), row(y)) != 0) return;
+      const Eigen::Array3f seen = to_channels(input.frame.color(column(x), row(y)));
+      errors_.push_back((nodes_(x, y).color - seen).abs().maxCoeff());
+    });
+    if (errors_.size() >= fewest_witnesses) {
+      const auto middle = errors_.begin() + static_cast<std::ptrdiff_t>(errors_.size() / 2);
+      std::nth_element(errors_.begin(), middle, errors_.end());
+      if (*middle <= confirmed_error) continue;
+    }
+    for_each_node([&](int x, int y) { nodes_(x, y).inverse_m = 0; });
+  }
+}
+
+void DepthGaps::draw_node(const Input& input, const Node& node, const Rect& pixels,
+                          Reconstruction& reconstruction) const {
+  for (int y = pixels.y; y < pixels.bottom(); ++y) {
+    for (int x = pixels.x; x < pixels.right(); ++x) {
+      if (input.masks.color(x, y) == 0 || !reconstruction.region.keeps(x, y) ||
+          reconstruction.source(x, y) != 0) {
+        continue;
+      }
+      const auto color = views_.color(node.camera, views_.ray(x, y) / node.inverse_m);
+      if (!color) continue;
+      const Bgr mapped = to_color(
+          input.color_maps[node.camera + 1](*color, static_cast<float>(x), static_cast<float>(y)));
+      reconstruction.color(x, y) = {mapped.b, mapped.g, mapped.r, 255};
+      reconstruction.depth_m(x, y) = 1 / node.inverse_m;
+      reconstruction.source(x, y) = provenance::estimated;
+    }
+  }
+}
+
+void DepthGaps::draw(const Input& input, Reconstruction& reconstruction) {
+  part_ = intersect(reconstruction.region, reconstruction.source.bounds());
+  if (part_.empty()) return;
+  views_.begin(input.frame, input.poses, input.masks);
+  find_known(reconstruction);
+  for_rows(known_.height(), [&](Rows rows) {
+    for (int y = rows.first; y < rows.last; ++y) look_along_row(input, y, rights_[rows.band]);
+  });
+  confirm(input);
+  for_rows(nodes_.height(), [&](Rows rows) {
+    for (int y = rows.first; y < rows.last; ++y) {
+      for (int x = 0; x < nodes_.width(); ++x) {
+        if (!(nodes_(x, y).inverse_m > 0)) continue;
+        draw_node(input, nodes_(x, y), intersect({column(x), row(y), step_, step_}, part_),
+                  reconstruction);
+      }
+    }
+  });
+}
+
+}  // namespace diminish

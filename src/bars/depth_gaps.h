@@ -1,0 +1,87 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "bars/bar_views.h"
+#include "core/connected_regions.h"
+#include "core/rows.h"
+#include "diminish/frame_set.h"
+#include "diminish/reconstruction.h"
+#include "scene/color_map.h"
+
+namespace diminish {
+
+/// Draws what an RGB-D camera sees where it measures no depth (black or shiny surfaces, the shadows
+/// of its own projector), if the user's picture confirms it.
+///
+/// 1. A pixel that nothing is known of is as far away as what is around it in its row or column, or
+///    anywhere between. At each such distance an RGB-D camera must have no depth there, between
+///    depths that were measured around the gap, to take part.
+/// 2. The camera's colours at all these distances must be alike: wherever the surface is, it has
+///    this colour.
+/// 3. The same is done for pixels around the objects, of which the user's camera shows the truth. A
+///    connected group of pixels is drawn if it reaches there and matches.
+///
+/// So a steel pipe, which mirrors something else for the user or is elsewhere than the wall behind
+/// it, is not drawn here (see BarSearch).
+class DepthGaps {
+ public:
+  explicit DepthGaps(const Rig& rig);
+
+  struct Input {
+    const FrameSet& frame;
+    const Poses& poses;
+    const OcclusionMasks& masks;
+    ColorMapsBySource color_maps;  ///< of the RGB-D cameras
+  };
+  /// Changes pixels of the mask without a source: provenance::estimated, in the user's colours.
+  /// Deterministic. Cost: 0.4 us for each pixel without a source at 640 columns;
+  /// more columns cost about the same.
+  void draw(const Input& input, Reconstruction& reconstruction);
+
+ private:
+  /// Something known in a node's row or column.
+  struct End {
+    float inverse_m;
+    int away;  ///< nodes; 0: there is none
+  };
+  /// What is found of a node.
+  struct Node {
+    Eigen::Array3f color;
+    float inverse_m = 0;  ///< 0: nothing
+    std::size_t camera = 0;
+  };
+  /// A range of inverse depths.
+  struct Range {
+    float low, high, guess;
+  };
+
+  int column(int x) const { return part_.x + x * step_; }
+  int row(int y) const { return part_.y + y * step_; }
+  void find_known(const Reconstruction& reconstruction);
+  static Range range_of(const End& left, const End& right, const End& above, const End& below);
+  /// rights: scratch.
+  void look_along_row(const Input& input, int y, std::vector<End>& rights);
+  Node look(const Input& input, int x, int y, const Range& range) const;
+  /// Keeps what is confirmed.
+  void confirm(const Input& input);
+  /// pixels: those that the node stands for.
+  void draw_node(const Input& input, const Node& node, const Rect& pixels,
+                 Reconstruction& reconstruction) const;
+
+  BarViews views_;
+  int step_;   ///< pixels from one node to the next
+  Rect part_;  ///< of the picture
+  // By node.
+  Image<float> known_;  ///< inverse depth; 0: unknown; less: not looked at
+  Image<End> above_, below_;
+  Image<Node> nodes_;
+  Mask found_;  ///< and their neighbours
+  ConnectedRegions regions_;
+  std::vector<float> errors_;
+  std::vector<End> rights_[most_bands];
+};
+
+}  // namespace diminish
