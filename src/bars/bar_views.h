@@ -41,6 +41,13 @@ class BarViews {
   std::size_t size() const { return cameras_.size(); }
   /// The grey level in camera k's picture, 0 to 255; nothing outside it or on an object.
   std::optional<float> level(std::size_t k, const Eigen::Vector3f& point_m) const;
+  /// Calls visit(i) for those of a few points at which camera k has no depth.
+  template <class Visit>
+  void for_each_bare(std::size_t k, const PointRow& points, const Visit& visit) const {
+    cameras_[k].depth.for_each(points, [&](std::size_t i, const DepthView::Depth& depth) {
+      if (depth.measured_m == 0) visit(i);
+    });
+  }
   /// Whether camera k has no depth there, but nearer and further ones around the gap (within the
   /// errors of a pose), or the same.
   bool is_in_gap(std::size_t k, const Eigen::Vector3f& point_m) const;

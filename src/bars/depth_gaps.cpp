@@ -17,7 +17,7 @@ constexpr int most_node_columns = 320;
 constexpr int gap_rim_reach = 32;
 /// A surface is at most this share nearer or further away than what is around it.
 constexpr float range_slack = 0.03F;
-constexpr int tried_depths = 6;
+constexpr std::size_t tried_depths = 6;
 /// Of these, an RGB-D camera must look at.
 constexpr int fewest_looks = 2;
 /// Levels: colours that are alike.
@@ -91,31 +91,37 @@ DepthGaps::Node DepthGaps::look(const Input& input, int x, int y, const Range& r
   const Eigen::Vector3f ray = views_.ray(column(x), row(y));
   const auto px = static_cast<float>(column(x));
   const auto py = static_cast<float>(row(y));
+  std::array<float, tried_depths> ray_x, ray_y, inverse_m, depth_m;
+  ray_x.fill(ray.x());
+  ray_y.fill(ray.y());
+  for (std::size_t i = 0; i < tried_depths; ++i) {
+    const float share = static_cast<float>(i) / (tried_depths - 1);
+    inverse_m[i] = range.low + share * (range.high - range.low);
+    depth_m[i] = 1 / inverse_m[i];
+  }
+  const PointRow points{ray_x.data(), ray_y.data(), depth_m.data(), static_cast<int>(tried_depths)};
   Eigen::Array3f low = Eigen::Array3f::Constant(std::numeric_limits<float>::max());
   Eigen::Array3f high = -low;
   Node node;
   float nearest = std::numeric_limits<float>::max();
   int looks = 0;
-  for (int i = 0; i < tried_depths; ++i) {
-    const float share = static_cast<float>(i) / (tried_depths - 1);
-    const float inverse_m = range.low + share * (range.high - range.low);
-    const Eigen::Vector3f point_m = ray / inverse_m;
-    for (std::size_t k = 0; k < views_.size(); ++k) {
-      if (!views_.is_in_gap(k, point_m)) continue;
+  for (std::size_t k = 0; k < views_.size(); ++k) {
+    views_.for_each_bare(k, points, [&](std::size_t i) {
+      const Eigen::Vector3f point_m = ray * depth_m[i];
+      if ((high - low).maxCoeff() > same_color || !views_.is_in_gap(k, point_m)) return;
       const auto color = views_.color(k, point_m);
-      if (!color) continue;
+      if (!color) return;
       const Eigen::Array3f mapped = input.color_maps[k + 1](*color, px, py);
       low = low.min(mapped);
       high = high.max(mapped);
-      if ((high - low).maxCoeff() > same_color) return {};
       ++looks;
-      const float away = std::abs(inverse_m - range.guess);
-      if (away >= nearest) continue;
+      const float away = std::abs(inverse_m[i] - range.guess);
+      if (away >= nearest) return;
       nearest = away;
-      node = {mapped, inverse_m, k};
-    }
+      node = {mapped, inverse_m[i], k};
+    });
   }
-  return looks < fewest_looks ? Node{} : node;
+  return looks < fewest_looks || (high - low).maxCoeff() > same_color ? Node{} : node;
 }
 
 void DepthGaps::look_along_row(const Input& input, int y, std::vector<End>& rights) {
@@ -205,7 +211,7 @@ void DepthGaps::draw_node(const Input& input, const Node& node, const Rect& pixe
 }
 
 void DepthGaps::draw(const Input& input, Reconstruction& reconstruction) {
-  part_ = intersect(reconstruction.region, reconstruction.source.bounds());
+  part_ = intersect(input.part, intersect(reconstruction.region, reconstruction.source.bounds()));
   if (part_.empty()) return;
   views_.begin(input.frame, input.poses, input.masks);
   find_known(reconstruction);

@@ -34,6 +34,7 @@ class DepthGaps {
     const FrameSet& frame;
     const Poses& poses;
     const OcclusionMasks& masks;
+    const Rect& part;              ///< of the picture: the objects and what is around them
     ColorMapsBySource color_maps;  ///< of the RGB-D cameras
   };
   /// Changes pixels of the mask without a source: provenance::estimated, in the user's colours.

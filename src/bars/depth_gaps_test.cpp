@@ -64,7 +64,7 @@ class Gaps : public ::testing::Test {
   void draw() {
     DepthGaps gaps(seen->rig);
     const std::vector<ColorMap> maps(256);
-    gaps.draw({seen->frame, seen->poses, masks, maps}, drawn);
+    gaps.draw({seen->frame, seen->poses, masks, seen->rig.color.bounds(), maps}, drawn);
   }
   std::size_t count_drawn() const {
     return static_cast<std::size_t>(std::count(

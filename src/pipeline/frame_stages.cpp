@@ -288,7 +288,9 @@ void FrameStages::process(const FrameSet& given, DiminishedFrame& result) {
                                   options,     smoothing,   inventions.lines()};
   stage(Stage::compositing, [&] {
     if (options.close_gaps && !objects.empty()) {
-      gaps.draw({frame, report.poses, masks, color_maps.by_source()}, result.reconstruction);
+      gaps.draw(
+          {frame, report.poses, masks, grow(objects, surroundings_px()), color_maps.by_source()},
+          result.reconstruction);
     }
     background.label(result.reconstruction, result.surfaces);
     Compositor::sort(inputs, result);
