@@ -41,7 +41,8 @@ void BarViews::begin(const FrameSet& frame, const Poses& poses, const OcclusionM
 
 BarViews::Place BarViews::add(Place so_far, const DepthView::Depth& depth) {
   if (so_far == Place::seen) return so_far;
-  const auto& [measured_m, own_m] = depth;
+  const float measured_m = depth.measured_m;
+  const float own_m = depth.own_m;
   if (measured_m > own_m + behind_m) return Place::seen;
   if (measured_m == 0) return so_far == Place::unknown ? Place::bare : so_far;
   return measured_m > own_m - hiding_m ? Place::solid : so_far;
@@ -92,12 +93,6 @@ std::optional<Eigen::Array3f> BarViews::color(std::size_t k, const Eigen::Vector
   return bilinear(at->x(), at->y(), [&](int column, int row) -> Eigen::Array3f {
     return to_channels(cameras_[k].color(column, row));
   });
-}
-
-bool BarViews::is_in_gap(std::size_t k, const Eigen::Vector3f& point_m) const {
-  constexpr float tolerance = 0.03F;
-  constexpr float tolerance_m = 0.02F;
-  return cameras_[k].depth.is_in_gap(point_m, tolerance, tolerance_m);
 }
 
 std::optional<Eigen::Vector3f> BarViews::centre(std::size_t k) const {

@@ -41,16 +41,17 @@ class BarViews {
   std::size_t size() const { return cameras_.size(); }
   /// The grey level in camera k's picture, 0 to 255; nothing outside it or on an object.
   std::optional<float> level(std::size_t k, const Eigen::Vector3f& point_m) const;
-  /// Calls visit(i) for those of a few points at which camera k has no depth.
+  /// Calls visit(i) for those of a few points at which camera k has no depth, but nearer and
+  /// further ones around the gap (within the errors of a pose), or the same.
   template <class Visit>
-  void for_each_bare(std::size_t k, const PointRow& points, const Visit& visit) const {
-    cameras_[k].depth.for_each(points, [&](std::size_t i, const DepthView::Depth& depth) {
-      if (depth.measured_m == 0) visit(i);
+  void for_each_in_gap(std::size_t k, const PointRow& points, const Visit& visit) const {
+    constexpr float tolerance = 0.03F;
+    constexpr float tolerance_m = 0.02F;
+    const DepthView& view = cameras_[k].depth;
+    view.for_each(points, [&](std::size_t i, const DepthView::Depth& depth) {
+      if (view.is_in_gap(depth, tolerance, tolerance_m)) visit(i);
     });
   }
-  /// Whether camera k has no depth there, but nearer and further ones around the gap (within the
-  /// errors of a pose), or the same.
-  bool is_in_gap(std::size_t k, const Eigen::Vector3f& point_m) const;
   /// The colour in camera k's picture; nothing outside it or on an object.
   std::optional<Eigen::Array3f> color(std::size_t k, const Eigen::Vector3f& point_m) const;
   /// Where camera k is; nothing if it has no pose or no image.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "analytic_scene.h"
+#include "bare_depth.h"
 #include "bars/bar_painting.h"
 #include "bars/bar_search.h"
 #include "inpaint/rim_lines.h"
@@ -27,17 +28,9 @@ class Bars : public ::testing::Test {
   void look(bool has_depth = false) {
     seen.emplace(scene, std::vector<Eigen::Vector3d>{{-0.5, 0.05, 1.05}});
     masks = testing::empty_masks(seen->rig);
-    for (int y = hidden.y; y < hidden.bottom(); ++y) {
-      for (int x = hidden.x; x < hidden.right(); ++x) masks.color(x, y) = 255;
-    }
-    const RgbdCamera& camera = seen->rig.rgbd[0];
-    Image<std::uint16_t> depth = scene.depth_image(
-        Lens(camera.depth), *seen->poses.depth_from_world[0], camera.depth_unit_m);
-    scene.render(Lens(camera.depth), *seen->poses.depth_from_world[0],
-                 [&](int x, int y, const AnalyticScene::Hit& hit) {
-                   if (hit.on_box && !has_depth) depth(x, y) = 0;
-                 });
-    seen->frame.rgbd[0].depth = std::move(depth);
+    testing::hide(hidden, masks);
+    seen->frame.rgbd[0].depth = testing::depth_image_without(
+        scene, *seen, [&](const AnalyticScene::Hit& hit) { return hit.on_box && !has_depth; });
     const RigidTransform& color_from_world = *seen->poses.color_from_world;
     const Eigen::Vector3d normal = color_from_world.rotation * Eigen::Vector3d::UnitZ();
     planes = {{normal.cast<float>(), static_cast<float>(normal.dot(color_from_world.translation))}};

@@ -31,7 +31,7 @@ constexpr float not_looked_at = -1;
 }  // namespace
 
 DepthGaps::DepthGaps(const Rig& rig)
-    : views_(rig), step_((rig.color.width + most_node_columns - 1) / most_node_columns) {}
+    : step_((rig.color.width + most_node_columns - 1) / most_node_columns) {}
 
 void DepthGaps::find_known(const Reconstruction& reconstruction) {
   const int columns = (part_.width + step_ - 1) / step_;
@@ -88,7 +88,7 @@ DepthGaps::Range DepthGaps::range_of(const End& left, const End& right, const En
 }
 
 DepthGaps::Node DepthGaps::look(const Input& input, int x, int y, const Range& range) const {
-  const Eigen::Vector3f ray = views_.ray(column(x), row(y));
+  const Eigen::Vector3f ray = input.views.ray(column(x), row(y));
   const auto px = static_cast<float>(column(x));
   const auto py = static_cast<float>(row(y));
   std::array<float, tried_depths> ray_x, ray_y, inverse_m, depth_m;
@@ -105,11 +105,11 @@ DepthGaps::Node DepthGaps::look(const Input& input, int x, int y, const Range& r
   Node node;
   float nearest = std::numeric_limits<float>::max();
   int looks = 0;
-  for (std::size_t k = 0; k < views_.size(); ++k) {
-    views_.for_each_bare(k, points, [&](std::size_t i) {
+  for (std::size_t k = 0; k < input.views.size(); ++k) {
+    input.views.for_each_in_gap(k, points, [&](std::size_t i) {
       const Eigen::Vector3f point_m = ray * depth_m[i];
-      if ((high - low).maxCoeff() > same_color || !views_.is_in_gap(k, point_m)) return;
-      const auto color = views_.color(k, point_m);
+      if ((high - low).maxCoeff() > same_color) return;
+      const auto color = input.views.color(k, point_m);
       if (!color) return;
       const Eigen::Array3f mapped = input.color_maps[k + 1](*color, px, py);
       low = low.min(mapped);
@@ -178,8 +178,8 @@ void DepthGaps::confirm(const Input& input) {
       });
     };
     for_each_node([&](int x, int y) {
-      if (input.masks.color(column(x), row(y)) != 0) return;
-      const Eigen::Array3f seen = to_channels(input.frame.color(column(x), row(y)));
+      if (input.occlusion(column(x), row(y)) != 0) return;
+      const Eigen::Array3f seen = to_channels(input.camera(column(x), row(y)));
       errors_.push_back((nodes_(x, y).color - seen).abs().maxCoeff());
     });
     if (errors_.size() >= fewest_witnesses) {
@@ -195,11 +195,11 @@ void DepthGaps::draw_node(const Input& input, const Node& node, const Rect& pixe
                           Reconstruction& reconstruction) const {
   for (int y = pixels.y; y < pixels.bottom(); ++y) {
     for (int x = pixels.x; x < pixels.right(); ++x) {
-      if (input.masks.color(x, y) == 0 || !reconstruction.region.keeps(x, y) ||
+      if (input.occlusion(x, y) == 0 || !reconstruction.region.keeps(x, y) ||
           reconstruction.source(x, y) != 0) {
         continue;
       }
-      const auto color = views_.color(node.camera, views_.ray(x, y) / node.inverse_m);
+      const auto color = input.views.color(node.camera, input.views.ray(x, y) / node.inverse_m);
       if (!color) continue;
       const Bgr mapped = to_color(
           input.color_maps[node.camera + 1](*color, static_cast<float>(x), static_cast<float>(y)));
@@ -213,7 +213,6 @@ void DepthGaps::draw_node(const Input& input, const Node& node, const Rect& pixe
 void DepthGaps::draw(const Input& input, Reconstruction& reconstruction) {
   part_ = intersect(input.part, intersect(reconstruction.region, reconstruction.source.bounds()));
   if (part_.empty()) return;
-  views_.begin(input.frame, input.poses, input.masks);
   find_known(reconstruction);
   for_rows(known_.height(), [&](Rows rows) {
     for (int y = rows.first; y < rows.last; ++y) look_along_row(input, y, rights_[rows.band]);

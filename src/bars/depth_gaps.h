@@ -7,7 +7,6 @@
 #include "bars/bar_views.h"
 #include "core/connected_regions.h"
 #include "core/rows.h"
-#include "diminish/frame_set.h"
 #include "diminish/reconstruction.h"
 #include "scene/color_map.h"
 
@@ -31,9 +30,9 @@ class DepthGaps {
   explicit DepthGaps(const Rig& rig);
 
   struct Input {
-    const FrameSet& frame;
-    const Poses& poses;
-    const OcclusionMasks& masks;
+    const BarViews& views;         ///< of this frame
+    ImageView<Bgr> camera;         ///< the user's picture
+    const Mask& occlusion;         ///< of the colour camera
     const Rect& part;              ///< of the picture: the objects and what is around them
     ColorMapsBySource color_maps;  ///< of the RGB-D cameras
   };
@@ -71,7 +70,6 @@ class DepthGaps {
   void draw_node(const Input& input, const Node& node, const Rect& pixels,
                  Reconstruction& reconstruction) const;
 
-  BarViews views_;
   int step_;   ///< pixels from one node to the next
   Rect part_;  ///< of the picture
   // By node.

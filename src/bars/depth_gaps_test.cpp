@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "analytic_scene.h"
+#include "bare_depth.h"
 #include "diminish/diminished_frame.h"
 #include "picture_difference.h"
 
@@ -27,17 +28,8 @@ class Gaps : public ::testing::Test {
     scene.wave_m = 0.5;
     seen.emplace(scene, std::vector<Eigen::Vector3d>{{-0.3, 0.05, 1.05}});
     masks = testing::empty_masks(seen->rig);
-    for (int y = hidden.y; y < hidden.bottom(); ++y) {
-      for (int x = hidden.x; x < hidden.right(); ++x) masks.color(x, y) = 255;
-    }
-    const RgbdCamera& camera = seen->rig.rgbd[0];
-    Image<std::uint16_t> depth = scene.depth_image(
-        Lens(camera.depth), *seen->poses.depth_from_world[0], camera.depth_unit_m);
-    scene.render(Lens(camera.depth), *seen->poses.depth_from_world[0],
-                 [&](int x, int y, const AnalyticScene::Hit& hit) {
-                   if (bare(hit)) depth(x, y) = 0;
-                 });
-    seen->frame.rgbd[0].depth = std::move(depth);
+    testing::hide(hidden, masks);
+    seen->frame.rgbd[0].depth = testing::depth_image_without(scene, *seen, bare);
     // What the RGB-D camera has depth of is drawn.
     const Rect whole = seen->rig.color.bounds();
     drawn.region.set(whole);
@@ -62,9 +54,11 @@ class Gaps : public ::testing::Test {
     }
   }
   void draw() {
+    BarViews views(seen->rig);
+    views.begin(seen->frame, seen->poses, masks);
     DepthGaps gaps(seen->rig);
     const std::vector<ColorMap> maps(256);
-    gaps.draw({seen->frame, seen->poses, masks, seen->rig.color.bounds(), maps}, drawn);
+    gaps.draw({views, seen->frame.color, masks.color, seen->rig.color.bounds(), maps}, drawn);
   }
   std::size_t count_drawn() const {
     return static_cast<std::size_t>(std::count(

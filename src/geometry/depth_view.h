@@ -34,6 +34,7 @@ class DepthView {
   struct Depth {
     float measured_m;  ///< 0: no depth was measured
     float own_m;       ///< the point's
+    int x, y;          ///< the pixel
   };
   /// Nothing for a point outside the image, or where it shows an object.
   std::optional<Depth> at(const Eigen::Vector3f& point_m) const {
@@ -46,7 +47,7 @@ class DepthView {
   /// Whether no depth was measured there, and the point lies between depths that were, up to
   /// `gap_reach` pixels away in the pixel's row and column; or up to `tolerance` beyond, which is
   /// relative, and then `tolerance_m`.
-  bool is_in_gap(const Eigen::Vector3f& point_m, float tolerance, float tolerance_m) const;
+  bool is_in_gap(const Depth& place, float tolerance, float tolerance_m) const;
   static constexpr int gap_reach = 60;
   static constexpr int few = 16;
   /// The same of up to `few` points, on vector instructions: calls visit(i, depth) for those of
@@ -71,7 +72,7 @@ class DepthView {
  private:
   std::optional<Depth> at(int x, int y, float own_m) const {
     if (objects_.bounds().contains(x, y) && objects_(x, y) != 0) return std::nullopt;
-    return Depth{unit_m_ * static_cast<float>(depth_(x, y)), own_m};
+    return Depth{unit_m_ * static_cast<float>(depth_(x, y)), own_m, x, y};
   }
 
   Projection lens_;

@@ -67,6 +67,7 @@ FrameStages::FrameStages(const Rig& rig_, const Scene& scene_)
       contact_line(rig.color),
       backend(rig),
       memory(rig),
+      views(rig),
       gaps(rig),
       inventions(rig) {}
 
@@ -286,11 +287,12 @@ void FrameStages::process(const FrameSet& given, DiminishedFrame& result) {
   // 3.4 Compositing, colour correction, inpainting; a backend may have done these
   const Compositor::Inputs inputs{frame.color, masks.color, objects,
                                   options,     smoothing,   inventions.lines()};
+  views.begin(frame, report.poses, masks);
   stage(Stage::compositing, [&] {
     if (options.close_gaps && !objects.empty()) {
-      gaps.draw(
-          {frame, report.poses, masks, grow(objects, surroundings_px()), color_maps.by_source()},
-          result.reconstruction);
+      gaps.draw({views, frame.color, masks.color, grow(objects, surroundings_px()),
+                 color_maps.by_source()},
+                result.reconstruction);
     }
     background.label(result.reconstruction, result.surfaces);
     Compositor::sort(inputs, result);
@@ -302,8 +304,8 @@ void FrameStages::process(const FrameSet& given, DiminishedFrame& result) {
     });
   };
   // Of what is behind the objects. Shadows need the planes' labels meanwhile.
-  const Inventions::Inputs inventing{frame,   report.poses,        masks,
-                                     objects, background.planes(), samples};
+  const Inventions::Inputs inventing{frame,   report.poses, masks, objects, background.planes(),
+                                     samples, views};
   if (inventions.looks_for_structure(inventing)) {
     do_all([&] { stage(Stage::inpainting, [&] { inventions.find_structure(inventing, result); }); },
            correct_colors);

@@ -82,6 +82,7 @@ struct FrameStages {
   Backend backend;
   MemoryStage memory;
   Compositor compositor;
+  BarViews views;
   DepthGaps gaps;
   Inventions inventions;
   Doubt doubt;

@@ -7,7 +7,7 @@
 namespace diminish {
 
 Inventions::Inventions(const Rig& rig)
-    : standing_things_(rig), bar_views_(rig), plane_texture_(rig.color), steady_(rig.color) {}
+    : standing_things_(rig), plane_texture_(rig.color), steady_(rig.color) {}
 
 void Inventions::find_lines(const FrameSet& frame, const Mask& occlusion, const Rect& objects) {
   rim_lines_.clear();
@@ -30,8 +30,7 @@ void Inventions::find_structure(const Inputs& inputs, DiminishedFrame& result) {
                           result.surfaces, with_sides_);
   }
   if (finds_bars(inputs)) {
-    bar_views_.begin(inputs.frame, inputs.poses, inputs.masks);
-    bar_search_.find({rim_lines_.lines(), bar_views_, *inputs.planes,
+    bar_search_.find({rim_lines_.lines(), inputs.views, *inputs.planes,
                       has_sides ? with_sides_ : result.surfaces, inputs.masks.color});
   }
 }
@@ -59,7 +58,7 @@ void Inventions::fill(const Inputs& inputs, const Compositor::Inputs& composed,
   }
   if (!is_filled) Compositor::mark_unknown(inputs.objects, result);
   if (finds_bars(inputs) && !bar_search_.bars().empty()) {
-    bar_painting_.paint({bar_search_.bars(), bar_views_, *inputs.planes, inputs.frame.color,
+    bar_painting_.paint({bar_search_.bars(), inputs.views, *inputs.planes, inputs.frame.color,
                          inputs.masks.color, inputs.objects},
                         result);
   }

@@ -43,6 +43,7 @@ class Inventions {
     const Rect& objects;                         ///< the box of the colour camera's mask
     const std::vector<BackgroundPlane>* planes;  ///< null: none are known
     const SceneSamples& samples;
+    const BarViews& views;
   };
   /// The lines that run into the mask. Needs the picture and its mask only.
   void find_lines(const FrameSet& frame, const Mask& occlusion, const Rect& objects);
@@ -72,7 +73,6 @@ class Inventions {
   RimLines rim_lines_;
   StandingThings standing_things_;
   Surfaces with_sides_;  ///< labels and depth, once sides were found
-  BarViews bar_views_;
   BarSearch bar_search_;
   BarPainting bar_painting_;
   PlaneTexture plane_texture_;

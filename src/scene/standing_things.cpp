@@ -96,7 +96,8 @@ StandingThings::Place StandingThings::look_at(const View& view, const Camera& ca
                                               const Eigen::Vector3f& point_m, float top_height_m) {
   const auto depth = camera.depth.at(point_m);
   if (!depth || depth->measured_m == 0) return Place::unknown;
-  const auto& [measured, own] = *depth;
+  const float measured = depth->measured_m;
+  const float own = depth->own_m;
   if (measured > own + behind.at(own)) return Place::empty;
   const Eigen::Vector3f hider = camera.centre + measured / own * (point_m - camera.centre);
   const bool is_side = view.plane.height_m(hider) < top_height_m - lowest_top_m &&
