@@ -95,6 +95,12 @@ std::optional<Eigen::Array3f> BarViews::color(std::size_t k, const Eigen::Vector
   });
 }
 
+bool BarViews::is_in_gap(std::size_t k, const DepthView::Depth& bare) const {
+  constexpr float tolerance = 0.03F;
+  constexpr float tolerance_m = 0.02F;
+  return cameras_[k].depth.is_in_gap(bare, tolerance, tolerance_m);
+}
+
 std::optional<Eigen::Vector3f> BarViews::centre(std::size_t k) const {
   if (cameras_[k].depth.empty()) return std::nullopt;
   return cameras_[k].centre;

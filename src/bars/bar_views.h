@@ -41,17 +41,16 @@ class BarViews {
   std::size_t size() const { return cameras_.size(); }
   /// The grey level in camera k's picture, 0 to 255; nothing outside it or on an object.
   std::optional<float> level(std::size_t k, const Eigen::Vector3f& point_m) const;
-  /// Calls visit(i) for those of a few points at which camera k has no depth, but nearer and
-  /// further ones around the gap (within the errors of a pose), or the same.
+  /// Calls visit(i, depth) for those of a few points at which camera k has no depth.
   template <class Visit>
-  void for_each_in_gap(std::size_t k, const PointRow& points, const Visit& visit) const {
-    constexpr float tolerance = 0.03F;
-    constexpr float tolerance_m = 0.02F;
-    const DepthView& view = cameras_[k].depth;
-    view.for_each(points, [&](std::size_t i, const DepthView::Depth& depth) {
-      if (view.is_in_gap(depth, tolerance, tolerance_m)) visit(i);
+  void for_each_bare(std::size_t k, const PointRow& points, const Visit& visit) const {
+    cameras_[k].depth.for_each(points, [&](std::size_t i, const DepthView::Depth& depth) {
+      if (depth.measured_m == 0) visit(i, depth);
     });
   }
+  /// Whether there are nearer and further depths around the gap in camera k's image (within the
+  /// errors of a pose), or the same. bare: by for_each_bare.
+  bool is_in_gap(std::size_t k, const DepthView::Depth& bare) const;
   /// The colour in camera k's picture; nothing outside it or on an object.
   std::optional<Eigen::Array3f> color(std::size_t k, const Eigen::Vector3f& point_m) const;
   /// Where camera k is; nothing if it has no pose or no image.

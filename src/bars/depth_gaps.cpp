@@ -106,9 +106,9 @@ DepthGaps::Node DepthGaps::look(const Input& input, int x, int y, const Range& r
   float nearest = std::numeric_limits<float>::max();
   int looks = 0;
   for (std::size_t k = 0; k < input.views.size(); ++k) {
-    input.views.for_each_in_gap(k, points, [&](std::size_t i) {
+    input.views.for_each_bare(k, points, [&](std::size_t i, const DepthView::Depth& bare) {
       const Eigen::Vector3f point_m = ray * depth_m[i];
-      if ((high - low).maxCoeff() > same_color) return;
+      if ((high - low).maxCoeff() > same_color || !input.views.is_in_gap(k, bare)) return;
       const auto color = input.views.color(k, point_m);
       if (!color) return;
       const Eigen::Array3f mapped = input.color_maps[k + 1](*color, px, py);

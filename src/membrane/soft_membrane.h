@@ -18,7 +18,7 @@ class SoftMembrane {
   static constexpr int cell = 16;  ///< pixels
   static constexpr int step = 4;   ///< differences are wanted of every `step`-th row and column
   /// Differences of this many levels are of other surfaces, or shadows: they get no weight.
-  static constexpr float largest_difference = 30;
+  static constexpr float largest_difference = 15;
   /// What a cell full of differences weighs beside the gradient to one neighbour.
   static constexpr float full_weight = 32;
   static constexpr float fading = 0.2F;
