@@ -20,7 +20,7 @@ void SoftMembrane::add(int x, int y, const Eigen::Array3f& difference) {
   // The nearest grid point.
   const int column = (x - region_.x + cell / 2) / cell;
   const int row = (y - region_.y + cell / 2) / cell;
-  const auto at = static_cast<std::size_t>(row * columns_ + column);
+  const std::size_t at = index_of(row, column);
   weights_[at] += weight;
   sums_[at].head<3>() += weight * difference;
 }
@@ -29,7 +29,7 @@ void SoftMembrane::solve() {
   // From here on with the gradients to the neighbours that are there, and the fading.
   for (int row = 0; row < rows_; ++row) {
     for (int column = 0; column < columns_; ++column) {
-      float& weight = weights_[static_cast<std::size_t>(row * columns_ + column)];
+      float& weight = weights_[index_of(row, column)];
       weight += fading;
       for (const bool is_there : {column > 0, column + 1 < columns_, row > 0, row + 1 < rows_}) {
         if (is_there) weight += 1;
@@ -59,7 +59,7 @@ void SoftMembrane::row(int y, std::vector<Node>& nodes) const {
   const Node* const lower = value_row(above + 1);
   nodes.clear();
   for (int column = 0; column < columns_; ++column) {
-    nodes.push_back((1 - below_share) * upper[column] + below_share * lower[column]);
+    nodes.emplace_back((1 - below_share) * upper[column] + below_share * lower[column]);
   }
 }
 

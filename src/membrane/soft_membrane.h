@@ -40,6 +40,11 @@ class SoftMembrane {
   Node* value_row(int row) { return values_.row(row + 1) + 1; }
   const Node* value_row(int row) const { return values_.row(row + 1) + 1; }
 
+  std::size_t index_of(int row, int column) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+           static_cast<std::size_t>(column);
+  }
+
   Rect region_;
   int columns_ = 0, rows_ = 0;
   std::vector<float> weights_;
