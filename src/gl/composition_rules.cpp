@@ -51,7 +51,9 @@ std::string composition_rules() {
          define("GREATEST_FIELD", ColorMap::greatest_field) + define("NODE_PX", Membrane::cell) +
          define("SAMPLE_STEP", Membrane::step) +
          define("SAMPLE_WEIGHT", Membrane::full_weight / (samples * samples)) +
-         define("LARGEST_DIFFERENCE", Membrane::largest_difference) +
+         define("LARGEST_DEVIATION", Membrane::largest_deviation) +
+         define("LARGEST_SPREAD", Membrane::largest_spread) +
+         define("LARGEST_MEDIAN", Membrane::largest_median) +
          define("MEMBRANE_FADING", Membrane::fading) + define("MEMBRANE_SWEEPS", Membrane::sweeps) +
          define("PROVENANCE_CAMERA", provenance::camera) +
          define("PROVENANCE_INPAINTED", provenance::inpainted) +

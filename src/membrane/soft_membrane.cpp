@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/robust.h"
+
 namespace diminish {
 void SoftMembrane::begin(const Rect& region) {
   region_ = region;
@@ -9,27 +11,63 @@ void SoftMembrane::begin(const Rect& region) {
   rows_ = region.height / cell + 2;
   weights_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), 0.F);
   sums_.assign(weights_.size(), Node::Zero());
+  differences_.resize(weights_.size());
+  for (Differences& differences : differences_) differences.count = 0;
   values_.resize(columns_ + 2, rows_ + 2, Node::Zero());
 }
 
 void SoftMembrane::add(int x, int y, const Eigen::Array3f& difference) {
-  constexpr float each = full_weight * step * step / (cell * cell);
-  const Eigen::Array3f relative = difference / largest_difference;
-  if ((relative.abs() >= 1).any()) return;
-  const float weight = each * (1 - relative.square()).square().prod();
   // The nearest grid point.
   const int column = (x - region_.x + cell / 2) / cell;
   const int row = (y - region_.y + cell / 2) / cell;
-  const std::size_t at = index_of(row, column);
-  weights_[at] += weight;
-  sums_[at].head<3>() += weight * difference;
+  Differences& there =
+      differences_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+                   static_cast<std::size_t>(column)];
+  there.values[there.count++] = difference;
+}
+
+/// What to weigh a grid point's differences about.
+Eigen::Array3f SoftMembrane::usual(std::span<const Eigen::Array3f> differences) {
+  if (2 * differences.size() < cell_samples) return Eigen::Array3f::Zero();
+  std::array<float, cell_samples> values{};
+  const auto end = values.begin() + static_cast<std::ptrdiff_t>(differences.size());
+  Eigen::Array3f medians;
+  for (int channel = 0; channel < 3; ++channel) {
+    std::transform(differences.begin(), differences.end(), values.begin(),
+                   [&](const Eigen::Array3f& difference) { return difference[channel]; });
+    medians[channel] = median(values.begin(), end);
+  }
+  if ((medians.abs() > largest_median).any()) return Eigen::Array3f::Zero();
+  std::transform(
+      differences.begin(), differences.end(), values.begin(),
+      [&](const Eigen::Array3f& difference) { return (difference - medians).abs().maxCoeff(); });
+  if (median(values.begin(), end) > largest_spread) return Eigen::Array3f::Zero();
+  return medians;
+}
+
+void SoftMembrane::weigh_differences() {
+  constexpr float each = full_weight / cell_samples;
+  for (std::size_t at = 0; at < differences_.size(); ++at) {
+    const std::span differences(differences_[at].values.data(), differences_[at].count);
+    if (differences.empty()) continue;
+    const Eigen::Array3f center = usual(differences);
+    for (const Eigen::Array3f& difference : differences) {
+      const Eigen::Array3f relative = (difference - center) / largest_deviation;
+      if ((relative.abs() >= 1).any()) continue;
+      const float weight = each * (1 - relative.square()).square().prod();
+      weights_[at] += weight;
+      sums_[at].head<3>() += weight * difference;
+    }
+  }
 }
 
 void SoftMembrane::solve() {
+  weigh_differences();
   // From here on with the gradients to the neighbours that are there, and the fading.
+  float* own = weights_.data();
   for (int row = 0; row < rows_; ++row) {
     for (int column = 0; column < columns_; ++column) {
-      float& weight = weights_[index_of(row, column)];
+      float& weight = *own++;
       weight += fading;
       for (const bool is_there : {column > 0, column + 1 < columns_, row > 0, row + 1 < rows_}) {
         if (is_there) weight += 1;

@@ -1,6 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <span>
 #include <vector>
 
 #include "diminish/image.h"
@@ -12,13 +15,20 @@ namespace diminish {
 /// Minimises, over a coarse grid of values m with bilinear interpolation between them,
 ///   sum of w (m - difference)^2  +  |gradient m|^2  +  fading |m|^2
 /// so that, other than a membrane through Dirichlet values (Poisson cloning), it takes the average
-/// of noisy differences, and outliers, which get no weight, leave no trace.
+/// of noisy differences, and outliers get no weight. These are far from what is usual around their
+/// grid point: the median there where differences agree (a table shines towards one camera), and 0
+/// elsewhere.
 class SoftMembrane {
  public:
   static constexpr int cell = 16;  ///< pixels
   static constexpr int step = 4;   ///< differences are wanted of every `step`-th row and column
-  /// Differences of this many levels are of other surfaces, or shadows: they get no weight.
-  static constexpr float largest_difference = 15;
+  /// Differences this many levels away from what is usual get no weight.
+  static constexpr float largest_deviation = 15;
+  /// Differences agree if a cell has half of its own at least, and half of these are this close, in
+  /// levels, to their medians.
+  static constexpr float largest_spread = 6;
+  /// Medians beyond this show that the surfaces are different ones.
+  static constexpr float largest_median = 40;
   /// What a cell full of differences weighs beside the gradient to one neighbour.
   static constexpr float full_weight = 32;
   static constexpr float fading = 0.2F;
@@ -26,7 +36,7 @@ class SoftMembrane {
   static constexpr int sweeps = 24;
 
   void begin(const Rect& region);
-  /// difference: in levels.
+  /// x, y: multiples of `step` from the region's corner. difference: in levels.
   void add(int x, int y, const Eigen::Array3f& difference);
   void solve();
   /// The channels, and 0.
@@ -36,17 +46,21 @@ class SoftMembrane {
   void row(int y, std::vector<Node>& nodes) const;
 
  private:
+  static constexpr std::size_t cell_samples = (cell / step) * (cell / step);
+  struct Differences {
+    std::array<Eigen::Array3f, cell_samples> values;
+    std::size_t count;
+  };
+  static Eigen::Array3f usual(std::span<const Eigen::Array3f> differences);
+  void weigh_differences();
   /// To be indexed by the column; from row -1 on.
   Node* value_row(int row) { return values_.row(row + 1) + 1; }
   const Node* value_row(int row) const { return values_.row(row + 1) + 1; }
 
-  std::size_t index_of(int row, int column) const {
-    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
-           static_cast<std::size_t>(column);
-  }
-
   Rect region_;
   int columns_ = 0, rows_ = 0;
+  // Of grid points, row by row.
+  std::vector<Differences> differences_;  ///< those nearest to each
   std::vector<float> weights_;
   std::vector<Node> sums_;
   Image<Node> values_;  ///< with a rim of zeros
