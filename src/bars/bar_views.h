@@ -44,9 +44,7 @@ class BarViews {
   /// Calls visit(i, depth) for those of a few points at which camera k has no depth.
   template <class Visit>
   void for_each_bare(std::size_t k, const PointRow& points, const Visit& visit) const {
-    cameras_[k].depth.for_each(points, [&](std::size_t i, const DepthView::Depth& depth) {
-      if (depth.measured_m == 0) visit(i, depth);
-    });
+    cameras_[k].depth.for_each_bare(points, visit);
   }
   /// Whether there are nearer and further depths around the gap in camera k's image (within the
   /// errors of a pose), or the same. bare: by for_each_bare.

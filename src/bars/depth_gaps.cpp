@@ -91,7 +91,9 @@ DepthGaps::Node DepthGaps::look(const Input& input, int x, int y, const Range& r
   const Eigen::Vector3f ray = input.views.ray(column(x), row(y));
   const auto px = static_cast<float>(column(x));
   const auto py = static_cast<float>(row(y));
-  std::array<float, tried_depths> ray_x, ray_y, inverse_m, depth_m;
+  // A whole vector of them: those beyond the last are at 0, where nothing is.
+  constexpr std::size_t in_vector = 8;
+  std::array<float, in_vector> ray_x, ray_y, inverse_m, depth_m{};
   ray_x.fill(ray.x());
   ray_y.fill(ray.y());
   for (std::size_t i = 0; i < tried_depths; ++i) {
@@ -99,7 +101,7 @@ DepthGaps::Node DepthGaps::look(const Input& input, int x, int y, const Range& r
     inverse_m[i] = range.low + share * (range.high - range.low);
     depth_m[i] = 1 / inverse_m[i];
   }
-  const PointRow points{ray_x.data(), ray_y.data(), depth_m.data(), static_cast<int>(tried_depths)};
+  const PointRow points{ray_x.data(), ray_y.data(), depth_m.data(), static_cast<int>(in_vector)};
   Eigen::Array3f low = Eigen::Array3f::Constant(std::numeric_limits<float>::max());
   Eigen::Array3f high = -low;
   Node node;
@@ -155,16 +157,11 @@ void DepthGaps::look_along_row(const Input& input, int y, std::vector<End>& righ
 }
 
 void DepthGaps::confirm(const Input& input) {
-  found_.resize(nodes_.width(), nodes_.height());
+  found_.resize(nodes_.width(), nodes_.height(), 0);
   for (int y = 0; y < nodes_.height(); ++y) {
     for (int x = 0; x < nodes_.width(); ++x) {
-      std::uint8_t any = 0;
-      for (int row = std::max(0, y - 1); row <= std::min(y + 1, nodes_.height() - 1); ++row) {
-        for (int at = std::max(0, x - 1); at <= std::min(x + 1, nodes_.width() - 1); ++at) {
-          if (nodes_(at, row).inverse_m > 0) any = 255;
-        }
-      }
-      found_(x, y) = any;
+      if (!(nodes_(x, y).inverse_m > 0)) continue;
+      found_.fill(intersect({x - 1, y - 1, 3, 3}, found_.bounds()), 255);
     }
   }
   regions_.find(found_, Pixels::set, Connectivity::eight);

@@ -1,6 +1,7 @@
 #include "geometry/depth_view.h"
 
-#include <utility>
+#include <algorithm>
+#include <cstddef>
 
 namespace diminish {
 
@@ -8,18 +9,22 @@ bool DepthView::is_in_gap(const Depth& place, float tolerance, float tolerance_m
   if (place.measured_m != 0) return false;
   bool is_nearer = false;
   bool is_farther = false;
+  const std::uint16_t* const own = &depth_(place.x, place.y);
+  const auto row = depth_.stride() / std::ptrdiff_t{sizeof(*own)};
+  struct Way {
+    std::ptrdiff_t step;
+    int pixels;
+  };
   // Rows first: neighbours in memory.
-  for (const auto& [dx, dy] :
-       {std::pair(1, 0), std::pair(-1, 0), std::pair(0, 1), std::pair(0, -1)}) {
-    int x = place.x + dx;
-    int y = place.y + dy;
-    for (int i = 0; i < gap_reach && depth_.bounds().contains(x, y); ++i, x += dx, y += dy) {
-      if (depth_(x, y) == 0) continue;
-      const float measured_m = unit_m_ * static_cast<float>(depth_(x, y));
-      is_nearer = is_nearer || (1 - tolerance) * measured_m - tolerance_m < place.own_m;
-      is_farther = is_farther || (1 + tolerance) * measured_m + tolerance_m > place.own_m;
-      break;
-    }
+  for (const auto& [step, pixels] : {Way{1, depth_.width() - 1 - place.x}, Way{-1, place.x},
+                                     Way{row, depth_.height() - 1 - place.y}, Way{-row, place.y}}) {
+    const std::uint16_t* measured = own;
+    int left = std::min(pixels, gap_reach);
+    while (left > 0 && *(measured += step) == 0) --left;
+    if (left == 0) continue;
+    const float measured_m = unit_m_ * static_cast<float>(*measured);
+    is_nearer = is_nearer || (1 - tolerance) * measured_m - tolerance_m < place.own_m;
+    is_farther = is_farther || (1 + tolerance) * measured_m + tolerance_m > place.own_m;
     if (is_nearer && is_farther) return true;
   }
   return false;

@@ -54,6 +54,29 @@ class DepthView {
   /// which there is something to tell.
   template <class Visit>
   void for_each(const PointRow& points, const Visit& visit) const {
+    for_each_pixel(points, [&](std::size_t i, int x, int y, float own_m) {
+      if (const auto depth = at(x, y, own_m)) visit(i, *depth);
+    });
+  }
+  /// Only for those at which no depth was measured.
+  template <class Visit>
+  void for_each_bare(const PointRow& points, const Visit& visit) const {
+    for_each_pixel(points, [&](std::size_t i, int x, int y, float own_m) {
+      if (depth_(x, y) == 0 && !shows_object(x, y)) visit(i, Depth{0, own_m, x, y});
+    });
+  }
+
+ private:
+  bool shows_object(int x, int y) const {
+    return objects_.bounds().contains(x, y) && objects_(x, y) != 0;
+  }
+  std::optional<Depth> at(int x, int y, float own_m) const {
+    if (shows_object(x, y)) return std::nullopt;
+    return Depth{unit_m_ * static_cast<float>(depth_(x, y)), own_m, x, y};
+  }
+  /// Calls visit(i, x, y, own_m) for those of up to `few` points that are in the image.
+  template <class Visit>
+  void for_each_pixel(const PointRow& points, const Visit& visit) const {
     if (depth_.empty()) return;
     constexpr unsigned pitch = 1 << 16;
     std::array<std::int32_t, few> pixels;
@@ -63,16 +86,8 @@ class DepthView {
     for (std::size_t i = 0; i < static_cast<std::size_t>(points.count); ++i) {
       if (pixels[i] < 0) continue;
       const auto pixel = static_cast<unsigned>(pixels[i]);
-      const auto depth =
-          at(static_cast<int>(pixel % pitch), static_cast<int>(pixel / pitch), own_m[i]);
-      if (depth) visit(i, *depth);
+      visit(i, static_cast<int>(pixel % pitch), static_cast<int>(pixel / pitch), own_m[i]);
     }
-  }
-
- private:
-  std::optional<Depth> at(int x, int y, float own_m) const {
-    if (objects_.bounds().contains(x, y) && objects_(x, y) != 0) return std::nullopt;
-    return Depth{unit_m_ * static_cast<float>(depth_(x, y)), own_m, x, y};
   }
 
   Projection lens_;
