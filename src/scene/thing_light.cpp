@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/runs.h"
 #include "geometry/symmetric_solver.h"
 
 namespace diminish {
@@ -160,23 +161,24 @@ void ThingLight::apply(Surfaces& surfaces) const {
         const Levels& upper = smooth_(x, std::clamp(above, 0, last_row));
         return upper + below * (smooth_(x, std::min(above + 1, last_row)) - upper);
       };
-      Levels left = between(-1);
-      for (int column = -1; column <= last_column; ++column) {
-        const Levels right = between(column + 1);
+      for (int x = 0, end;
+           (x = find_equal(label, x, region.width, surface_label::foreground)) < region.width;
+           x = end) {
+        // Between the centres of two blocks; the last reaches to the end.
+        const int column = std::min((x + block_px / 2) / block_px - 1, last_column);
         const int first = block_px * column + block_px / 2;
-        const int end = column == last_column ? region.width : first + block_px;
-        if (left.min(right).head<3>().minCoeff() < 1 - CastShadow::invisible) {
-          const Levels step = 255 * (right - left) / block_px;
-          Levels level = 255 * left + 0.5F * step + 0.5F;
-          for (int x = first; x < end; ++x, level += step) {
-            if (x < 0 || label[x] != surface_label::foreground) continue;
-            const Eigen::Array4i rounded = level.cast<int>();
-            light[x] = {static_cast<std::uint8_t>(rounded[0]),
-                        static_cast<std::uint8_t>(rounded[1]),
-                        static_cast<std::uint8_t>(rounded[2])};
-          }
+        end = column == last_column ? region.width : first + block_px;
+        const Levels left = between(column);
+        const Levels right = between(column + 1);
+        if (left.min(right).head<3>().minCoeff() >= 1 - CastShadow::invisible) continue;
+        const Levels step = 255 * (right - left) / block_px;
+        Levels level = 255 * left + 0.5F * step + 0.5F;
+        for (int i = first; i < end; ++i, level += step) {
+          if (i < x || label[i] != surface_label::foreground) continue;
+          const Eigen::Array4i rounded = level.cast<int>();
+          light[i] = {static_cast<std::uint8_t>(rounded[0]), static_cast<std::uint8_t>(rounded[1]),
+                      static_cast<std::uint8_t>(rounded[2])};
         }
-        left = right;
       }
     }
   });
