@@ -281,9 +281,9 @@ void ShadowGain::find_gains(std::size_t finest) {
   for (std::size_t i = scales; i-- > finest;) {
     Scale& scale = scales_[i];
     // Nearly Gaussians of two cells; of one at the finest scale.
-    const int reach = i == 0 ? 1 : 2;
-    blur(reach, scale.agreement);
-    blur(reach, scale.square);
+    for (Image<Levels>* const image : {&scale.agreement, &scale.square}) {
+      i == 0 ? blur<1>(*image) : blur<2>(*image);
+    }
     for (int row = 0; row < scale.weight.height(); ++row) {
       for (int column = 0; column < scale.weight.width(); ++column) {
         const Levels coarse =
@@ -307,8 +307,9 @@ ShadowGain::Levels ShadowGain::coarser_gain(std::size_t scale, int column, int r
 }
 
 /// Two means along rows, then along columns. Beyond the border is 0.
-void ShadowGain::blur(int reach, Image<Levels>& image) {
-  const int count = 2 * reach + 1;
+template <int reach>
+void ShadowGain::blur(Image<Levels>& image) {
+  constexpr int count = 2 * reach + 1;
   const int width = image.width();
   const int height = image.height();
   // A frame of zeros around the image.

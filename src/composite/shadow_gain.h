@@ -91,7 +91,8 @@ class ShadowGain {
   void find_gains(std::size_t finest);
   static Levels gain_of(const Levels& agreement, const Levels& square, const Levels& coarse,
                         float prior);
-  void blur(int reach, Image<Levels>& image);
+  template <int reach>
+  void blur(Image<Levels>& image);
   Levels coarser_gain(std::size_t scale, int column, int row) const;
   void scale_light(std::uint8_t label, Surfaces& surfaces);
 
