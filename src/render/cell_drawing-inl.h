@@ -152,15 +152,15 @@ struct SurfacePlace {
 HWY_INLINE void DrawCell(const Cells& cells, int lane, SurfaceBuffer& surface) {
   const Floats d;
   const auto lanes = static_cast<int>(hn::Lanes(d));
-  const int rows = cells.rows[lane];
   for (int x = 0; x < cells.columns[lane]; x += lanes) {
     // hn::Iota of a variable is written to memory lane by lane.
     const IntVector columns = hn::Add(hn::Iota(Ints(), 0), hn::Set(Ints(), x));
     CellWalk<OfOne> walk(cells, lane, columns);
     SurfacePlace place(surface, cells.place[lane] + x);
-    for (int y = 0; y < rows; ++y) {
+    for (int rows = cells.rows[lane];;) {
       const CellPixels pixels = walk.Pixels();
       place.Draw(d, pixels.outside, pixels.z, pixels.u, pixels.v);
+      if (--rows == 0) break;
       walk.Down();
       place.Down(surface.pitch);
     }
@@ -196,8 +196,7 @@ HWY_INLINE void DrawPair(const Cells& cells, int lane, SurfaceBuffer& surface) {
   const hn::Half<Floats> half;
   CellWalk<OfTwo> walk(cells, lane, hn::And(hn::Iota(di, 0), hn::Set(di, most_pair_columns - 1)));
   SurfacePlace first(surface, cells.place[lane]), second(surface, cells.place[lane + 1]);
-  const int rows = std::max(cells.rows[lane], cells.rows[lane + 1]);
-  for (int y = 0; y < rows; ++y) {
+  for (int rows = std::max(cells.rows[lane], cells.rows[lane + 1]);;) {
     const CellPixels pixels = walk.Pixels();
     const Vector outside = hn::VecFromMask(d, pixels.outside);
     // They may share pixels.
@@ -205,6 +204,7 @@ HWY_INLINE void DrawPair(const Cells& cells, int lane, SurfaceBuffer& surface) {
                hn::LowerHalf(half, pixels.u), hn::LowerHalf(half, pixels.v));
     second.Draw(half, hn::MaskFromVec(hn::UpperHalf(half, outside)), hn::UpperHalf(half, pixels.z),
                 hn::UpperHalf(half, pixels.u), hn::UpperHalf(half, pixels.v));
+    if (--rows == 0) break;
     walk.Down();
     first.Down(surface.pitch);
     second.Down(surface.pitch);
