@@ -214,9 +214,11 @@ void StandingThings::close_slits(const View& view, Surfaces& surfaces) {
     if (standing == end) continue;
     const int begin = std::max(view.part.x, standing - widest_slit_px);
     std::uint8_t* const things = row_.data();
+    const std::uint8_t* const source = view.input.reconstruction.source.row(y);
     for (int x = begin; x < end; ++x) {
-      const bool is_thing = label[x] == surface_label::foreground && !view.is_remembered(x, y);
-      things[x] = is_thing || label[x] == surface_label::standing ? 1 : 0;
+      const bool is_thing =
+          all_of(label[x] == surface_label::foreground, source[x] != provenance::remembered);
+      things[x] = any_of(is_thing, label[x] == surface_label::standing) ? 1 : 0;
     }
     const auto depth_m = [&](int x) {
       return label[x] == surface_label::standing ? surfaces.standing_depth_m(x, y)
