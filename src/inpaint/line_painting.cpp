@@ -264,6 +264,7 @@ void LinePainting::claim(const Mask& missing, const Surfaces& surfaces, const Re
       const std::uint8_t number = nearest_(x - objects_.x, y - objects_.y);
       if (number == 0) return;
       const Stroke& nearest = strokes_[number - 1U];
+      if (&nearest == &stroke) return;
       const float turned = stroke.normal.dot(nearest.normal);
       if (std::abs(turned) < side_by_side) return;
       const Eigen::Vector2f pixel(static_cast<float>(x), static_cast<float>(y));
