@@ -69,19 +69,21 @@ DepthGaps::Range DepthGaps::range_of(const End& left, const End& right, const En
                                      const End& below) {
   Range range{std::numeric_limits<float>::max(), 0, 0};
   float least_difference = std::numeric_limits<float>::max();
-  for (const auto& [a, b] : {std::pair(left, right), std::pair(above, below)}) {
-    for (const End& end : {a, b}) {
-      if (end.away == 0) continue;
-      range.low = std::min(range.low, end.inverse_m);
-      range.high = std::max(range.high, end.inverse_m);
+  const auto add = [&](const End& a, const End& b) {
+    for (const End* const end : {&a, &b}) {
+      if (end->away == 0) continue;
+      range.low = std::min(range.low, end->inverse_m);
+      range.high = std::max(range.high, end->inverse_m);
     }
     const float difference = std::abs(a.inverse_m - b.inverse_m);
-    if (a.away == 0 || b.away == 0 || difference >= least_difference) continue;
+    if (a.away == 0 || b.away == 0 || difference >= least_difference) return;
     least_difference = difference;
     const auto to_a = static_cast<float>(a.away);
     const auto to_b = static_cast<float>(b.away);
     range.guess = (a.inverse_m * to_b + b.inverse_m * to_a) / (to_a + to_b);
-  }
+  };
+  add(left, right);
+  add(above, below);
   range.low *= 1 - range_slack;
   range.high *= 1 + range_slack;
   return range;
@@ -106,16 +108,18 @@ DepthGaps::Node DepthGaps::look(const Input& input, int x, int y, const Range& r
   Eigen::Array3f high = -low;
   Node node;
   float nearest = std::numeric_limits<float>::max();
+  bool is_alike = true;
   int looks = 0;
   for (std::size_t k = 0; k < input.views.size(); ++k) {
     input.views.for_each_bare(k, points, [&](std::size_t i, const DepthView::Depth& bare) {
       const Eigen::Vector3f point_m = ray * depth_m[i];
-      if ((high - low).maxCoeff() > same_color || !input.views.is_in_gap(k, bare)) return;
+      if (!is_alike || !input.views.is_in_gap(k, bare)) return;
       const auto color = input.views.color(k, point_m);
       if (!color) return;
       const Eigen::Array3f mapped = input.color_maps[k + 1](*color, px, py);
       low = low.min(mapped);
       high = high.max(mapped);
+      is_alike = (high - low).maxCoeff() <= same_color;
       ++looks;
       const float away = std::abs(inverse_m[i] - range.guess);
       if (away >= nearest) return;
@@ -123,7 +127,7 @@ DepthGaps::Node DepthGaps::look(const Input& input, int x, int y, const Range& r
       node = {mapped, inverse_m[i], k};
     });
   }
-  return looks < fewest_looks || (high - low).maxCoeff() > same_color ? Node{} : node;
+  return is_alike && looks >= fewest_looks ? node : Node{};
 }
 
 void DepthGaps::look_along_row(const Input& input, int y, std::vector<End>& rights) {
