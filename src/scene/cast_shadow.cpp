@@ -13,10 +13,6 @@ CastShadow::Ground::Ground(const BackgroundPlane& plane_, const Eigen::Vector3f&
   along_u = (axis - axis.dot(normal) * normal).normalized();
   along_v = normal.cross(along_u);
 }
-Eigen::Vector2f CastShadow::Ground::coordinates(const Eigen::Vector3f& point_m) const {
-  const Eigen::Vector3f offset = point_m - origin;
-  return {along_u.dot(offset), along_v.dot(offset)};
-}
 Eigen::Vector3f CastShadow::Ground::point_m(const Eigen::Vector2f& place) const {
   return origin + place.x() * along_u + place.y() * along_v;
 }
@@ -24,15 +20,6 @@ Eigen::Vector3f CastShadow::Ground::point_m(const Eigen::Vector2f& place) const 
 float CastShadow::light_at(const Eigen::Vector3f& point_m) const {
   const Rect cell = cell_of(ground.coordinates(point_m));
   return light.bounds().contains(cell.x, cell.y) ? light(cell.x, cell.y).mean() : 1.F;
-}
-
-/// The cell on the point's line away from the light: what hides the cell hides the point, unless it
-/// is lower.
-bool CastShadow::is_hidden(const Eigen::Vector3f& point_m, const Beam& beam) const {
-  const float height_m = ground.plane.height_m(point_m);
-  const Rect cell = cell_of(ground.coordinates(point_m - height_m * beam.toward));
-  return light.bounds().contains(cell.x, cell.y) &&
-         step_m * static_cast<float>(beam.height(cell.x, cell.y)) > height_m;
 }
 
 }  // namespace diminish

@@ -21,7 +21,10 @@ struct CastShadow {
 
     Ground() = default;
     Ground(const BackgroundPlane& plane, const Eigen::Vector3f& middle);
-    Eigen::Vector2f coordinates(const Eigen::Vector3f& point_m) const;
+    Eigen::Vector2f coordinates(const Eigen::Vector3f& point_m) const {
+      const Eigen::Vector3f offset = point_m - origin;
+      return {along_u.dot(offset), along_v.dot(offset)};
+    }
     Eigen::Vector3f point_m(const Eigen::Vector2f& place) const;
   };
   /// Light from one direction.
@@ -58,8 +61,14 @@ struct CastShadow {
 
   /// Those that matter.
   std::span<const Beam> beams() const { return {beams_.data(), beam_count_}; }
-  /// Whether an object is between a point, anywhere above the plane, and the light.
-  bool is_hidden(const Eigen::Vector3f& point_m, const Beam& beam) const;
+  /// Whether an object is between a point, anywhere above the plane, and the light. What hides the
+  /// cell on the point's line away from the light hides the point, unless it is lower.
+  bool is_hidden(const Eigen::Vector3f& point_m, const Beam& beam) const {
+    const float height_m = ground.plane.height_m(point_m);
+    const Rect cell = cell_of(ground.coordinates(point_m - height_m * beam.toward));
+    return light.bounds().contains(cell.x, cell.y) &&
+           step_m * static_cast<float>(beam.height(cell.x, cell.y)) > height_m;
+  }
   /// The share of the light that is left at a point of the plane, of all channels: that of the
   /// nearest cell; 1 beyond the grid.
   float light_at(const Eigen::Vector3f& point_m) const;

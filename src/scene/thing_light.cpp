@@ -55,7 +55,7 @@ Eigen::Array3f light_on(const Eigen::Vector3f& point_m, const Eigen::Vector3f& n
   for (const CastShadow::Beam& beam : shadow.beams()) {
     const float facing = std::clamp(normal.dot(beam.toward), 0.F, 1.F);
     all -= (1 - facing) * beam.share;
-    if (shadow.is_hidden(point_m, beam)) dark += facing * beam.share;
+    if (facing > 0 && shadow.is_hidden(point_m, beam)) dark += facing * beam.share;
   }
   return (1 - share_of_beams * dark / all).max(ShadowFit::least_light);
 }
