@@ -227,7 +227,11 @@ void EdgeSnapping::mark_gaps(const DepthPart& part, const Rect& within, int y, b
       const int steps = downwards ? rows_below : std::min(most_steps, count - 1 - x);
       int next = 1;
       while (next <= steps && depth[x + next * step] == 0) ++next;
-      if (next > steps || gap_.is_between(depth[x], depth[x + next * step]) == 0) continue;
+      if (next > steps) continue;
+      const int other = depth[x + next * step];
+      if (std::abs(depth[x] - other) <= closer_than_gap_ || gap_.is_between(depth[x], other) == 0) {
+        continue;
+      }
       for (int k = 0; k <= next; ++k) is_edge[x + k * step] = 1;
     }
   }
