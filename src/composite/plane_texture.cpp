@@ -352,11 +352,13 @@ void PlaneTexture::add_tile(const Grain& grain, const Tile& tile, int first, int
                             Bgr* colors) {
   if (!tile.has_block) return;
   constexpr float scale = strength / TextureExample::unit;
+  const Eigen::Vector2f right = tile.turn.col(0);
   const Eigen::Vector2f start = static_cast<float>(y) * tile.turn.col(1) + tile.shift;
   for (int x = first; x < last; ++x) {
-    const Pixel shown = nearest_pixel(static_cast<float>(x) * tile.turn.col(0) + start);
+    const Pixel shown = nearest_pixel(static_cast<float>(x) * right + start);
     const auto level = static_cast<int>(
         std::lrint(scale * static_cast<float>(grain.example.grain(shown.x, shown.y))));
+    if (level == 0) continue;
     const auto add = [&](std::uint8_t& channel) {
       channel = static_cast<std::uint8_t>(std::clamp(channel + level, 0, 255));
     };
