@@ -37,7 +37,7 @@ class DepthGaps {
     ColorMapsBySource color_maps;  ///< of the RGB-D cameras
   };
   /// Changes pixels of the mask without a source: provenance::estimated, in the user's colours.
-  /// Deterministic. Cost: 4 to 16 million instructions a frame of the bundled recordings.
+  /// Deterministic. Cost: 5 to 7 million instructions a frame of the bundled recordings.
   void draw(const Input& input, Reconstruction& reconstruction);
 
  private:
