@@ -31,9 +31,10 @@ constexpr float not_looked_at = -1;
 }  // namespace
 
 DepthGaps::DepthGaps(const Rig& rig)
-    : step_((rig.color.width + most_node_columns - 1) / most_node_columns) {}
+    : shadows_(rig), step_((rig.color.width + most_node_columns - 1) / most_node_columns) {}
 
-void DepthGaps::find_known(const Reconstruction& reconstruction) {
+bool DepthGaps::find_known(const Mask& occlusion, const Reconstruction& reconstruction) {
+  bool is_any_hidden = false;
   const int columns = (part_.width + step_ - 1) / step_;
   const int rows = (part_.height + step_ - 1) / step_;
   known_.resize(columns, rows);
@@ -54,6 +55,9 @@ void DepthGaps::find_known(const Reconstruction& reconstruction) {
       } else {
         known_(x, y) = reconstruction.source(px, py) != 0 ? 1 / reconstruction.depth_m(px, py) : 0;
       }
+      is_any_hidden = is_any_hidden || (known_(x, y) == 0 && occlusion(px, py) != 0);
+      nodes_(x, y).inverse_m = 0;
+      nodes_(x, y).is_in_shadow = false;
       above_(x, y) = y == 0 ? End{0, 0} : next_to(x, y - 1, above_(x, y - 1));
     }
   }
@@ -62,6 +66,7 @@ void DepthGaps::find_known(const Reconstruction& reconstruction) {
       below_(x, y) = y == rows - 1 ? End{0, 0} : next_to(x, y + 1, below_(x, y + 1));
     }
   }
+  return is_any_hidden;
 }
 
 /// Guesses along the row or column whose ends are more alike.
@@ -89,8 +94,8 @@ DepthGaps::Range DepthGaps::range_of(const End& left, const End& right, const En
   return range;
 }
 
-DepthGaps::Node DepthGaps::look(const Input& input, int x, int y, const Range& range) const {
-  const Eigen::Vector3f ray = input.views.ray(column(x), row(y));
+DepthGaps::Node DepthGaps::look(const GapScene& scene, int x, int y, const Range& range) const {
+  const Eigen::Vector3f ray = scene.views.ray(column(x), row(y));
   const auto px = static_cast<float>(column(x));
   const auto py = static_cast<float>(row(y));
   // A whole vector of them: those beyond the last are at 0, where nothing is.
@@ -110,13 +115,13 @@ DepthGaps::Node DepthGaps::look(const Input& input, int x, int y, const Range& r
   float nearest = std::numeric_limits<float>::max();
   bool is_alike = true;
   int looks = 0;
-  for (std::size_t k = 0; k < input.views.size(); ++k) {
-    input.views.for_each_bare(k, points, [&](std::size_t i, const DepthView::Depth& bare) {
+  for (std::size_t k = 0; k < scene.views.size(); ++k) {
+    scene.views.for_each_bare(k, points, [&](std::size_t i, const DepthView::Depth& bare) {
       const Eigen::Vector3f point_m = ray * depth_m[i];
-      if (!is_alike || !input.views.is_in_gap(k, bare)) return;
-      const auto color = input.views.color(k, point_m);
+      if (!is_alike || !scene.views.is_in_gap(k, bare)) return;
+      const auto color = scene.views.color(k, point_m);
       if (!color) return;
-      const Eigen::Array3f mapped = input.color_maps[k + 1](*color, px, py);
+      const Eigen::Array3f mapped = scene.color_maps[k + 1](*color, px, py);
       low = low.min(mapped);
       high = high.max(mapped);
       is_alike = (high - low).maxCoeff() <= same_color;
@@ -124,13 +129,13 @@ DepthGaps::Node DepthGaps::look(const Input& input, int x, int y, const Range& r
       const float away = std::abs(inverse_m[i] - range.guess);
       if (away >= nearest) return;
       nearest = away;
-      node = {mapped, inverse_m[i], k};
+      node = {mapped, inverse_m[i], k, false};
     });
   }
   return is_alike && looks >= fewest_looks ? node : Node{};
 }
 
-void DepthGaps::look_along_row(const Input& input, int y, std::vector<End>& rights) {
+void DepthGaps::look_along_row(const GapScene& scene, int y, std::vector<End>& rights) {
   const float* const known = known_.row(y);
   Node* const nodes = nodes_.row(y);
   const int columns = known_.width();
@@ -150,17 +155,29 @@ void DepthGaps::look_along_row(const Input& input, int y, std::vector<End>& righ
   }
   end = {0, 0};
   for (int x = 0; x < columns; ++x) {
-    nodes[x].inverse_m = 0;
-    if (known[x] == 0) {
+    if (known[x] == 0 && !nodes[x].is_in_shadow) {
       const Range range =
           range_of(end, rights[static_cast<std::size_t>(x)], above_(x, y), below_(x, y));
-      if (range.guess > 0) nodes[x] = look(input, x, y, range);
+      if (range.guess > 0) nodes[x] = look(scene, x, y, range);
     }
     step_on(x);
   }
 }
 
-void DepthGaps::confirm(const Input& input) {
+void DepthGaps::take_shadows(const GapScene& scene) {
+  shadows_.for_each_node(part_, step_, [&](int x, int y, float inverse_m, std::size_t k) {
+    Node& node = nodes_(x, y);
+    if (known_(x, y) != 0 || node.inverse_m >= inverse_m) return;
+    const int px = column(x);
+    const int py = row(y);
+    const auto color = scene.views.color(k, scene.views.ray(px, py) / inverse_m);
+    if (!color) return;
+    node = {scene.color_maps[k + 1](*color, static_cast<float>(px), static_cast<float>(py)),
+            inverse_m, k, true};
+  });
+}
+
+void DepthGaps::confirm(const GapScene& scene) {
   found_.resize(nodes_.width(), nodes_.height(), 0);
   for (int y = 0; y < nodes_.height(); ++y) {
     for (int x = 0; x < nodes_.width(); ++x) {
@@ -179,8 +196,8 @@ void DepthGaps::confirm(const Input& input) {
       });
     };
     for_each_node([&](int x, int y) {
-      if (input.occlusion(column(x), row(y)) != 0) return;
-      const Eigen::Array3f seen = to_channels(input.camera(column(x), row(y)));
+      if (scene.masks.color(column(x), row(y)) != 0) return;
+      const Eigen::Array3f seen = to_channels(scene.frame.color(column(x), row(y)));
       errors_.push_back((nodes_(x, y).color - seen).abs().maxCoeff());
     });
     if (errors_.size() >= fewest_witnesses) {
@@ -188,22 +205,24 @@ void DepthGaps::confirm(const Input& input) {
       std::nth_element(errors_.begin(), middle, errors_.end());
       if (*middle <= confirmed_error) continue;
     }
-    for_each_node([&](int x, int y) { nodes_(x, y).inverse_m = 0; });
+    for_each_node([&](int x, int y) {
+      if (!nodes_(x, y).is_in_shadow) nodes_(x, y).inverse_m = 0;
+    });
   }
 }
 
-void DepthGaps::draw_node(const Input& input, const Node& node, const Rect& pixels,
+void DepthGaps::draw_node(const GapScene& scene, const Node& node, const Rect& pixels,
                           Reconstruction& reconstruction) const {
   for (int y = pixels.y; y < pixels.bottom(); ++y) {
     for (int x = pixels.x; x < pixels.right(); ++x) {
-      if (input.occlusion(x, y) == 0 || !reconstruction.region.keeps(x, y) ||
+      if (scene.masks.color(x, y) == 0 || !reconstruction.region.keeps(x, y) ||
           reconstruction.source(x, y) != 0) {
         continue;
       }
-      const auto color = input.views.color(node.camera, input.views.ray(x, y) / node.inverse_m);
+      const auto color = scene.views.color(node.camera, scene.views.ray(x, y) / node.inverse_m);
       if (!color) continue;
       const Bgr mapped = to_color(
-          input.color_maps[node.camera + 1](*color, static_cast<float>(x), static_cast<float>(y)));
+          scene.color_maps[node.camera + 1](*color, static_cast<float>(x), static_cast<float>(y)));
       reconstruction.color(x, y) = {mapped.b, mapped.g, mapped.r, 255};
       reconstruction.depth_m(x, y) = 1 / node.inverse_m;
       reconstruction.source(x, y) = provenance::estimated;
@@ -211,19 +230,21 @@ void DepthGaps::draw_node(const Input& input, const Node& node, const Rect& pixe
   }
 }
 
-void DepthGaps::draw(const Input& input, Reconstruction& reconstruction) {
-  part_ = intersect(input.part, intersect(reconstruction.region, reconstruction.source.bounds()));
+void DepthGaps::draw(const GapScene& scene, const Rect& part, Reconstruction& reconstruction) {
+  part_ = intersect(part, intersect(reconstruction.region, reconstruction.source.bounds()));
   if (part_.empty()) return;
-  find_known(reconstruction);
+  if (!find_known(scene.masks.color, reconstruction)) return;
+  shadows_.find(scene);
+  take_shadows(scene);
   for_rows(known_.height(), [&](Rows rows) {
-    for (int y = rows.first; y < rows.last; ++y) look_along_row(input, y, rights_[rows.band]);
+    for (int y = rows.first; y < rows.last; ++y) look_along_row(scene, y, rights_[rows.band]);
   });
-  confirm(input);
+  confirm(scene);
   for_rows(nodes_.height(), [&](Rows rows) {
     for (int y = rows.first; y < rows.last; ++y) {
       for (int x = 0; x < nodes_.width(); ++x) {
         if (!(nodes_(x, y).inverse_m > 0)) continue;
-        draw_node(input, nodes_(x, y), intersect({column(x), row(y), step_, step_}, part_),
+        draw_node(scene, nodes_(x, y), intersect({column(x), row(y), step_, step_}, part_),
                   reconstruction);
       }
     }

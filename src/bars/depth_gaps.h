@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bars/bar_views.h"
+#include "bars/shadow_surfaces.h"
 #include "core/connected_regions.h"
 #include "core/rows.h"
 #include "diminish/reconstruction.h"
@@ -13,7 +14,7 @@
 namespace diminish {
 
 /// Draws what an RGB-D camera sees where it measures no depth (black or shiny surfaces, the shadows
-/// of its own projector), if the user's picture confirms it.
+/// of its own projector), if the user's picture confirms it. First ShadowSurfaces; elsewhere:
 ///
 /// 1. A pixel that nothing is known of is as far away as what is around it in its row or column, or
 ///    anywhere between. At each such distance an RGB-D camera must have no depth there, between
@@ -29,16 +30,10 @@ class DepthGaps {
  public:
   explicit DepthGaps(const Rig& rig);
 
-  struct Input {
-    const BarViews& views;         ///< of this frame
-    ImageView<Bgr> camera;         ///< the user's picture
-    const Mask& occlusion;         ///< of the colour camera
-    const Rect& part;              ///< of the picture: the objects and what is around them
-    ColorMapsBySource color_maps;  ///< of the RGB-D cameras
-  };
+  /// part: of the picture: the objects and what is around them.
   /// Changes pixels of the mask without a source: provenance::estimated, in the user's colours.
-  /// Deterministic. Cost: 5 to 7 million instructions a frame of the bundled recordings.
-  void draw(const Input& input, Reconstruction& reconstruction);
+  /// Deterministic. Cost: 5 to 10 million instructions a frame of the bundled recordings.
+  void draw(const GapScene& scene, const Rect& part, Reconstruction& reconstruction);
 
  private:
   /// Something known in a node's row or column.
@@ -51,6 +46,7 @@ class DepthGaps {
     Eigen::Array3f color;
     float inverse_m = 0;  ///< 0: nothing
     std::size_t camera = 0;
+    bool is_in_shadow = false;
   };
   /// A range of inverse depths.
   struct Range {
@@ -59,17 +55,20 @@ class DepthGaps {
 
   int column(int x) const { return part_.x + x * step_; }
   int row(int y) const { return part_.y + y * step_; }
-  void find_known(const Reconstruction& reconstruction);
+  /// Returns whether something is unknown that the objects hide.
+  bool find_known(const Mask& occlusion, const Reconstruction& reconstruction);
+  void take_shadows(const GapScene& scene);
   static Range range_of(const End& left, const End& right, const End& above, const End& below);
   /// rights: scratch.
-  void look_along_row(const Input& input, int y, std::vector<End>& rights);
-  Node look(const Input& input, int x, int y, const Range& range) const;
+  void look_along_row(const GapScene& scene, int y, std::vector<End>& rights);
+  Node look(const GapScene& scene, int x, int y, const Range& range) const;
   /// Keeps what is confirmed.
-  void confirm(const Input& input);
+  void confirm(const GapScene& scene);
   /// pixels: those that the node stands for.
-  void draw_node(const Input& input, const Node& node, const Rect& pixels,
+  void draw_node(const GapScene& scene, const Node& node, const Rect& pixels,
                  Reconstruction& reconstruction) const;
 
+  ShadowSurfaces shadows_;
   int step_;   ///< pixels from one node to the next
   Rect part_;  ///< of the picture
   // By node.

@@ -58,7 +58,7 @@ class Gaps : public ::testing::Test {
     views.begin(seen->frame, seen->poses, masks);
     DepthGaps gaps(seen->rig);
     const std::vector<ColorMap> maps(256);
-    gaps.draw({views, seen->frame.color, masks.color, seen->rig.color.bounds(), maps}, drawn);
+    gaps.draw({views, seen->frame, seen->poses, masks, {}, maps}, seen->rig.color.bounds(), drawn);
   }
   std::size_t count_drawn() const {
     return static_cast<std::size_t>(std::count(

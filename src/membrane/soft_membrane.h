@@ -46,7 +46,8 @@ class SoftMembrane {
   void row(int y, std::vector<Node>& nodes) const;
 
  private:
-  static constexpr std::size_t cell_samples = (cell / step) * (cell / step);
+  static constexpr std::size_t cell_steps = cell / step;
+  static constexpr std::size_t cell_samples = cell_steps * cell_steps;
   struct Differences {
     std::array<Eigen::Array3f, cell_samples> values;
     std::size_t count;

@@ -290,9 +290,8 @@ void FrameStages::process(const FrameSet& given, DiminishedFrame& result) {
   views.begin(frame, report.poses, masks);
   stage(Stage::compositing, [&] {
     if (options.close_gaps && !objects.empty()) {
-      gaps.draw({views, frame.color, masks.color, grow(objects, surroundings_px()),
-                 color_maps.by_source()},
-                result.reconstruction);
+      gaps.draw({views, frame, report.poses, masks, samples.surfaces, color_maps.by_source()},
+                grow(objects, surroundings_px()), result.reconstruction);
     }
     background.label(result.reconstruction, result.surfaces);
     Compositor::sort(inputs, result);
