@@ -26,9 +26,15 @@ void SoftMembrane::add(int x, int y, const Eigen::Array3f& difference) {
   there.values[there.count++] = difference;
 }
 
-/// What to weigh a grid point's differences about.
-Eigen::Array3f SoftMembrane::usual(std::span<const Eigen::Array3f> differences) {
-  if (2 * differences.size() < cell_samples) return Eigen::Array3f::Zero();
+namespace {
+/// How far each is from the center in its farthest channel.
+float deviation(const Eigen::Array3f& difference, const Eigen::Array3f& center) {
+  return (difference - center).abs().maxCoeff();
+}
+}  // namespace
+
+/// Of each channel.
+Eigen::Array3f SoftMembrane::medians(std::span<const Eigen::Array3f> differences) {
   std::array<float, cell_samples> values{};
   const auto end = values.begin() + static_cast<std::ptrdiff_t>(differences.size());
   Eigen::Array3f medians;
@@ -37,12 +43,28 @@ Eigen::Array3f SoftMembrane::usual(std::span<const Eigen::Array3f> differences) 
                    [&](const Eigen::Array3f& difference) { return difference[channel]; });
     medians[channel] = median(values.begin(), end);
   }
-  if ((medians.abs() > largest_median).any()) return Eigen::Array3f::Zero();
-  std::transform(
-      differences.begin(), differences.end(), values.begin(),
-      [&](const Eigen::Array3f& difference) { return (difference - medians).abs().maxCoeff(); });
-  if (median(values.begin(), end) > largest_spread) return Eigen::Array3f::Zero();
   return medians;
+}
+
+/// What to weigh a grid point's differences about.
+Eigen::Array3f SoftMembrane::usual(std::span<const Eigen::Array3f> differences) {
+  if (2 * differences.size() < cell_samples) return Eigen::Array3f::Zero();
+  const Eigen::Array3f center = medians(differences);
+  if ((center.abs() > largest_median).any()) return Eigen::Array3f::Zero();
+  std::array<float, cell_samples> deviations{};
+  const auto end = std::transform(
+      differences.begin(), differences.end(), deviations.begin(),
+      [&](const Eigen::Array3f& difference) { return deviation(difference, center); });
+  if (median(deviations.begin(), end) > largest_spread) return Eigen::Array3f::Zero();
+  // Outliers move a median a little; the second one is without them.
+  std::array<Eigen::Array3f, cell_samples> near;
+  const auto near_end = std::copy_if(differences.begin(), differences.end(), near.begin(),
+                                     [&](const Eigen::Array3f& difference) {
+                                       return deviation(difference, center) < largest_deviation;
+                                     });
+  const auto count = static_cast<std::size_t>(near_end - near.begin());
+  if (2 * count < cell_samples) return Eigen::Array3f::Zero();
+  return count == differences.size() ? center : medians({near.data(), count});
 }
 
 void SoftMembrane::weigh_differences() {

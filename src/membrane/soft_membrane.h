@@ -52,6 +52,7 @@ class SoftMembrane {
     std::array<Eigen::Array3f, cell_samples> values;
     std::size_t count;
   };
+  static Eigen::Array3f medians(std::span<const Eigen::Array3f> differences);
   static Eigen::Array3f usual(std::span<const Eigen::Array3f> differences);
   void weigh_differences();
   /// To be indexed by the column; from row -1 on.

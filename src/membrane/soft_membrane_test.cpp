@@ -56,7 +56,7 @@ TEST(SoftMembrane, FollowsDifferencesAndFadesAwayFromThem) {
   EXPECT_LT(std::abs(row[390]), 0.1);
 }
 
-TEST(SoftMembrane, OutliersLeaveHardlyATrace) {
+TEST(SoftMembrane, OutliersLeaveNoTrace) {
   SoftMembrane plain;
   SoftMembrane disturbed;
   for (SoftMembrane* membrane : {&plain, &disturbed}) {
@@ -68,10 +68,7 @@ TEST(SoftMembrane, OutliersLeaveHardlyATrace) {
   }
   plain.solve();
   disturbed.solve();
-  const std::vector<float> expected = row_of(plain, 100);
-  const std::vector<float> row = row_of(disturbed, 100);
-  // The mean of all would be 16 levels away.
-  for (std::size_t i = 0; i < row.size(); ++i) EXPECT_NEAR(row[i], expected[i], 0.3) << i;
+  EXPECT_EQ(row_of(plain, 100), row_of(disturbed, 100));
 }
 
 /// In the strip's middle, where the strip has these differences.

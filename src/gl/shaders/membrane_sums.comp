@@ -27,30 +27,37 @@ void find_differences(ivec2 first) {
   }
 }
 
-// Each component's upper median of what the differences are to `center`.
-vec3 medians(vec3 center, bool absolute) {
+// Each component's upper median of the first `size` of `values`.
+vec3 medians(vec3 values[samples], int size) {
   vec3 found = vec3(0);
-  for (int i = 0; i < count; ++i) {
-    vec3 own = differences[i] - center;
-    if (absolute) own = vec3(largest_of(abs(own)));
+  for (int i = 0; i < size; ++i) {
     // Equal ones stand in their order.
     ivec3 rank = ivec3(0);
-    for (int j = 0; j < count; ++j) {
-      vec3 other = differences[j] - center;
-      if (absolute) other = vec3(largest_of(abs(other)));
-      rank += ivec3(lessThan(other, own)) + (j < i ? ivec3(equal(other, own)) : ivec3(0));
+    for (int j = 0; j < size; ++j) {
+      rank += ivec3(lessThan(values[j], values[i])) +
+              (j < i ? ivec3(equal(values[j], values[i])) : ivec3(0));
     }
-    found = mix(found, own, equal(rank, ivec3(count / 2)));
+    found = mix(found, values[i], equal(rank, ivec3(size / 2)));
   }
   return found;
 }
 
-// What to weigh the differences about.
+// What to weigh the differences about: see SoftMembrane::usual.
 vec3 usual_difference() {
   if (2 * count < samples) return vec3(0);
-  vec3 center = medians(vec3(0), false);
+  vec3 center = medians(differences, count);
   if (largest_of(abs(center)) > LARGEST_MEDIAN) return vec3(0);
-  return medians(center, true).x > LARGEST_SPREAD ? vec3(0) : center;
+  vec3 deviations[samples];
+  vec3 near[samples];
+  int near_count = 0;
+  for (int i = 0; i < count; ++i) {
+    float deviation = largest_of(abs(differences[i] - center));
+    deviations[i] = vec3(deviation);
+    if (deviation < LARGEST_DEVIATION) near[near_count++] = differences[i];
+  }
+  if (medians(deviations, count).x > LARGEST_SPREAD) return vec3(0);
+  if (2 * near_count < samples) return vec3(0);
+  return near_count == count ? center : medians(near, near_count);
 }
 
 void main() {
