@@ -12,6 +12,7 @@ inline Options gpu_options() {
   options.complete_sides = false;
   options.draw_bars = false;
   options.close_gaps = false;
+  options.remove_scraps = false;
   options.refine_shadows = false;
   return options;
 }

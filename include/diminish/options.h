@@ -23,6 +23,7 @@ struct Options {
   bool remove_hidden = true;
   bool smooth_depth = true;
   bool snap_edges = true;
+  bool remove_scraps = true;
   bool smooth_colors = true;
   bool complete_sides = true;
   bool close_gaps = true;
@@ -113,6 +114,9 @@ void for_each_option(AnyOptions& options, Visit&& visit) {
   visit(OptionInfo{"snap_edges", "",
                    "Move depth edges onto the edges of the RGB-D camera's colour image"},
         options.snap_edges);
+  visit(OptionInfo{"remove_scraps", "",
+                   "Drop small pieces of surfaces that hang in the air by themselves"},
+        options.remove_scraps);
   visit(
       OptionInfo{
           "smooth_colors", "",
@@ -124,8 +128,8 @@ void for_each_option(AnyOptions& options, Visit&& visit) {
                  "Complete the sides, seen by no RGB-D camera, of what stands on a table or floor"},
       options.complete_sides);
   visit(OptionInfo{"close_gaps", "",
-                   "Show what an RGB-D camera sees without depth (black, shiny), where the colour "
-                   "camera's picture beside the objects confirms it"},
+                   "Show what an RGB-D camera sees without depth (black, shiny, in its projector's "
+                   "shadow), where the colour camera's picture beside the objects confirms it"},
         options.close_gaps);
   visit(OptionInfo{"draw_bars", "",
                    "Draw steel pipes and other bars that depth sensors do not see, where an RGB-D "

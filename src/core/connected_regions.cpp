@@ -13,40 +13,6 @@ void ConnectedRegions::find(const Mask& mask, Pixels pixels, Connectivity connec
   connect(connectivity);
 }
 
-void ConnectedRegions::connect(Connectivity connectivity) {
-  const int reach = connectivity == Connectivity::eight ? 1 : 0;
-  const int count = static_cast<int>(runs_.size());
-  int above = 0;  // the next run in the row above that may touch
-  for (int row = 0; row < count;) {
-    const int y = runs_[row].y;
-    const int above_end = row > 0 && runs_[row - 1].y == y - 1 ? row : above;
-    int i = row;
-    for (; i < count && runs_[i].y == y; ++i) {
-      Run& run = runs_[i];
-      run.region = i;
-      while (above < above_end && runs_[above].last + reach <= run.first) ++above;
-      for (int k = above; k < above_end && runs_[k].first < run.last + reach; ++k) unite(i, k);
-    }
-    above = row;
-    row = i;
-  }
-  number_regions();
-}
-
-void ConnectedRegions::unite(int a, int b) {
-  a = root(a);
-  b = root(b);
-  runs_[std::max(a, b)].region = std::min(a, b);
-}
-
-int ConnectedRegions::root(int run) {
-  while (runs_[run].region != run) {
-    runs_[run].region = runs_[runs_[run].region].region;
-    run = runs_[run].region;
-  }
-  return run;
-}
-
 void ConnectedRegions::number_regions() {
   regions_.clear();
   for (int i = 0; i < static_cast<int>(runs_.size()); ++i) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <vector>
 
 #include "core/runs.h"
@@ -32,10 +33,16 @@ class ConnectedRegions {
   void find(const Mask& mask, Pixels pixels, Connectivity connectivity);
 
   /// Does the same for runs that the caller knows: call `begin`, `add` each run, then `connect`.
-  /// Runs come by row, then from left to right. Runs in a row must not touch each other.
+  /// Runs come by row, then from left to right. Runs in a row must not touch each other, unless
+  /// their regions are to be four-connected.
   void begin() { runs_.clear(); }
   void add(int y, int first, int last) { runs_.push_back({y, first, last, 0, -1}); }
-  void connect(Connectivity connectivity);
+  void connect(Connectivity connectivity) {
+    connect(connectivity, [](const Run&, const Run&) { return true; });
+  }
+  /// joins(above, below): whether two runs that are neighbours belong together.
+  template <class Joins>
+  void connect(Connectivity connectivity, const Joins& joins);
 
   /// By row, then from left to right.
   const std::vector<Run>& runs() const { return runs_; }
@@ -53,12 +60,45 @@ class ConnectedRegions {
   }
 
  private:
-  void unite(int a, int b);
-  int root(int run);
+  void unite(int a, int b) {
+    a = root(a);
+    b = root(b);
+    runs_[std::max(a, b)].region = std::min(a, b);
+  }
+  int root(int run) {
+    while (runs_[run].region != run) {
+      runs_[run].region = runs_[runs_[run].region].region;
+      run = runs_[run].region;
+    }
+    return run;
+  }
   void number_regions();
 
   std::vector<Run> runs_;  ///< while they are united, `region` is another run of the region
   std::vector<Region> regions_;
 };
+
+template <class Joins>
+void ConnectedRegions::connect(Connectivity connectivity, const Joins& joins) {
+  const int reach = connectivity == Connectivity::eight ? 1 : 0;
+  const int count = static_cast<int>(runs_.size());
+  int above = 0;  // the next run in the row above that may touch
+  for (int row = 0; row < count;) {
+    const int y = runs_[row].y;
+    const int above_end = row > 0 && runs_[row - 1].y == y - 1 ? row : above;
+    int i = row;
+    for (; i < count && runs_[i].y == y; ++i) {
+      Run& run = runs_[i];
+      run.region = i;
+      while (above < above_end && runs_[above].last + reach <= run.first) ++above;
+      for (int k = above; k < above_end && runs_[k].first < run.last + reach; ++k) {
+        if (joins(runs_[k], run)) unite(i, k);
+      }
+    }
+    above = row;
+    row = i;
+  }
+  number_regions();
+}
 
 }  // namespace diminish

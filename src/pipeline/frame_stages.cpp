@@ -279,6 +279,11 @@ void FrameStages::process(const FrameSet& given, DiminishedFrame& result) {
     prepare();
   }
   stage(Stage::merging, [&] {
+    if (options.remove_scraps && !objects.empty()) {
+      scraps.remove(masks.color, objects,
+                    {options.discontinuity_threshold_m, options.discontinuity_reach_m},
+                    result.reconstruction);
+    }
     if (!methods.remembers) return;
     memory.merge(recalling, color_maps.by_source(), result.reconstruction, report.memory);
     Doubt::judge_background(memory.background_fit(), options, report);

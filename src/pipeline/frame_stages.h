@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "bars/depth_gaps.h"
+#include "blend/scraps.h"
 #include "composite/compositor.h"
 #include "depth/camera_choice.h"
 #include "depth/depth_stage.h"
@@ -83,6 +84,7 @@ struct FrameStages {
   MemoryStage memory;
   Compositor compositor;
   BarViews views;
+  Scraps scraps;
   DepthGaps gaps;
   Inventions inventions;
   Doubt doubt;
