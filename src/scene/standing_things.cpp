@@ -207,44 +207,42 @@ void StandingThings::find_edges(const View& view, int y, int begin, int end, std
 /// What lies in a row between two such pixels, or between one and the thing itself, is part of the
 /// thing, too: things have no slits.
 void StandingThings::close_slits(const View& view, Surfaces& surfaces) {
+  const int begin = view.part.x;
   const int end = view.part.right();
   for (int y = view.part.y; y < view.part.bottom(); ++y) {
     std::uint8_t* const label = surfaces.label.row(y);
-    const int standing = find_equal(label, view.part.x, end, surface_label::standing);
-    if (standing == end) continue;
-    const int begin = std::max(view.part.x, standing - widest_slit_px);
-    std::uint8_t* const things = row_.data();
     const std::uint8_t* const source = view.input.reconstruction.source.row(y);
-    for (int x = begin; x < end; ++x) {
-      const bool is_thing =
-          all_of(label[x] == surface_label::foreground, source[x] != provenance::remembered);
-      things[x] = any_of(is_thing, label[x] == surface_label::standing) ? 1 : 0;
-    }
-    const auto depth_m = [&](int x) {
-      return label[x] == surface_label::standing ? surfaces.standing_depth_m(x, y)
-                                                 : view.depth_m(x, y);
+    float* const side_m = surfaces.standing_depth_m.row(y);
+    const auto is_thing_at = [&](int x, float z_m) {
+      if (label[x] == surface_label::standing) return std::abs(side_m[x] - z_m) < slit_step_m;
+      return label[x] == surface_label::foreground && source[x] != provenance::remembered &&
+             std::abs(view.depth_m(x, y) - z_m) < slit_step_m;
     };
-    const auto close = [&](int last, int next) {
-      if (next - last > widest_slit_px ||
-          (label[last] != surface_label::standing && label[next] != surface_label::standing)) {
+    // From a side's last pixel on.
+    const auto close = [&](int from, int step) {
+      const float z = side_m[from];
+      int to = from + step;
+      const auto is_in_slit = [&] {
+        return to >= begin && to < end && std::abs(to - from) <= widest_slit_px &&
+               !is_thing_at(to, z) && view.hides(to, y, z);
+      };
+      while (is_in_slit()) to += step;
+      if (to < begin || to >= end || std::abs(to - from) > widest_slit_px || !is_thing_at(to, z)) {
         return;
       }
-      const float z = depth_m(next);
-      const float last_z = depth_m(last);
-      bool is_free = std::abs(z - last_z) < slit_step_m;
-      for (int k = last + 1; is_free && k < next; ++k) {
-        is_free = view.hides(k, y, std::max(z, last_z));
+      const float farthest =
+          std::max(z, label[to] == surface_label::standing ? side_m[to] : view.depth_m(to, y));
+      for (int x = from + step; x != to; x += step) {
+        if (!view.hides(x, y, farthest)) return;
       }
-      if (!is_free) return;
-      for (int k = last + 1; k < next; ++k) {
-        label[k] = surface_label::standing;
-        surfaces.standing_depth_m(k, y) = std::max(z, last_z);
+      for (int x = from + step; x != to; x += step) {
+        label[x] = surface_label::standing;
+        side_m[x] = farthest;
       }
     };
-    int last = end;  ///< the last pixel of a thing; none yet
-    for_each_run(things, begin, end, Pixels::set, [&](int first, int after) {
-      if (last < end) close(last, first);
-      last = after - 1;
+    for_each_run(label, begin, end, surface_label::standing, [&](int first, int last) {
+      close(first, -1);
+      close(last - 1, 1);
     });
   }
 }

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "analytic_scene.h"
 #include "diminish/diminished_frame.h"
@@ -44,6 +46,7 @@ class OnATable : public ::testing::Test {
           is_seen && hit.on_box ? surface_label::foreground : surface_label::first_plane;
       side_m(x, y) = !is_seen && hit.on_box ? z : 0;
     });
+    if (has_slit) open_slit();
     OcclusionMasks masks = testing::empty_masks(seen.rig);
     masks.color.fill(255);
     const Eigen::Vector3d normal = color_from_world.rotation * Eigen::Vector3d::UnitZ();
@@ -55,6 +58,24 @@ class OnATable : public ::testing::Test {
         {seen.frame, seen.poses, masks, color.bounds(), reconstruction, planes}, labelled,
         surfaces);
   }
+  /// Beside the side that nobody sees, and above that through the top, another thing shows through
+  /// the box, far behind it.
+  void open_slit() {
+    constexpr int width_px = 3;
+    constexpr float further_m = 0.18F;
+    for (int y = side_m.height() - 1, side = 0; y >= 0; --y) {
+      const float* const own = side_m.row(y);
+      const float* const found =
+          std::find_if(own, own + side_m.width(), [](float z) { return z != 0; });
+      const bool has_side = found != own + side_m.width();
+      if (has_side) side = static_cast<int>(found - own);
+      for (int x = std::max(0, side - width_px); x < side; ++x) {
+        if (surfaces.label(x, y) != surface_label::foreground) continue;
+        if (has_side) slit.push_back({x, y, reconstruction.depth_m(x, y)});
+        reconstruction.depth_m(x, y) += further_m;
+      }
+    }
+  }
   int count_standing() const {
     int count = 0;
     for (const std::uint8_t label : surfaces.label) {
@@ -64,6 +85,12 @@ class OnATable : public ::testing::Test {
   }
 
   std::uint8_t box_source = 1;
+  bool has_slit = false;
+  struct SlitPixel {
+    int x, y;
+    float box_m;  ///< the box's z
+  };
+  std::vector<SlitPixel> slit;
   Reconstruction reconstruction;
   Surfaces surfaces;
   Image<std::uint8_t> before;
@@ -91,6 +118,22 @@ TEST_F(OnATable, FindsTheSideThatOnlyTheUserWouldSee) {
   ASSERT_GT(either, 400);
   EXPECT_GT(both, 0.75 * either);
   EXPECT_LT(error_m / both, 0.015);
+}
+
+TEST_F(OnATable, HasNoSlitThroughWhichAnotherThingShows) {
+  AnalyticScene scene;
+  scene.box_min.z() = 0;
+  scene.box_max.z() = 0.2;
+  has_slit = true;
+  set_up(scene);
+  ASSERT_GT(slit.size(), 100U);
+  int closed = 0;
+  for (const SlitPixel& pixel : slit) {
+    const bool is_side = surfaces.label(pixel.x, pixel.y) == surface_label::standing;
+    const float off_m = surfaces.standing_depth_m(pixel.x, pixel.y) - pixel.box_m;
+    closed += is_side && std::abs(off_m) < 0.05F ? 1 : 0;
+  }
+  EXPECT_GT(closed, 0.8 * static_cast<double>(slit.size()));
 }
 
 TEST_F(OnATable, ABoxThatIsOnlyRememberedHidesNothing) {
