@@ -25,10 +25,7 @@ void FindLinks(const float* depth_m, int count, const sdct::Threshold& step, std
     const auto zero = hn::Zero(d);
     const auto own = hn::LoadU(d, depth_m + x);
     const auto next = hn::LoadU(d, depth_m + x + 1);
-    const auto nearest = hn::Min(own, next);
-    const auto relative = hn::Mul(nearest, hn::Set(d, step.inverse_reach));
-    const auto growth = hn::Max(hn::Set(d, 1.F), hn::Mul(relative, relative));
-    const auto most = hn::Mul(growth, hn::Set(d, step.constant_m));
+    const auto most = ThresholdAt(d, step, hn::Min(own, next));
     const auto joins = hn::And(hn::Lt(hn::AbsDiff(own, next), most), hn::Gt(next, zero));
     const auto drawn = hn::IfThenElse(joins, hn::Set(d, static_cast<float>(Scraps::linked)),
                                       hn::Set(d, static_cast<float>(Scraps::last)));
@@ -45,9 +42,6 @@ namespace diminish {
 namespace {
 
 HWY_EXPORT(FindLinks);
-
-/// Around the objects is looked for the rest of a piece, in pixels.
-constexpr int surroundings_px = 16;
 
 bool is_step(float a_m, float b_m, const sdct::Threshold& step) {
   return std::abs(a_m - b_m) >= step.at(std::min(a_m, b_m));
@@ -96,9 +90,9 @@ void Scraps::find_pieces(const Rect& part, const sdct::Threshold& step,
   });
 }
 
-void Scraps::remove(const Mask& occlusion, const Rect& objects, const sdct::Threshold& step,
+void Scraps::remove(const Mask& occlusion, const Rect& surroundings, const sdct::Threshold& step,
                     Reconstruction& reconstruction) {
-  const Rect part = intersect(grow(objects, surroundings_px), reconstruction.region);
+  const Rect part = intersect(surroundings, reconstruction.region);
   if (part.empty()) return;
   find_pieces(part, step, reconstruction.depth_m);
   const int side = occlusion.width() / squares_across;

@@ -18,8 +18,9 @@ class Scraps {
   static constexpr int squares_across = 64;
 
   /// A piece is what is connected without a step between neighbouring pixels; its pixels inside the
-  /// mask go. objects: the mask's box. Cost: 5 instructions a pixel of the box.
-  void remove(const Mask& occlusion, const Rect& objects, const sdct::Threshold& step,
+  /// mask go. surroundings: the mask's box and what is around it, where a piece may go on. Cost: 8
+  /// instructions a pixel of these.
+  void remove(const Mask& occlusion, const Rect& surroundings, const sdct::Threshold& step,
               Reconstruction& reconstruction);
 
   /// How a drawn pixel goes on to its right; 0: it was not drawn.

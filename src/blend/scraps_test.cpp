@@ -37,7 +37,7 @@ class ScrapsTest : public ::testing::Test {
       for (int x = part.x; x < part.right(); ++x) draw(x, y, z_m);
     }
   }
-  void remove() { Scraps().remove(mask, objects, step, scene); }
+  void remove() { Scraps().remove(mask, grow(objects, 16), step, scene); }
   bool is_drawn(int x, int y) const {
     const bool is = scene.source(x, y) != 0;
     EXPECT_EQ(scene.depth_m(x, y) > 0, is);

@@ -9,6 +9,7 @@
 #include <hwy/highway.h>
 
 #include "depth/depth_noise.h"
+#include "depth/discontinuity.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace diminish::HWY_NAMESPACE {
@@ -55,6 +56,15 @@ template <class D, class V = hwy::HWY_NAMESPACE::Vec<D>>
 HWY_INLINE V NoiseAt(D d, const DepthNoise& noise, V z) {
   namespace hn = hwy::HWY_NAMESPACE;
   return hn::Add(hn::Set(d, noise.constant_m), hn::Mul(hn::Mul(hn::Set(d, noise.by_square), z), z));
+}
+
+/// sdct::Threshold::at.
+template <class D, class V = hwy::HWY_NAMESPACE::Vec<D>>
+HWY_INLINE V ThresholdAt(D d, const sdct::Threshold& threshold, V z) {
+  namespace hn = hwy::HWY_NAMESPACE;
+  const V relative = hn::Mul(z, hn::Set(d, threshold.inverse_reach));
+  return hn::Mul(hn::Max(hn::Set(d, 1.F), hn::Mul(relative, relative)),
+                 hn::Set(d, threshold.constant_m));
 }
 
 }  // namespace

@@ -26,13 +26,6 @@ void SoftMembrane::add(int x, int y, const Eigen::Array3f& difference) {
   there.values[there.count++] = difference;
 }
 
-namespace {
-/// How far each is from the center in its farthest channel.
-float deviation(const Eigen::Array3f& difference, const Eigen::Array3f& center) {
-  return (difference - center).abs().maxCoeff();
-}
-}  // namespace
-
 /// Of each channel.
 Eigen::Array3f SoftMembrane::medians(std::span<const Eigen::Array3f> differences) {
   std::array<float, cell_samples> values{};
@@ -51,18 +44,17 @@ Eigen::Array3f SoftMembrane::usual(std::span<const Eigen::Array3f> differences) 
   if (2 * differences.size() < cell_samples) return Eigen::Array3f::Zero();
   const Eigen::Array3f center = medians(differences);
   if ((center.abs() > largest_median).any()) return Eigen::Array3f::Zero();
-  std::array<float, cell_samples> deviations{};
-  const auto end = std::transform(
-      differences.begin(), differences.end(), deviations.begin(),
-      [&](const Eigen::Array3f& difference) { return deviation(difference, center); });
-  if (median(deviations.begin(), end) > largest_spread) return Eigen::Array3f::Zero();
   // Outliers move a median a little; the second one is without them.
+  std::array<float, cell_samples> deviations{};
   std::array<Eigen::Array3f, cell_samples> near;
-  const auto near_end = std::copy_if(differences.begin(), differences.end(), near.begin(),
-                                     [&](const Eigen::Array3f& difference) {
-                                       return deviation(difference, center) < largest_deviation;
-                                     });
-  const auto count = static_cast<std::size_t>(near_end - near.begin());
+  auto* deviations_end = deviations.data();
+  std::size_t count = 0;
+  for (const Eigen::Array3f& difference : differences) {
+    const float deviation = (difference - center).abs().maxCoeff();
+    *deviations_end++ = deviation;
+    if (deviation < largest_deviation) near[count++] = difference;
+  }
+  if (median(deviations.data(), deviations_end) > largest_spread) return Eigen::Array3f::Zero();
   if (2 * count < cell_samples) return Eigen::Array3f::Zero();
   return count == differences.size() ? center : medians({near.data(), count});
 }

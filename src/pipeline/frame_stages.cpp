@@ -280,7 +280,7 @@ void FrameStages::process(const FrameSet& given, DiminishedFrame& result) {
   }
   stage(Stage::merging, [&] {
     if (options.remove_scraps && !objects.empty()) {
-      scraps.remove(masks.color, objects,
+      scraps.remove(masks.color, grow(objects, surroundings_px()),
                     {options.discontinuity_threshold_m, options.discontinuity_reach_m},
                     result.reconstruction);
     }

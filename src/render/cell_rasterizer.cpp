@@ -10,6 +10,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "depth/row_vectors-inl.h"
 #include "render/cell_drawing-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -43,9 +44,7 @@ HWY_INLINE LaneMask Joined(const Corner& a, const Corner& b, const Corner& c,
   const Vector most = hn::Max(hn::Max(a.depth, b.depth), c.depth);
   const Vector least = hn::Min(hn::Min(a.depth, b.depth), c.depth);
   const Floats d;
-  const Vector relative = hn::Mul(least, hn::Set(d, threshold.inverse_reach));
-  const Vector limit = hn::Mul(hn::Max(hn::Set(d, 1.F), hn::Mul(relative, relative)),
-                               hn::Set(d, threshold.constant_m));
+  const Vector limit = ThresholdAt(d, threshold, least);
   return hn::And(hn::And(a.valid, b.valid), hn::And(c.valid, hn::Lt(hn::Sub(most, least), limit)));
 }
 

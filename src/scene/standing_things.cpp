@@ -213,25 +213,27 @@ void StandingThings::close_slits(const View& view, Surfaces& surfaces) {
     std::uint8_t* const label = surfaces.label.row(y);
     const std::uint8_t* const source = view.input.reconstruction.source.row(y);
     float* const side_m = surfaces.standing_depth_m.row(y);
-    const auto is_thing_at = [&](int x, float z_m) {
-      if (label[x] == surface_label::standing) return std::abs(side_m[x] - z_m) < slit_step_m;
-      return label[x] == surface_label::foreground && source[x] != provenance::remembered &&
-             std::abs(view.depth_m(x, y) - z_m) < slit_step_m;
+    const auto depth_m = [&](int x) {
+      return label[x] == surface_label::standing ? side_m[x] : view.depth_m(x, y);
     };
-    // From a side's last pixel on.
+    const auto is_thing_at = [&](int x, float z_m) {
+      const bool is_seen =
+          label[x] == surface_label::foreground && source[x] != provenance::remembered;
+      return (is_seen || label[x] == surface_label::standing) &&
+             std::abs(depth_m(x) - z_m) < slit_step_m;
+    };
+    // From a side's last pixel on, to the left or the right.
     const auto close = [&](int from, int step) {
+      const int widest = std::min(widest_slit_px, step < 0 ? from - begin : end - 1 - from);
       const float z = side_m[from];
-      int to = from + step;
-      const auto is_in_slit = [&] {
-        return to >= begin && to < end && std::abs(to - from) <= widest_slit_px &&
-               !is_thing_at(to, z) && view.hides(to, y, z);
-      };
-      while (is_in_slit()) to += step;
-      if (to < begin || to >= end || std::abs(to - from) > widest_slit_px || !is_thing_at(to, z)) {
-        return;
+      int away = 1;
+      while (away <= widest && !is_thing_at(from + away * step, z)) {
+        if (!view.hides(from + away * step, y, z)) return;
+        ++away;
       }
-      const float farthest =
-          std::max(z, label[to] == surface_label::standing ? side_m[to] : view.depth_m(to, y));
+      if (away > widest) return;
+      const int to = from + away * step;
+      const float farthest = std::max(z, depth_m(to));
       for (int x = from + step; x != to; x += step) {
         if (!view.hides(x, y, farthest)) return;
       }
