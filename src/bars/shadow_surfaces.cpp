@@ -1,7 +1,10 @@
 #include "bars/shadow_surfaces.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <limits>
 
 #include "core/channels.h"
@@ -29,6 +32,37 @@ constexpr int fewest_places = 100;
 /// Of a camera's gaps, so many places at most are asked.
 constexpr std::size_t most_places = 1000;
 
+/// Four pixels of a depth image.
+std::uint64_t four_depths(const std::uint16_t* depths) {
+  static_assert(std::endian::native == std::endian::little, "the first pixel is the lowest");
+  std::uint64_t four;
+  std::memcpy(&four, depths, sizeof(four));
+  return four;
+}
+
+/// The first of the pixels [x, end) that was measured; `end` if there is none.
+int find_measured(const std::uint16_t* depths, int x, int end) {
+  for (; x + 4 <= end; x += 4) {
+    const std::uint64_t four = four_depths(depths + x);
+    if (four != 0) return x + std::countr_zero(four) / 16;
+  }
+  while (x < end && depths[x] == 0) ++x;
+  return x;
+}
+
+/// The first that was not.
+int find_unmeasured(const std::uint16_t* depths, int x, int end) {
+  constexpr std::uint64_t ones = 0x0001000100010001U;
+  for (; x + 4 <= end; x += 4) {
+    const std::uint64_t four = four_depths(depths + x);
+    // The lowest of these bits is that of the first 0. Higher bits may be wrong.
+    const std::uint64_t zeros = (four - ones) & ~four & (0x8000 * ones);
+    if (zeros != 0) return x + std::countr_zero(zeros) / 16;
+  }
+  while (x < end && depths[x] != 0) ++x;
+  return x;
+}
+
 bool is_object(const Mask& objects, int x, int y) {
   return objects.bounds().contains(x, y) && objects(x, y) != 0;
 }
@@ -51,21 +85,31 @@ ShadowSurfaces::Camera::Camera(const RgbdCamera& camera)
       vertices(camera.depth.width / step, camera.depth.height / step) {}
 
 ShadowSurfaces::ShadowSurfaces(const Rig& rig)
-    : nearest_m_(rig.color.width / cell_px + 1, rig.color.height / cell_px + 1) {
+    : nearest_m_(rig.color.width / cell_px + 1, rig.color.height / cell_px + 1),
+      own_nearest_m_(nearest_m_.width() + 2, nearest_m_.height() + 2) {
   for (const RgbdCamera& camera : rig.rgbd) cameras_.emplace_back(camera);
 }
 
 void ShadowSurfaces::find_hiding(std::span<const SceneSample> samples) {
-  std::fill_n(nearest_m_.data(), nearest_m_.size(), std::numeric_limits<float>::max());
+  constexpr float nothing = std::numeric_limits<float>::max();
+  std::fill_n(own_nearest_m_.data(), own_nearest_m_.size(), nothing);
   for (const SceneSample& sample : samples) {
-    const int column = static_cast<int>(sample.pixel.x()) / cell_px;
-    const int row = static_cast<int>(sample.pixel.y()) / cell_px;
-    for (int y = std::max(0, row - 1); y <= std::min(row + 1, nearest_m_.height() - 1); ++y) {
-      for (int x = std::max(0, column - 1); x <= std::min(column + 1, nearest_m_.width() - 1);
-           ++x) {
-        nearest_m_(x, y) = std::min(nearest_m_(x, y), sample.point_m.z());
-      }
-    }
+    const int column = static_cast<int>(sample.pixel.x()) / cell_px + 1;
+    const int row = static_cast<int>(sample.pixel.y()) / cell_px + 1;
+    if (!own_nearest_m_.bounds().contains(column, row)) continue;
+    own_nearest_m_(column, row) = std::min(own_nearest_m_(column, row), sample.point_m.z());
+  }
+  // First along columns, then along rows.
+  std::vector<float>& column = nearest_in_column_m_;
+  column.resize(static_cast<std::size_t>(own_nearest_m_.width()));
+  const auto find = [](const float* a, const float* b, const float* c, int count, float* to) {
+    for (int x = 0; x < count; ++x) to[x] = std::min(std::min(a[x], b[x]), c[x]);
+  };
+  for (int y = 0; y < nearest_m_.height(); ++y) {
+    find(own_nearest_m_.row(y), own_nearest_m_.row(y + 1), own_nearest_m_.row(y + 2),
+         own_nearest_m_.width(), column.data());
+    find(column.data(), column.data() + 1, column.data() + 2, nearest_m_.width(),
+         nearest_m_.row(y));
   }
 }
 
@@ -76,12 +120,12 @@ void ShadowSurfaces::find_gaps(const GapScene& scene, std::size_t k, int row, Ca
   const int y = row * step;
   const auto widest = static_cast<int>(widest_gap * static_cast<float>(depth.width()));
   const std::uint16_t* const depths = depth.row(y);
-  int left = depth.width();
-  for (int right = 0; right < depth.width(); ++right) {
-    if (depths[right] == 0) continue;
-    const int width = right - left;
-    if (width > 1 && width <= widest && !is_object(objects, left, y) &&
-        !is_object(objects, right, y)) {
+  // From one measured pixel to the next.
+  for (int right = find_measured(depths, 0, depth.width());;) {
+    const int left = find_unmeasured(depths, right, depth.width()) - 1;
+    right = find_measured(depths, left + 1, depth.width());
+    if (right == depth.width()) return;
+    if (right - left <= widest && !is_object(objects, left, y) && !is_object(objects, right, y)) {
       const float depth_m =
           camera.unit_m * static_cast<float>(std::max(depths[left], depths[right]));
       const int last = std::min((right - 1) / step, camera.vertices.width() - 1);
@@ -89,7 +133,6 @@ void ShadowSurfaces::find_gaps(const GapScene& scene, std::size_t k, int row, Ca
         if (!is_object(objects, column * step, y)) camera.gaps.push_back({column, row, depth_m});
       }
     }
-    left = right;
   }
 }
 

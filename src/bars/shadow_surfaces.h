@@ -85,7 +85,9 @@ class ShadowSurfaces {
   static bool are_joined(const Vertex& a, const Vertex& b, const Vertex& c);
 
   std::vector<Camera> cameras_;
-  Image<float> nearest_m_;  ///< by cells of the user's picture: where samples are
+  Image<float> nearest_m_;      ///< by cells of the user's picture: where samples are, in 3 by 3
+  Image<float> own_nearest_m_;  ///< in each cell alone, with a cell more on each side
+  std::vector<float> nearest_in_column_m_;
 };
 
 /// With linear inverse depth: exact for planes.
