@@ -83,6 +83,8 @@ void scale_light(const LightGains& gains, const std::uint8_t* labels, int count,
   const auto cell = [&](int i) -> const Eigen::Array4i& {
     return gains.by_cell[static_cast<std::size_t>(std::clamp(i, 0, last))];
   };
+  const int least_level = 255 - gains.most_dark;
+  const bool may_leave_out = least_level <= 128;
   const auto do_part = HWY_DYNAMIC_DISPATCH(ScaleLight);
   // The first part begins half a cell before the row.
   for (int x = -size / 2, i = -1; x < count; x += size, ++i) {
@@ -91,6 +93,11 @@ void scale_light(const LightGains& gains, const std::uint8_t* labels, int count,
     const bool is_whole = end - begin == size;
     const auto* const levels = reinterpret_cast<const std::uint8_t*>(light + begin);
     if (is_whole && all_equal<3 * size>(levels, 255)) continue;
+    // What has another label keeps its light.
+    if (is_whole && may_leave_out && find_equal(labels, x, x + size, gains.label) == x + size &&
+        !is_any_below<3 * size>(levels, least_level)) {
+      continue;
+    }
     const Eigen::Array4i& left = cell(i);
     const Eigen::Array4i& right = cell(i + 1);
     LightPart part{

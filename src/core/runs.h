@@ -63,6 +63,32 @@ bool all_equal(const std::uint8_t* bytes, std::uint8_t value) {
   return any == 0;
 }
 
+/// The index of the first of the bytes [x, end) that lacks a bit; `end` if there is none.
+inline int find_without(const std::uint8_t* bytes, int x, int end, std::uint8_t bit) {
+  for (; x + runs_detail::word_bytes <= end; x += runs_detail::word_bytes) {
+    const std::uint64_t lacking =
+        runs_detail::differences(bytes + x, 0xFF) & (bit * runs_detail::every_byte);
+    if (lacking != 0) return x + std::countr_zero(lacking) / 8;
+  }
+  while (x < end && (bytes[x] & bit) != 0) ++x;
+  return x;
+}
+
+/// Whether one of `count` bytes is less than `least`, which is 128 at most; for counts known to the
+/// compiler.
+template <int count>
+bool is_any_below(const std::uint8_t* bytes, int least) {
+  static_assert(count % runs_detail::word_bytes == 0);
+  const std::uint64_t leasts = static_cast<std::uint64_t>(least) * runs_detail::every_byte;
+  std::uint64_t below = 0;
+  for (int i = 0; i < count; i += runs_detail::word_bytes) {
+    const std::uint64_t word = runs_detail::differences(bytes + i, 0);
+    // The lowest of these bits lies in the lowest byte that is less. Higher bits may be wrong.
+    below |= (word - leasts) & ~word;
+  }
+  return (below & (0x80 * runs_detail::every_byte)) != 0;
+}
+
 /// Calls visit(x) for each of the `count` bytes that is not 0, in order.
 template <class Visit>
 void for_each_set(const std::uint8_t* bytes, int count, const Visit& visit) {

@@ -114,5 +114,34 @@ TEST(Runs, AllEqualLooksAtEachByte) {
   }
 }
 
+TEST(Runs, FindWithoutLooksAtEachByte) {
+  std::mt19937 random(6);
+  for (const unsigned longest : {1U, 4U, 90U}) {
+    const std::vector<std::uint8_t> bytes = stretches(random, 200, longest);
+    for (int begin = 0; begin < 200; begin += 3) {
+      for (int end = begin; end <= 200; end += 7) {
+        for (const std::uint8_t bit : {std::uint8_t{0x80}, std::uint8_t{1}}) {
+          const auto found = std::find_if(bytes.begin() + begin, bytes.begin() + end,
+                                          [&](std::uint8_t byte) { return (byte & bit) == 0; });
+          ASSERT_EQ(find_without(bytes.data(), begin, end, bit), found - bytes.begin());
+        }
+      }
+    }
+  }
+}
+
+TEST(Runs, IsAnyBelowLooksAtEachByte) {
+  for (const int least : {1, 39, 128}) {
+    std::vector<std::uint8_t> bytes(24, 255);
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+      for (int level = 0; level < 256; ++level) {
+        bytes[i] = static_cast<std::uint8_t>(level);
+        ASSERT_EQ(is_any_below<24>(bytes.data(), least), level < least) << i << ' ' << level;
+      }
+      bytes[i] = static_cast<std::uint8_t>(i % 2 == 0 ? least : 255);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace diminish
