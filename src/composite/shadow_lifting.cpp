@@ -67,19 +67,26 @@ namespace {
 
 constexpr int fading_px = ShadowLifting::fading_px;
 constexpr Bgr all_light{255, 255, 255};
-/// Calls visit(first, last) for ranges of a row's channels, skipping ranges with full light: nearly
-/// all or none have it.
+/// Calls visit(first, last) for ranges of a row's channels, skipping most of what has full light:
+/// nearly all or none have it.
 template <class Visit>
 void for_each_shaded(const Bgr* row, int width, const Visit& visit) {
   constexpr int step = 48;
   const auto* const light = reinterpret_cast<const std::uint8_t*>(row);
   const int count = 3 * width;
+  int begin = -1;
   for (int first = 0; first < count; first += step) {
     const int last = std::min(first + step, count);
     const bool is_lit = first + step <= count ? all_equal<step>(light + first, 255)
                                               : find_other(light, first, last, 255) == last;
-    if (!is_lit) visit(first, last);
+    if (is_lit) {
+      if (begin >= 0) visit(begin, first);
+      begin = -1;
+    } else if (begin < 0) {
+      begin = first;
+    }
   }
+  if (begin >= 0) visit(begin, count);
 }
 
 /// Calls visit(x) for each of the columns [begin, end) that is nearer to the rim than `fading_px`,
