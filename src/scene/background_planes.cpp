@@ -161,17 +161,25 @@ bool BackgroundPlanes::next_plane(BackgroundPlane& plane) {
 
 void BackgroundPlanes::label_run(int first, int last, int y, const Image<float>& depth_m,
                                  Image<std::uint8_t>& label) const {
-  std::array<surface_rows::InverseDepth, most_planes> planes;
+  static_assert(most_planes <= surface_rows::most_planes);
+  constexpr std::size_t at_once = 32;
+  std::array<surface_rows::Segment, at_once> segments;
   for (int x = first; x < last;) {
-    const RayGrid::Segment rays = rays_.segment(x, y, last);
-    // Along a row, a plane's inverse depth is linear.
-    for (std::size_t k = 0; k < planes_.size(); ++k) {
-      planes[k] = {planes_[k].inverse_depth(rays.first.x(), rays.first.y()),
-                   planes_[k].normal.head<2>().dot(rays.slope) / planes_[k].distance_m};
+    const int begin = x;
+    std::size_t count = 0;
+    for (; count < at_once && x < last; ++count) {
+      const RayGrid::Segment rays = rays_.segment(x, y, last);
+      surface_rows::Segment& segment = segments[count];
+      segment.count = rays.count;
+      // Along a row, a plane's inverse depth is linear.
+      for (std::size_t k = 0; k < planes_.size(); ++k) {
+        segment.planes[k] = {planes_[k].inverse_depth(rays.first.x(), rays.first.y()),
+                             planes_[k].normal.head<2>().dot(rays.slope) / planes_[k].distance_m};
+      }
+      x += rays.count;
     }
-    surface_rows::label(depth_m.row(y) + x, rays.count, planes.data(),
-                        static_cast<int>(planes_.size()), tolerance, label.row(y) + x);
-    x += rays.count;
+    surface_rows::label(depth_m.row(y) + begin, {segments.data(), count},
+                        static_cast<int>(planes_.size()), tolerance, label.row(y) + begin);
   }
 }
 

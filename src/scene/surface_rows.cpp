@@ -1,6 +1,8 @@
 #include "scene/surface_rows.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <iterator>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "scene/surface_rows.cpp"
@@ -15,6 +17,7 @@ namespace diminish::surface_rows::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
+using diminish::HWY_NAMESPACE::ForEachOverlappingVector;
 using diminish::HWY_NAMESPACE::ForEachVector;
 using diminish::HWY_NAMESPACE::NoiseAt;
 using diminish::HWY_NAMESPACE::StoreBytes;
@@ -26,40 +29,47 @@ HWY_INLINE hn::Vec<D> Linear(D d, float start, float slope, hn::Vec<D> at) {
 }
 
 template <int plane_count>
-void LabelByPlanes(const float* depth_m, int count, const InverseDepth* all_planes,
+void LabelByPlanes(const float* depth_m, const Segment* segments, std::size_t segment_count,
                    const DepthNoise& tolerance, std::uint8_t* surface) {
   const DepthNoise twice{2 * tolerance.constant_m, 2 * tolerance.by_square};
-  InverseDepth planes[std::max(1, plane_count)];
-  std::copy_n(all_planes, plane_count, planes);
-  ForEachVector(count, [=](auto d, int x) HWY_ATTR {
-    const hn::RebindToSigned<decltype(d)> labels;
-    const auto z = hn::LoadU(d, depth_m + x);
-    const auto at = hn::Iota(d, static_cast<float>(x));
-    const auto most = NoiseAt(d, twice, z);
-    auto greatest = hn::Zero(d);
-    auto nearest = hn::Set(labels, surface_label::unknown);
-    auto own = hn::Set(labels, surface_label::foreground);
-    for (int k = 0; k < plane_count; ++k) {
-      const auto label = hn::Set(labels, surface_label::first_plane + k);
-      const auto inverse = Linear(d, planes[k].start, planes[k].slope, at);
-      nearest = hn::IfThenElse(hn::RebindMask(labels, hn::Gt(inverse, greatest)), label, nearest);
-      greatest = hn::Max(greatest, inverse);
-      // (1/z - inverse) z is the difference in depth, relative to the plane's.
-      const auto relative = hn::Abs(hn::Sub(hn::Set(d, 1.F), hn::Mul(inverse, z)));
-      own = hn::IfThenElse(hn::RebindMask(labels, hn::Le(hn::Mul(relative, z), most)), label, own);
-    }
-    const auto is_measured = hn::RebindMask(labels, hn::Gt(z, hn::Zero(d)));
-    StoreBytes(d, hn::IfThenElse(is_measured, own, nearest), surface + x);
-  });
+  for (std::size_t i = 0; i < segment_count; ++i) {
+    const int count = segments[i].count;
+    InverseDepth planes[std::max(1, plane_count)];
+    std::copy_n(segments[i].planes.data(), plane_count, planes);
+    ForEachOverlappingVector(count, [=](auto d, int x) HWY_ATTR {
+      const hn::RebindToSigned<decltype(d)> labels;
+      const auto z = hn::LoadU(d, depth_m + x);
+      const auto at = hn::Iota(d, static_cast<float>(x));
+      const auto most = NoiseAt(d, twice, z);
+      auto greatest = hn::Zero(d);
+      auto nearest = hn::Set(labels, surface_label::unknown);
+      auto own = hn::Set(labels, surface_label::foreground);
+      for (int k = 0; k < plane_count; ++k) {
+        const auto label = hn::Set(labels, surface_label::first_plane + k);
+        const auto inverse = Linear(d, planes[k].start, planes[k].slope, at);
+        nearest = hn::IfThenElse(hn::RebindMask(labels, hn::Gt(inverse, greatest)), label, nearest);
+        greatest = hn::Max(greatest, inverse);
+        // (1/z - inverse) z is the difference in depth, relative to the plane's.
+        const auto relative = hn::Abs(hn::Sub(hn::Set(d, 1.F), hn::Mul(inverse, z)));
+        own =
+            hn::IfThenElse(hn::RebindMask(labels, hn::Le(hn::Mul(relative, z), most)), label, own);
+      }
+      const auto is_measured = hn::RebindMask(labels, hn::Gt(z, hn::Zero(d)));
+      StoreBytes(d, hn::IfThenElse(is_measured, own, nearest), surface + x);
+    });
+    depth_m += count;
+    surface += count;
+  }
 }
 
 /// Unrolled for the largest number of planes.
-void Label(const float* depth_m, int count, const InverseDepth* planes, int plane_count,
-           const DepthNoise& tolerance, std::uint8_t* surface) {
+void Label(const float* depth_m, const Segment* segments, std::size_t segment_count,
+           int plane_count, const DepthNoise& tolerance, std::uint8_t* surface) {
   using ByPlanes = decltype(&LabelByPlanes<0>);
   constexpr ByPlanes by_planes[] = {LabelByPlanes<0>, LabelByPlanes<1>, LabelByPlanes<2>,
                                     LabelByPlanes<3>};
-  by_planes[plane_count](depth_m, count, planes, tolerance, surface);
+  static_assert(std::size(by_planes) == most_planes + 1);
+  by_planes[plane_count](depth_m, segments, segment_count, tolerance, surface);
 }
 
 void Shade(const Shading* shadings, int shading_count, const float* depth_m,
@@ -113,9 +123,10 @@ HWY_EXPORT(Shade);
 
 }  // namespace
 
-void label(const float* depth_m, int count, const InverseDepth* planes, int plane_count,
+void label(const float* depth_m, std::span<const Segment> segments, int plane_count,
            const DepthNoise& tolerance, std::uint8_t* surface) {
-  HWY_DYNAMIC_DISPATCH(Label)(depth_m, count, planes, plane_count, tolerance, surface);
+  HWY_DYNAMIC_DISPATCH(Label)
+  (depth_m, segments.data(), segments.size(), plane_count, tolerance, surface);
 }
 void shade(std::span<const Shading> shadings, const float* depth_m, const std::uint8_t* surface,
            int count, Bgr* light) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <span>
 
@@ -15,12 +16,17 @@ namespace diminish::surface_rows {
 struct InverseDepth {
   float start, slope;
 };
+constexpr int most_planes = 3;
+/// Some pixels of a row, one after the other, along which the planes' 1 / z are linear.
+struct Segment {
+  int count;
+  std::array<InverseDepth, most_planes> planes;
+};
 
-/// Writes the label of each of `count` pixels: of the plane that it lies on (the last of several),
-/// or where nothing was measured, of the nearest plane.
-/// plane_count: at most 3.
-/// planes: their labels are consecutive from surface_label::first_plane on.
-void label(const float* depth_m, int count, const InverseDepth* planes, int plane_count,
+/// Writes the label of each pixel of consecutive segments: of the plane that it lies on (the last
+/// of several), or where nothing was measured, of the nearest plane. The planes' labels are
+/// consecutive from surface_label::first_plane on.
+void label(const float* depth_m, std::span<const Segment> segments, int plane_count,
            const DepthNoise& tolerance, std::uint8_t* surface);
 
 /// A shadow on some pixels of a row.

@@ -32,7 +32,17 @@ TEST_F(OnRandomRow, LabelsAreThoseOfThePlanesNearby) {
   const DepthNoise tolerance{0.2F, 0.01F};
   const surface_rows::InverseDepth planes[] = {{0.4F, 0.003F}, {0.9F, -0.02F}, {-0.1F, 0.01F}};
   std::vector<std::uint8_t> labels(depth_m.size());
-  surface_rows::label(depth_m.data(), count, planes, 3, tolerance, labels.data());
+  std::vector<surface_rows::Segment> segments;
+  for (int first = 0; const int length : {16, 3, 12}) {
+    surface_rows::Segment& segment = segments.emplace_back();
+    segment.count = length;
+    for (std::size_t k = 0; k < segment.planes.size(); ++k) {
+      const surface_rows::InverseDepth& plane = planes[k];
+      segment.planes[k] = {plane.start + static_cast<float>(first) * plane.slope, plane.slope};
+    }
+    first += length;
+  }
+  surface_rows::label(depth_m.data(), segments, 3, tolerance, labels.data());
   int on_plane = 0;
   for (int i = 0; i < count; ++i) {
     const double z = depth_m[static_cast<std::size_t>(i)];
