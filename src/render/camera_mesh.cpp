@@ -7,17 +7,20 @@
 namespace diminish {
 namespace {
 
-/// Whole blocks of cells that cannot touch the region are skipped.
+/// Whole blocks of cells that cannot touch the region are skipped. The rows' bounds are those of
+/// cells.
 void draw_cells_between(const VertexRow& upper, const VertexRow& lower,
                         const CameraMesh::Input& input, const Rect& part, SurfaceBuffer& surface) {
   const auto blocks = static_cast<int>(upper.bounds.size()) - 1;
-  // A block's cells reach into the next block.
-  VertexBounds next = join(upper.bounds[0], lower.bounds[0]);
   for (int block = 0; block < blocks; ++block) {
-    const VertexBounds own = next;
-    const auto beside = static_cast<std::size_t>(block) + 1;
-    next = join(upper.bounds[beside], lower.bounds[beside]);
-    const VertexBounds both = join(own, next);
+    const VertexBounds& above = upper.bounds[static_cast<std::size_t>(block)];
+    const VertexBounds& below = lower.bounds[static_cast<std::size_t>(block)];
+    // Most blocks of a row are drawn in other parts.
+    if (std::min(above.top, below.top) >= part.bottom() ||
+        std::max(above.bottom, below.bottom) <= part.y) {
+      continue;
+    }
+    const VertexBounds both = join(above, below);
     if (!both.overlaps(part) || !input.region.touches(intersect(both.rect(), part))) continue;
     draw_cells(upper, lower, block, input.threshold, surface);
   }
@@ -46,7 +49,11 @@ void CameraMesh::begin(const Input& input) {
       rows_.project(frame, first_row_ + i, row);
       VertexBounds& all = row_bounds_[static_cast<std::size_t>(i)];
       all = {};
-      for (const VertexBounds& bounds : row.bounds) all = join(all, bounds);
+      // A block's cells reach into the next block.
+      for (std::size_t block = 0; block + 1 < row.bounds.size(); ++block) {
+        all = join(all, row.bounds[block]);
+        row.bounds[block] = join(row.bounds[block], row.bounds[block + 1]);
+      }
     }
   });
 }
