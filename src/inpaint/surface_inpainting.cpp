@@ -48,19 +48,6 @@ void find_codes(const std::uint8_t* missing, const std::uint8_t* labels, int cou
 }
 }  // namespace state
 
-/// The bytes [first, last) that are `value`.
-int count_of(const std::uint8_t* bytes, int first, int last, std::uint8_t value) {
-  int count = 0;
-  while (first < last) {
-    // As many as a byte can count, so that the compiler takes many at a time.
-    const int end = std::min(first + 255, last);
-    std::uint8_t some = 0;
-    for (; first < end; ++first) some = static_cast<std::uint8_t>(some + (bytes[first] == value));
-    count += some;
-  }
-  return count;
-}
-
 /// Fills each plane of the background from its own pixels alone, as smoothly as can be: what stands
 /// in front of a wall does not bleed onto it, and where table and wall meet there is an edge. What
 /// is left is filled from all pixels around, but for what stands in front of it (FarSide).
@@ -188,19 +175,22 @@ class SurfaceInpainting : public Inpainter {
     rims_.assign(regions_.regions().size(), {});
     for (const ConnectedRegions::Run& run : regions_.runs()) {
       Rim& rim = rims_[static_cast<std::size_t>(run.region)];
-      const auto count = [&](int y, int first, int last) {
-        const state::Code* const row = states_.row(y);
-        rim.plane += count_of(row, first, last, label);
-        rim.guessed += count_of(row, first, last, label | state::guessed);
-        rim.foreground += count_of(row, first, last, state::foreground);
-      };
-      // The window holds a pixel more on each side.
-      const state::Code* const own = states_.row(run.y);
-      for (const state::Code beside : {own[run.first - 1], own[run.last]}) {
+      const auto add = [&](state::Code beside) {
         rim.plane += beside == label ? 1 : 0;
         rim.guessed += beside == (label | state::guessed) ? 1 : 0;
         rim.foreground += beside == state::foreground ? 1 : 0;
-      }
+      };
+      // Most of what is above or below is of the hole, too.
+      const auto count = [&](int y, int first, int last) {
+        const state::Code* const row = states_.row(y);
+        for (int x = first; (x = find_without(row, x, last, state::open)) < last; ++x) {
+          add(row[x]);
+        }
+      };
+      // The window holds a pixel more on each side.
+      const state::Code* const own = states_.row(run.y);
+      add(own[run.first - 1]);
+      add(own[run.last]);
       count(run.y - 1, run.first, run.last);
       count(run.y + 1, run.first, run.last);
     }
