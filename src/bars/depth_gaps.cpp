@@ -41,30 +41,45 @@ bool DepthGaps::find_known(const Mask& occlusion, const Reconstruction& reconstr
   above_.resize(columns, rows);
   below_.resize(columns, rows);
   nodes_.resize(columns, rows);
-  const auto next_to = [&](int x, int y, const End& end) -> End {
-    if (known_(x, y) > 0) return {known_(x, y), 1};
+  // Of a node, what is known there or of an end beyond it.
+  const auto next_to = [](float known, const End& end) -> End {
+    if (known > 0) return {known, 1};
     return end.away == 0 || end.away >= gap_rim_reach ? End{0, 0}
                                                       : End{end.inverse_m, end.away + 1};
   };
   for (int y = 0; y < rows; ++y) {
+    const int py = row(y);
+    const std::uint8_t* const source = reconstruction.source.row(py);
+    const float* const depth_m = reconstruction.depth_m.row(py);
+    const std::uint8_t* const mask = occlusion.row(py);
+    float* const known = known_.row(y);
+    Node* const nodes = nodes_.row(y);
     for (int x = 0; x < columns; ++x) {
       const int px = column(x);
-      const int py = row(y);
       if (!reconstruction.region.keeps(px, py)) {
-        known_(x, y) = not_looked_at;
+        known[x] = not_looked_at;
       } else {
-        known_(x, y) = reconstruction.source(px, py) != 0 ? 1 / reconstruction.depth_m(px, py) : 0;
+        known[x] = source[px] != 0 ? 1 / depth_m[px] : 0;
       }
-      is_any_hidden = is_any_hidden || (known_(x, y) == 0 && occlusion(px, py) != 0);
-      nodes_(x, y).inverse_m = 0;
-      nodes_(x, y).is_in_shadow = false;
-      above_(x, y) = y == 0 ? End{0, 0} : next_to(x, y - 1, above_(x, y - 1));
+      is_any_hidden = is_any_hidden || (known[x] == 0 && mask[px] != 0);
+      nodes[x].inverse_m = 0;
+      nodes[x].is_in_shadow = false;
     }
+    End* const above = above_.row(y);
+    if (y == 0) {
+      std::fill_n(above, columns, End{0, 0});
+      continue;
+    }
+    const float* const known_above = known_.row(y - 1);
+    const End* const end = above_.row(y - 1);
+    for (int x = 0; x < columns; ++x) above[x] = next_to(known_above[x], end[x]);
   }
-  for (int y = rows - 1; y >= 0; --y) {
-    for (int x = 0; x < columns; ++x) {
-      below_(x, y) = y == rows - 1 ? End{0, 0} : next_to(x, y + 1, below_(x, y + 1));
-    }
+  std::fill_n(below_.row(rows - 1), columns, End{0, 0});
+  for (int y = rows - 2; y >= 0; --y) {
+    const float* const known_below = known_.row(y + 1);
+    const End* const end = below_.row(y + 1);
+    End* const below = below_.row(y);
+    for (int x = 0; x < columns; ++x) below[x] = next_to(known_below[x], end[x]);
   }
   return is_any_hidden;
 }
