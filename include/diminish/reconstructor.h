@@ -63,11 +63,15 @@ class DIMINISH_EXPORT Reconstructor {
   /// Whose colours are wanted. Depths and sources are always filled.
   enum class Colors {
     all,
-    /// Pixels of the objects to remove, and every `sparse_step`-th column of every `sparse_step`-th
-    /// row of the region, from its first on. The others' may be filled or empty.
+    /// Pixels at most `contact_reach_px` away from the objects to remove, which have a contact line
+    /// that is found meanwhile, and every `sparse_step`-th column of every `sparse_step`-th row of
+    /// the region, from its first on. The others' may be filled or empty.
     sparse
   };
   static constexpr int sparse_step = 4;
+  static int contact_reach_px(const Options& options) {
+    return options.contact_line_px > 0 ? options.contact_line_px + 1 : 0;
+  }
   /// From the next frame on; by default all.
   virtual void want_colors(Colors /*wanted*/) {}
 

@@ -4,12 +4,12 @@
 #include "blend/camera_blender.h"
 #include "blend/layers.h"
 #include "core/rows.h"
-#include "core/runs.h"
 #include "core/tasks.h"
 #include "diminish/error.h"
 #include "diminish/reconstructor.h"
 #include "diminish/remote_images.h"
 #include "reconstruct/clear_outside.h"
+#include "reconstruct/near_objects.h"
 #include "render/camera_mesh.h"
 #include "render/sdct.h"
 #include "render/texture_lookup.h"
@@ -38,7 +38,9 @@ class VectorizedReconstructor : public Reconstructor {
   void reconstruct(const FrameSet& frame, const DepthImages& depths, const Poses& poses,
                    const OcclusionMasks& masks, const TiledRegion& region, const Options& options,
                    Reconstruction& reconstruction) override {
-    objects_ = &masks.color;
+    if (wanted_colors_ == Colors::sparse) {
+      near_objects_.find(masks.color, region, contact_reach_px(options));
+    }
     clear_outside(color_, region, reconstruction);
     drawn_.clear();
     layers_.assign(meshes_.size(), nullptr);
@@ -240,28 +242,17 @@ class VectorizedReconstructor : public Reconstructor {
       look_up_colors(row, texture, region.width, source, depth_m, colors);
       return;
     }
-    const auto look_up = [&](int first, int last) {
-      look_up_colors(row.from(first), texture, last - first, source + first, depth_m + first,
-                     colors + first);
-    };
-    // Runs that are this close are looked up together.
-    constexpr int least_gap = 16;
-    int begin = 0;
-    int end = -1;
-    for_each_run(objects_->row(y) + region.x, 0, region.width, Pixels::set,
-                 [&](int first, int last) {
-                   if (end < 0 || first - end >= least_gap) {
-                     if (end >= 0) look_up(begin, end);
-                     begin = first;
-                   }
-                   end = last;
-                 });
-    if (end >= 0) look_up(begin, end);
+    const NearObjects::Columns& near = near_objects_.row(y);
+    const int first = near.first - region.x;
+    const int count = near.last - near.first;
+    if (count <= 0) return;
+    look_up_colors(row.from(first), texture, count, source + first, depth_m + first,
+                   colors + first);
   }
 
   Intrinsics color_;
   Colors wanted_colors_ = Colors::all;
-  const Mask* objects_ = nullptr;  ///< of this frame
+  NearObjects near_objects_;  ///< of this frame
   std::vector<CameraMesh> meshes_;
   std::vector<Drawn> drawn_;
   std::vector<const RemoteLayer*> layers_;  ///< of each camera; null: drawn here
