@@ -93,6 +93,7 @@ void MembraneSolver::begin(int width, int height) {
   irregular_.resize(cells_.size());
   sources_.clear();
   fixed_values_.clear();
+  held_.clear();
   std::fill_n(keys_.begin(), keys_per_row_, std::uint8_t{0});
   std::fill_n(keys_.end() - keys_per_row_, keys_per_row_, std::uint8_t{0});
   for (int y = 0; y < height; ++y) {
@@ -288,6 +289,7 @@ void MembraneSolver::solve(float tolerance) {
       before = change;
     }
   }
+  relax_small_parts(tolerance);
   for (std::size_t l = level_count_ - 1; l-- > 1;) {
     if (levels_[l].has_smooth) membrane::fill_smooth(levels_[l], levels_[l + 1]);
   }

@@ -96,6 +96,11 @@ class MembraneSolver {
 
   void build();
   void coarsen_blocks(const MembraneLevel& fine, MembraneLevel& coarse) const;
+  /// Specks weigh too little in a root mean square to be noticed when multigrid is not done with
+  /// them: those that take_out_loose_parts left are relaxed one by one.
+  void relax_small_parts(float tolerance);
+  /// Returns the largest change of a channel.
+  float relax_pixel(int x, int y);
   /// from_zero: of the error, else of x. Returns the squared change.
   double cycle(std::size_t level, bool from_zero);
 
@@ -111,7 +116,7 @@ class MembraneSolver {
   std::size_t size_ = 0;
   std::vector<Boundary> sources_, fixed_values_;
   ConnectedRegions parts_;
-  std::vector<bool> held_;
+  std::vector<bool> held_;  ///< of each part; none: they were not looked for
   std::vector<LooseRun> loose_;
   std::vector<MembraneLevel> levels_;
   std::size_t level_count_ = 0;
