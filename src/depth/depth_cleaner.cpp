@@ -22,14 +22,20 @@ Rect inside(ImageView<std::uint16_t> depth) {
 }  // namespace
 
 DepthCleaner::DepthCleaner(const RgbdCamera& camera)
-    : camera_(camera), rays_(RayTable::of(camera.depth)), edge_snapping_(camera) {}
+    : camera_(camera),
+      rays_(RayTable::of(camera.depth)),
+      smoothing_(static_cast<float>(camera.depth_unit_m)),
+      edge_snapping_(camera) {}
 
 void DepthCleaner::clean(ImageView<std::uint16_t> depth, const EdgeSnapping::Images& images,
                          const DepthPart& part, const Options& options,
                          Image<std::uint16_t>& cleaned) {
   copy(depth, cleaned);
-  if (options.remove_flying) remove_flying(depth, part, cleaned);
-  if (options.smooth_depth) smooth(part, cleaned);
+  if (options.smooth_depth) {
+    smooth(depth, part, options.remove_flying, cleaned);
+  } else if (options.remove_flying) {
+    remove_flying(depth, part, cleaned);
+  }
   if (options.snap_edges) edge_snapping_.snap(images, part, cleaned);
   if (options.remove_hidden) {
     remove_hidden(part, static_cast<float>(options.discontinuity_threshold_m), cleaned);
@@ -66,25 +72,19 @@ void DepthCleaner::remove_hidden(const DepthPart& part, float threshold_m,
   });
 }
 
-/// First along rows, then along columns.
-void DepthCleaner::smooth(const DepthPart& part, Image<std::uint16_t>& cleaned) {
-  half_smooth_.resize(cleaned.width(), cleaned.height());
-  const Rect inner = inside(cleaned);
-  // Averages along columns reach above and below the part.
-  const Rect rows_needed = intersect(grow(part.bounds(), reach), cleaned.bounds());
-  for_rows(rows_needed.height, [&](Rows rows) {
-    for (int y = rows_needed.y + rows.first; y < rows_needed.y + rows.last; ++y) {
-      std::copy_n(cleaned.row(y), cleaned.width(), half_smooth_.row(y));
-    }
+/// Flying pixels around the part are left out, too: what a pixel becomes must not depend on where
+/// the part ends, which another machine may choose otherwise.
+void DepthCleaner::smooth(ImageView<std::uint16_t> depth, const DepthPart& part,
+                          bool without_flying, Image<std::uint16_t>& cleaned) {
+  smooth_.resize(depth.width(), depth.height());
+  around_.grow_from(part, DepthSmoothing::reach, depth.bounds());
+  for_each_row(around_, depth.bounds(), [&](int y, const DepthPart::Columns& columns) {
+    std::copy_n(depth.row(y) + columns.first, columns.count(), smooth_.row(y) + columns.first);
   });
-  for_each_row(part, {inner.x, 0, inner.width, cleaned.height()},
-               [&](int y, const DepthPart::Columns& columns) {
-                 depth_rows::smooth(row(cleaned, y, columns), 1,
-                                    half_smooth_.row(y) + columns.first);
-               });
-  for_each_row(part, inner, [&](int y, const DepthPart::Columns& columns) {
-    depth_rows::smooth(row(half_smooth_, y, columns), cleaned.width(),
-                       cleaned.row(y) + columns.first);
+  if (without_flying) remove_flying(depth, around_, smooth_);
+  smoothing_.smooth(depth, part, smooth_);
+  for_each_row(part, depth.bounds(), [&](int y, const DepthPart::Columns& columns) {
+    std::copy_n(smooth_.row(y) + columns.first, columns.count(), cleaned.row(y) + columns.first);
   });
 }
 

@@ -7,6 +7,7 @@
 #include "core/rows.h"
 #include "depth/depth_part.h"
 #include "depth/depth_rows.h"
+#include "depth/depth_smoothing.h"
 #include "depth/edge_snapping.h"
 #include "diminish/image.h"
 #include "diminish/options.h"
@@ -20,14 +21,14 @@ namespace diminish {
 /// - pixels that the camera's own colour sensor, some centimetres beside the depth sensor, cannot
 ///   see because something nearer hides them: they would get its colour. (Only for sensors side by
 ///   side, not one above the other: cameras are built that way.)
-/// Then averages depth over neighbouring pixels of the same surface (seen from the side, noise in
-/// depth becomes noise in place) and moves depth edges onto the colour image's (EdgeSnapping).
+/// Then takes the noise out of surfaces (DepthSmoothing) and moves depth edges onto the colour
+/// image's (EdgeSnapping).
 class DepthCleaner {
  public:
   explicit DepthCleaner(const RgbdCamera& camera);
 
   /// images: masked parts are not used to move edges. Changes only `part` and copies the rest.
-  /// Cost: 1 ns per pixel, plus EdgeSnapping's.
+  /// Cost: 1 ns per pixel, plus DepthSmoothing's and EdgeSnapping's.
   void clean(ImageView<std::uint16_t> depth, const EdgeSnapping::Images& images,
              const DepthPart& part, const Options& options, Image<std::uint16_t>& cleaned);
 
@@ -38,14 +39,17 @@ class DepthCleaner {
   void remove_flying(ImageView<std::uint16_t> depth, const DepthPart& part,
                      Image<std::uint16_t>& cleaned) const;
   void remove_hidden(const DepthPart& part, float threshold_m, Image<std::uint16_t>& cleaned);
-  void smooth(const DepthPart& part, Image<std::uint16_t>& cleaned);
+  void smooth(ImageView<std::uint16_t> depth, const DepthPart& part, bool without_flying,
+              Image<std::uint16_t>& cleaned);
   depth_rows::Row row(ImageView<std::uint16_t> depth, int y,
                       const DepthPart::Columns& columns) const;
 
   RgbdCamera camera_;
   std::shared_ptr<const RayTable> rays_;
   Scratch scratch_[most_bands];
-  Image<std::uint16_t> half_smooth_;
+  DepthSmoothing smoothing_;
+  DepthPart around_;
+  Image<std::uint16_t> smooth_;
   EdgeSnapping edge_snapping_;
 };
 

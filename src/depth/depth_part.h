@@ -37,12 +37,43 @@ class DepthPart {
     bounds_ = join(bounds_, {columns.first, first, columns.count(), end - first});
   }
 
+  /// Becomes all that is at most `margin` rows and columns away from another part, and a few pixels
+  /// more, in an image of this size.
+  void grow_from(const DepthPart& part, int margin, const Rect& image) {
+    begin(grown_band);
+    const int first_row = part.bounds_.y - margin;
+    const int last_row = std::min(part.bounds_.bottom() + margin, image.bottom());
+    for (int y = 0; y < last_row; y += grown_band) {
+      Columns all;
+      if (y + grown_band > first_row)
+        all = part.columns_between(y - margin, y + grown_band + margin);
+      if (all.count() > 0) {
+        all = {std::max(all.first - margin, 0), std::min(all.last + margin, image.right())};
+      }
+      add_band(all, std::min(y + grown_band, image.bottom()));
+    }
+  }
+  /// Of the rows [first, last), those in `bounds`.
+  Columns columns_between(int first, int last) const {
+    Columns all;
+    for (int y = std::max(first, bounds_.y); y < std::min(last, bounds_.bottom()); ++y) {
+      const Columns& own = columns(y);
+      if (own.count() <= 0) continue;
+      all = all.count() <= 0
+                ? own
+                : Columns{std::min(all.first, own.first), std::max(all.last, own.last)};
+    }
+    return all;
+  }
+
   /// All columns lie inside this rectangle.
   const Rect& bounds() const { return bounds_; }
   /// Of a row of `bounds`.
   const Columns& columns(int y) const { return columns_[static_cast<std::size_t>(y / band_)]; }
 
  private:
+  static constexpr int grown_band = 8;
+
   Rect bounds_;
   int band_ = 1;
   std::vector<Columns> columns_;  ///< by band

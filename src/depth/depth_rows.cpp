@@ -73,32 +73,6 @@ void RemoveFlying(const Row& row, std::ptrdiff_t pitch, std::uint16_t* result) {
   });
 }
 
-void Smooth(const Row& row, std::ptrdiff_t step, std::uint16_t* result) {
-  ForEachVector(row.count, [&](auto d, int x) HWY_ATTR {
-    const std::uint16_t* pixel = row.depth + x;
-    const auto zero = hn::Zero(d);
-    const auto half = hn::Set(d, 0.5F);
-    const auto own = Load(d, pixel);
-    const auto limit = hn::Mul(NoiseAt(d, row.noise, hn::Mul(own, hn::Set(d, row.unit_m))),
-                               hn::Set(d, 1 / row.unit_m));
-    auto same = hn::Gt(own, zero);
-    auto sum = own;
-    auto count = hn::Set(d, 1.F);
-    for (int k = 1; k <= reach; ++k) {
-      const auto before = Load(d, pixel - k * step);
-      const auto after = Load(d, pixel + k * step);
-      const auto pair = hn::Add(before, after);
-      const auto is_close = hn::Le(hn::Abs(hn::Sub(hn::Mul(pair, half), own)), limit);
-      same = hn::And(hn::And(same, is_close), hn::Gt(hn::Min(before, after), zero));
-      sum = hn::Add(sum, hn::IfThenElseZero(same, pair));
-      count = hn::Add(count, hn::IfThenElseZero(same, hn::Set(d, 2.F)));
-    }
-    // 0 stays 0.
-    const auto mean = hn::Add(hn::Div(sum, count), half);
-    Store(d, mean, result + x);
-  });
-}
-
 /// The frontmost pixel so far: its place in the colour image and its depth.
 struct Front {
   float place, depth_m;
@@ -263,7 +237,6 @@ namespace diminish::depth_rows {
 namespace {
 
 HWY_EXPORT(RemoveFlying);
-HWY_EXPORT(Smooth);
 HWY_EXPORT(RemoveHidden);
 HWY_EXPORT(FindJumps);
 HWY_EXPORT(KeepGaps);
@@ -274,9 +247,6 @@ HWY_EXPORT(Unite);
 
 void remove_flying(const Row& row, std::ptrdiff_t pitch, std::uint16_t* result) {
   HWY_DYNAMIC_DISPATCH(RemoveFlying)(row, pitch, result);
-}
-void smooth(const Row& row, std::ptrdiff_t step, std::uint16_t* result) {
-  HWY_DYNAMIC_DISPATCH(Smooth)(row, step, result);
 }
 void remove_hidden(const Places& places, float unit_m, float margin, float threshold_m, int count,
                    std::uint16_t* depth, float* depth_m, float* place) {

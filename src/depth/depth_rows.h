@@ -12,7 +12,7 @@
 // What DepthCleaner does to a row of a depth image, on vector instructions.
 namespace diminish::depth_rows {
 
-/// Pixels on both sides that flying pixels and averages depend on.
+/// Pixels on both sides that flying pixels depend on.
 inline constexpr int reach = 2;
 
 /// A row of a depth image, or a part of it.
@@ -27,11 +27,6 @@ struct Row {
 /// on their other side. row.depth: `reach` rows, `pitch` pixels apart, and `reach` more columns on
 /// each side.
 void remove_flying(const Row& row, std::ptrdiff_t pitch, std::uint16_t* result);
-
-/// Writes the mean of each pixel and the pairs on both sides, `step` apart, that lie on the same
-/// surface. (On a slanted surface too, their mean is the depth in the middle.) 0 stays 0.
-/// row.depth: `reach` more steps on both sides. result: another image.
-void smooth(const Row& row, std::ptrdiff_t step, std::uint16_t* result);
 
 /// A row of depth pixels as the colour sensor sees it, to its side and ahead of it: a point is in
 /// its picture at x / z.

@@ -53,22 +53,6 @@ bool is_flying(const std::uint16_t* pixel, std::ptrdiff_t pitch) {
   return false;
 }
 
-float smoothed(const std::uint16_t* pixel, std::ptrdiff_t step) {
-  const auto own = static_cast<float>(*pixel);
-  if (own == 0) return 0;
-  float sum = own;
-  float count = 1;
-  for (int k = 1; k <= depth_rows::reach; ++k) {
-    const auto before = static_cast<float>(pixel[-k * step]);
-    const auto after = static_cast<float>(pixel[k * step]);
-    if (before == 0 || after == 0) break;
-    if (std::abs((before + after) / 2 - own) > noise.at(own * unit_m) / unit_m) break;
-    sum += before + after;
-    count += 2;
-  }
-  return sum / count;
-}
-
 /// Of all pixels nearer the camera than another: does one lie too far over?
 void remove_hidden(const std::vector<float>& place, const std::vector<float>& depth_m, float margin,
                    float threshold_m, std::vector<std::uint16_t>& depth) {
@@ -105,25 +89,6 @@ TEST(DepthRows, FlyingPixelsAreThoseOfThePlainVersion) {
     }
   }
   EXPECT_GT(flying, 300);
-}
-
-TEST(DepthRows, AveragesAreThoseOfThePlainVersion) {
-  const Image<std::uint16_t> depth = room(151, 40);
-  Image<std::uint16_t> result(depth.width(), depth.height());
-  int changed = 0;
-  for (const std::ptrdiff_t step : {1, 151}) {
-    for (int y = 2; y < 38; ++y) {
-      depth_rows::smooth({depth.row(y) + 2, 147, unit_m, noise}, step, result.row(y) + 2);
-      for (int x = 2; x < 149; ++x) {
-        ASSERT_NEAR(result(x, y), smoothed(&depth(x, y), step), 0.51F) << x << ' ' << y;
-        if (depth(x, y) == 0) {
-          ASSERT_EQ(result(x, y), 0);
-        }
-        changed += result(x, y) != depth(x, y) ? 1 : 0;
-      }
-    }
-  }
-  EXPECT_GT(changed, 2000);
 }
 
 TEST(DepthRows, HiddenPixelsAreThoseOfThePlainVersion) {
