@@ -10,7 +10,7 @@ constexpr int window_reach = plane_windows::reach;
 using Columns = DepthPart::Columns;
 
 /// A window that deviates by this much more than usual (a variance) has half of the weight.
-constexpr float much = 2.5;
+constexpr float much = 2.5F;
 /// The noise is measured in windows that are so far apart.
 constexpr int sampled_rows = 16;
 constexpr int sampled_columns = 4;
@@ -77,7 +77,7 @@ void DepthSmoothing::smooth(ImageView<std::uint16_t> measured, const DepthPart& 
   if (middles.width <= 0 || middles.height <= 0) return;
   for (Scratch& scratch : scratch_) {
     scratch.columns.resize(3 * static_cast<std::size_t>(width));
-    scratch.row.resize(4 * (static_cast<std::size_t>(width) + 2 * window_reach));
+    scratch.row.resize(4 * static_cast<std::size_t>(width + 2 * window_reach));
   }
   const float variance = usual_variance(measured);
   if (variance <= 0) return;

@@ -61,7 +61,7 @@ struct AllPlanes {
     for (Image<float>* image : {&z, &slope_x, &slope_y, &variance}) {
       image->resize(width, height, 0.F);
     }
-    std::vector<double> scratch(3 * width);
+    std::vector<double> scratch(3 * std::size_t{width});
     for (int y = reach; y < height - reach; ++y) {
       plane_windows::fit({depth.row(y) + reach, width, width - 2 * reach, unit_m, {}}, row(y),
                          scratch.data());
@@ -115,7 +115,7 @@ TEST(PlaneWindows, MeansAreThoseOfThePlainVersion) {
   const auto sums = [&](int y) {
     return plane_windows::Sums{weight.row(y), weighted.row(y), slope.row(y)};
   };
-  std::vector<float> scratch(4 * (width + 2 * reach));
+  std::vector<float> scratch(4 * std::size_t{width + 2 * reach});
   for (int y = reach; y < height - reach; ++y) {
     plane_windows::add_up({planes.row(y), reach, width - 2 * reach}, half_variance, width, sums(y),
                           scratch.data());

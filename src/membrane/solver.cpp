@@ -84,7 +84,7 @@ void MembraneSolver::begin(int width, int height) {
   width_ = width;
   height_ = height;
   tile_columns_ = (width + tile_width - 1) / tile_width;
-  keys_per_row_ = (tile_columns_ + 2) * tile_width;
+  keys_per_row_ = std::ptrdiff_t{tile_columns_ + 2} * tile_width;
   words_per_row_ = tile_columns_ + 2;
   keys_.resize(static_cast<std::size_t>((height + 2) * keys_per_row_));
   cells_.resize(
@@ -98,7 +98,8 @@ void MembraneSolver::begin(int width, int height) {
   std::fill_n(keys_.end() - keys_per_row_, keys_per_row_, std::uint8_t{0});
   for (int y = 0; y < height; ++y) {
     keys(y)[-1] = 0;
-    std::fill(keys(y) + width, keys(y) + tile_columns_ * tile_width + 1, std::uint8_t{0});
+    std::fill(keys(y) + width, keys(y) + std::ptrdiff_t{tile_columns_} * tile_width + 1,
+              std::uint8_t{0});
   }
 }
 
@@ -112,12 +113,14 @@ void MembraneSolver::connect() {
     for (int y = rows.first; y < rows.last; ++y) {
       const std::ptrdiff_t row = word_index(y);
       for (auto* words : {&cells_, &fixed_, &irregular_}) {
-        words->data()[row - 1] = words->data()[row + tile_columns_] = 0;
+        (*words)[static_cast<std::size_t>(row - 1)] = 0;
+        (*words)[static_cast<std::size_t>(row + tile_columns_)] = 0;
       }
       membrane::classify_row(keys(y), keys_per_row_, tile_columns_, cells_.data() + row,
                              fixed_.data() + row, irregular_.data() + row);
       for (int word = 0; word < tile_columns_; ++word) {
-        count += static_cast<std::size_t>(std::popcount(cells_.data()[row + word]));
+        count +=
+            static_cast<std::size_t>(std::popcount(cells_[static_cast<std::size_t>(row + word)]));
       }
     }
     return count;
@@ -157,7 +160,7 @@ const std::vector<LooseRun>& MembraneSolver::take_out_loose_parts() {
     if (held_[run.region]) continue;
     loose_.push_back({run.y, run.first, run.last});
     for (int word = run.first / 32; word <= (run.last - 1) / 32; ++word) {
-      const std::size_t at = static_cast<std::size_t>(word_index(run.y) + word);
+      const auto at = static_cast<std::size_t>(word_index(run.y) + word);
       const std::uint32_t bits = bits_of(run, word);
       size_ -= static_cast<std::size_t>(std::popcount(cells_[at] & bits));
       cells_[at] &= ~bits;

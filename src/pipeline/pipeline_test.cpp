@@ -155,16 +155,17 @@ TEST(PipelineOnAStandingObject, RemovesItsContactLine) {
   }
 }
 
-// Then colours are looked up only where a stage needs them.
+// Then colours are looked up only where a stage needs them. A contact line is found meanwhile.
 TEST_P(PipelineOnRecordings, ShowsTheSameWhereNobodyLooksAtTheReconstruction) {
   Options options;
   options.memory = "off";
   BundledRecording looked_at(GetParam().recording, options);
   BundledRecording not_looked_at(GetParam().recording, options);
   not_looked_at.want_reconstruction(false);
-  ASSERT_TRUE(looked_at.next() && not_looked_at.next());
-  EXPECT_EQ(not_looked_at.result.picture, looked_at.result.picture);
-  EXPECT_EQ(not_looked_at.result.provenance, looked_at.result.provenance);
+  while (looked_at.next() && not_looked_at.next()) {
+    EXPECT_EQ(not_looked_at.result.picture, looked_at.result.picture);
+    EXPECT_EQ(not_looked_at.result.provenance, looked_at.result.provenance);
+  }
   const auto count_colors = [](const BundledRecording& recording) {
     const Image<Bgra>& color = recording.result.reconstruction.color;
     return std::count_if(color.begin(), color.end(), [](const Bgra& c) { return c.a != 0; });
