@@ -45,8 +45,9 @@ class DepthPart {
     const int last_row = std::min(part.bounds_.bottom() + margin, image.bottom());
     for (int y = 0; y < last_row; y += grown_band) {
       Columns all;
-      if (y + grown_band > first_row)
+      if (y + grown_band > first_row) {
         all = part.columns_between(y - margin, y + grown_band + margin);
+      }
       if (all.count() > 0) {
         all = {std::max(all.first - margin, 0), std::min(all.last + margin, image.right())};
       }

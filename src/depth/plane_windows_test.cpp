@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "diminish/image.h"
+#include "stepped_surface.h"
 
 namespace diminish {
 namespace {
@@ -25,8 +26,7 @@ Image<std::uint16_t> room() {
   std::normal_distribution<float> jitter(0, 4);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      float z = 2000 + 2 * static_cast<float>(x) - static_cast<float>(y);
-      if ((x / 23 + y / 17) % 3 == 0) z = 1200 + 3 * static_cast<float>(y);
+      const float z = testing::stepped_surface(x, y);
       depth(x, y) =
           random() % 67 == 0 ? std::uint16_t{0} : static_cast<std::uint16_t>(z + jitter(random));
     }

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/neighbours.h"
 #include "membrane/solver.h"
 
 namespace diminish {
@@ -32,22 +33,15 @@ void MembraneSolver::relax_small_parts(float tolerance) {
 
 float MembraneSolver::relax_pixel(int x, int y) {
   MembraneLevel& finest = levels_.front();
-  const std::uint8_t* const key = keys(y) + x;
-  const bool counts[] = {key[-1] != 0, key[1] != 0, key[-keys_per_row_] != 0,
-                         key[keys_per_row_] != 0};
   float change = 0;
   for (int c = 0; c < channels; ++c) {
     float sum = finest.has_sources ? finest.right_side.data()[finest.cell_at(x, y, c)] : 0;
     float neighbours = 0;
-    const auto add = [&](bool is_there, int column, int row) {
-      if (!is_there) return;
-      sum += finest.x.data()[finest.cell_at(column, row, c)];
+    for (const auto& [dx, dy] : neighbour_offsets) {
+      if (keys(y + dy)[x + dx] == 0) continue;
+      sum += finest.x.data()[finest.cell_at(x + dx, y + dy, c)];
       neighbours += 1;
-    };
-    add(counts[0], x - 1, y);
-    add(counts[1], x + 1, y);
-    add(counts[2], x, y - 1);
-    add(counts[3], x, y + 1);
+    }
     if (neighbours == 0) continue;
     float& value = finest.x.data()[finest.cell_at(x, y, c)];
     change = std::max(change, std::abs(sum / neighbours - value));
