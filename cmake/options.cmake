@@ -118,6 +118,7 @@ function(diminish_tests)
   if(DIMINISH_BUILD_TESTS)
     list(TRANSFORM ARGV PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
     target_sources(diminish_tests PRIVATE ${ARGV})
+    diminish_compile_together(diminish_tests ${ARGV})
   endif()
 endfunction()
 

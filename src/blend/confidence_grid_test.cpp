@@ -7,24 +7,24 @@
 namespace diminish {
 namespace {
 
-constexpr Rect region{40, 24, 162, 90};
-const Intrinsics color{320, 240, 300, 300, 160, 120, {}};
+constexpr Rect grid_region{40, 24, 162, 90};
+const Intrinsics grid_view{320, 240, 300, 300, 160, 120, {}};
 
 /// Confidence in each pixel of a plane at z = 2 m, where `resolution(column, row)` of a cell is
 /// known.
 template <class Resolution>
 Image<float> confidence(const CameraPlace& place, const Resolution& resolution) {
   ConfidenceGrid grid;
-  grid.begin(region, color, 1);
+  grid.begin(grid_region, grid_view, 1);
   for (int row = 0; row < grid.rows(); ++row) {
     for (int column = 0; column < grid.columns(); ++column) {
       grid.set(0, column, row, resolution(column, row), 2);
     }
   }
   grid.finish(0, place);
-  Image<float> result(region.width, region.height);
+  Image<float> result(grid_region.width, grid_region.height);
   std::vector<float> nodes;
-  for (int y = 0; y < region.height; ++y) grid.row(0, y, nodes, result.row(y));
+  for (int y = 0; y < grid_region.height; ++y) grid.row(0, y, nodes, result.row(y));
   return result;
 }
 
@@ -39,8 +39,9 @@ TEST(ConfidenceGrid, IsTheResolutionOverTheAngleBetweenTheLinesOfSight) {
   for (const float resolution : {0.3F, 1.F, 3.F}) {
     const Image<float> found = confidence(camera_at(eye), [&](int, int) { return resolution; });
     for (const auto& [x, y] : {std::pair(10, 10), std::pair(80, 50), std::pair(150, 80)}) {
-      const Eigen::Vector3d point = 2 * Eigen::Vector3d((region.x + x - color.cx) / color.fx,
-                                                        (region.y + y - color.cy) / color.fy, 1);
+      const Eigen::Vector3d point =
+          2 * Eigen::Vector3d((grid_region.x + x - grid_view.cx) / grid_view.fx,
+                              (grid_region.y + y - grid_view.cy) / grid_view.fy, 1);
       const double angle = std::acos(point.normalized().dot((point - eye).normalized()));
       const double expected = std::min(1.F, resolution) / (angle + ConfidenceGrid::least_angle);
       EXPECT_NEAR(found(x, y) / expected, 1, 0.02) << resolution << ' ' << x << ' ' << y;
@@ -58,8 +59,8 @@ TEST(ConfidenceGrid, FadesToNothingBeforeTheSurfaceEnds) {
   const Image<float> found = confidence(camera_at({0.5, 0, 0}), covers);
   const float full = found(edge - 1 - ConfidenceGrid::fading_px, 5);
   EXPECT_GT(full, 3);
-  for (int y = 0; y < region.height; ++y) {
-    for (int x = 0; x < region.width; ++x) {
+  for (int y = 0; y < grid_region.height; ++y) {
+    for (int x = 0; x < grid_region.width; ++x) {
       if (x >= edge - 1) {
         ASSERT_EQ(found(x, y), 0) << x << ' ' << y;
       }
@@ -78,7 +79,7 @@ TEST(ConfidenceGrid, FadesToNothingBeforeTheSurfaceEnds) {
 TEST(ConfidenceGrid, TakesRegionsSmallerThanACell) {
   ConfidenceGrid grid;
   for (const int width : {1, 2, 3, 5, 9}) {
-    grid.begin({7, 7, width, 2}, color, 1);
+    grid.begin({7, 7, width, 2}, grid_view, 1);
     for (int column = 0; column < grid.columns(); ++column) grid.set(0, column, 0, 0.5F, 2);
     grid.finish(0, camera_at({0.5, 0, 0}));
     std::vector<float> nodes;

@@ -11,19 +11,20 @@
 namespace diminish {
 namespace {
 
-constexpr int width = 256;
-constexpr int height = 96;
-constexpr int least_pixels = (width / Scraps::squares_across) * (width / Scraps::squares_across);
+constexpr int map_width = 256;
+constexpr int map_height = 96;
+constexpr int least_pixels =
+    (map_width / Scraps::squares_across) * (map_width / Scraps::squares_across);
 const sdct::Threshold step(0.05, 2);
 
 class ScrapsTest : public ::testing::Test {
  protected:
-  ScrapsTest() : mask(width, height) {
+  ScrapsTest() : mask(map_width, map_height) {
     mask.fill(objects, 255);
-    scene.region = Rect{0, 0, width, height};
-    scene.color.resize(width, height, {});
-    scene.depth_m.resize(width, height, 0.F);
-    scene.source.resize(width, height, 0);
+    scene.region = Rect{0, 0, map_width, map_height};
+    scene.color.resize(map_width, map_height, {});
+    scene.depth_m.resize(map_width, map_height, 0.F);
+    scene.source.resize(map_width, map_height, 0);
     draw(mask.bounds(), 2.F);
   }
 
@@ -78,9 +79,9 @@ TEST_F(ScrapsTest, FollowsASlope) {
 }
 
 TEST_F(ScrapsTest, AlsoClearsTheSecondView) {
-  scene.second.color.resize(width, height, {9, 9, 9, 255});
-  scene.second.source.resize(width, height, 2);
-  scene.second.share.resize(width, height, 100);
+  scene.second.color.resize(map_width, map_height, {9, 9, 9, 255});
+  scene.second.source.resize(map_width, map_height, 2);
+  scene.second.share.resize(map_width, map_height, 100);
   draw({40, 40, 2, 2}, 1.5F);
   remove();
   EXPECT_EQ(scene.second.share(41, 41), 0);
@@ -127,8 +128,8 @@ TEST_F(ScrapsTest, DoesWhatAPlainSearchDoes) {
   std::mt19937 random(5);
   std::discrete_distribution<int> choose({3, 4, 2, 1});
   constexpr float depths_m[] = {0, 2, 1.7F, 3.5F};
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
+  for (int y = 0; y < map_height; ++y) {
+    for (int x = 0; x < map_width; ++x) {
       const float z_m = depths_m[choose(random)];
       draw(x, y, z_m);
       if (z_m == 0) scene.source(x, y) = scene.color(x, y).a = 0;
@@ -138,8 +139,8 @@ TEST_F(ScrapsTest, DoesWhatAPlainSearchDoes) {
   Scraps().remove(mask, mask.bounds(), step, scene);
   int dropped = 0;
   int kept = 0;
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
+  for (int y = 0; y < map_height; ++y) {
+    for (int x = 0; x < map_width; ++x) {
       if (before(x, y) == 0) continue;
       const bool is_large = piece_around(x, y, before).size() >= least_pixels;
       ASSERT_EQ(is_drawn(x, y), is_large) << x << ' ' << y;

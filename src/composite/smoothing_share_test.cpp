@@ -25,8 +25,8 @@ namespace {
 constexpr int whole = ColorSmoothing::whole_change;
 
 /// A wall with a pattern, seen by both cameras; `noise`: in levels, of both.
-struct Wall : testing::AnalyticFrame {
-  explicit Wall(double noise) : AnalyticFrame({.has_box = false}, {{-0.1, 0.05, 1.1}}) {
+struct PatternedWall : testing::AnalyticFrame {
+  explicit PatternedWall(double noise) : AnalyticFrame({.has_box = false}, {{-0.1, 0.05, 1.1}}) {
     std::mt19937 random(11);
     std::normal_distribution<double> normal(0, noise);
     const auto add = [&](Image<Bgr>& image) {
@@ -50,7 +50,7 @@ struct Wall : testing::AnalyticFrame {
 };
 
 /// The share that brings what is drawn of the RGB-D camera's images closest to the truth.
-double best_share(const Wall& wall, const Wall& clean) {
+double best_share(const PatternedWall& wall, const PatternedWall& clean) {
   const Rect view = wall.rig.color.bounds();
   Reconstruction drawn;
   Registry<Reconstructor>::get("cpu")(wall.rig)->reconstruct(
@@ -77,10 +77,10 @@ double best_share(const Wall& wall, const Wall& clean) {
 }
 
 TEST(SmoothingShare, IsTheBestByTheTruth) {
-  const Wall clean(0);
+  const PatternedWall clean(0);
   double last = -1;
   for (const double noise : {0.5, 2.0, 4.0, 8.0}) {
-    const Wall wall(noise);
+    const PatternedWall wall(noise);
     const double best = best_share(wall, clean);
     EXPECT_NEAR(wall.share(), best, whole / 6.0) << "noise " << noise;
     EXPECT_GT(best, last);
@@ -90,7 +90,7 @@ TEST(SmoothingShare, IsTheBestByTheTruth) {
 }
 
 TEST(SmoothingShare, IsAllWhereTooLittleIsSeen) {
-  const Wall wall(0);
+  const PatternedWall wall(0);
   EXPECT_EQ(wall.share(Mask(wall.rig.color.width, wall.rig.color.height, 255)), whole);
 }
 
@@ -126,8 +126,8 @@ double wood(double x, double y) {
 }
 
 /// The wall with another texture.
-Wall with(const Texture& texture) {
-  Wall wall(0);
+PatternedWall with(const Texture& texture) {
+  PatternedWall wall(0);
   const testing::AnalyticScene scene{.has_box = false};
   const auto paint = [&](const Intrinsics& camera, const RigidTransform& camera_from_world,
                          Image<Bgr>& image) {
@@ -152,7 +152,7 @@ class CleanTexture : public ::testing::TestWithParam<std::pair<const char*, Text
 
 // No clean texture may lose more than .002 of its structure.
 TEST_P(CleanTexture, IsKept) {
-  Wall wall = with(GetParam().second);
+  PatternedWall wall = with(GetParam().second);
   const Image<Bgr>& truth = wall.frame.rgbd[0].color.own();
   const Mask seen(truth.width(), truth.height(), provenance::first_rgbd);
   const auto lost_by = [&](int share) {
@@ -171,7 +171,7 @@ INSTANTIATE_TEST_SUITE_P(SmoothingShare, CleanTexture,
                          [](const auto& tested) { return std::string(tested.param.first); });
 
 TEST(SmoothingShare, KeepsATextureWithoutNoise) {
-  Wall wall(0);
+  PatternedWall wall(0);
   const Image<Bgr>& truth = wall.frame.rgbd[0].color.own();
   const Mask seen(truth.width(), truth.height(), provenance::first_rgbd);
   const auto lost_by = [&](int share) {

@@ -11,7 +11,7 @@ namespace diminish {
 namespace {
 
 constexpr Rect hidden{100, 80, 90, 70};
-constexpr Rect seen{130, 100, 20, 20};       ///< of it
+constexpr Rect seen_part{130, 100, 20, 20};  ///< of it
 constexpr Rect bar{112, 80, 10, 70};         ///< of it
 constexpr Rect depthless{160, 110, 16, 16};  ///< of it
 constexpr int error = 40;                    ///< of the second invention, levels
@@ -47,7 +47,7 @@ class Inventions : public ::testing::Test {
     result.provenance.fill(hidden, provenance::inpainted);
     result.provenance.fill(bar, provenance::estimated);
     result.report.estimated_pixels = std::size_t{bar.width} * bar.height;
-    result.provenance.fill(seen, 1);
+    result.provenance.fill(seen_part, 1);
     result.surfaces.region = whole;
     result.surfaces.label.resize(whole.width, whole.height, surface_label::first_plane);
     result.surfaces.label.fill(depthless, surface_label::unknown);
@@ -92,7 +92,7 @@ TEST_F(Inventions, OnlyAreChanged) {
   for (int y = 0; y < before.height(); ++y) {
     for (int x = 0; x < before.width(); ++x) {
       const bool may_change =
-          hidden.contains(x, y) && !seen.contains(x, y) && !depthless.contains(x, y);
+          hidden.contains(x, y) && !seen_part.contains(x, y) && !depthless.contains(x, y);
       EXPECT_TRUE(may_change || !is_changed(x, y)) << x << ", " << y;
     }
   }

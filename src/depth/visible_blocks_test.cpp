@@ -14,8 +14,8 @@ namespace {
 using testing::AnalyticFrame;
 using testing::AnalyticScene;
 
-constexpr int width = VisibleBlocks::width;
-constexpr int height = VisibleBlocks::height;
+constexpr int block_width = VisibleBlocks::width;
+constexpr int block_height = VisibleBlocks::height;
 
 /// Where the depth pixels of a frame's first RGB-D camera lie in the picture; nothing where there
 /// is no depth or it is behind the camera.
@@ -44,7 +44,7 @@ bool contains(const TiledRegion& region, const std::optional<Eigen::Vector2d>& p
 
 /// A block around a pixel.
 bool is_visible(const VisibleBlocks& blocks, int x, int y) {
-  return blocks.blocks().row(y)[x / width] != 0;
+  return blocks.blocks().row(y)[x / block_width] != 0;
 }
 
 TEST(VisibleBlocks, HoldWhateverIsSeen) {
@@ -110,7 +110,7 @@ TEST(VisibleBlocks, HoldWhateverIsSeenInTiles) {
     for (int y = 0; y < depth.height(); ++y) {
       for (int x = 0; x < depth.width(); ++x) {
         kept += is_visible(blocks, x, y) ? 1 : 0;
-        kept_for_all += all_blocks.row(y)[x / width] != 0 ? 1 : 0;
+        kept_for_all += all_blocks.row(y)[x / block_width] != 0 ? 1 : 0;
         if (!contains(region, places(x, y))) continue;
         ASSERT_TRUE(is_visible(blocks, x, y)) << trial << ": " << x << ' ' << y;
       }
@@ -131,8 +131,8 @@ TEST(VisibleBlocks, PartHoldsThemAndABlockAround) {
     for (int x = 0; x < image.width; ++x) {
       if (!is_visible(blocks, x, y)) continue;
       ++visible;
-      for (const int dy : {-height, 0, height}) {
-        for (const int dx : {-width, 0, width}) {
+      for (const int dy : {-block_height, 0, block_height}) {
+        for (const int dx : {-block_width, 0, block_width}) {
           if (!image.contains(x + dx, y + dy)) continue;
           ASSERT_TRUE(blocks.part().bounds().contains(x + dx, y + dy));
           const DepthPart::Columns& columns = blocks.part().columns(y + dy);

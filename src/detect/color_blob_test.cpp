@@ -12,7 +12,7 @@
 namespace diminish {
 namespace {
 
-const std::filesystem::path recordings = testing::recordings_dir();
+using testing::recordings;
 
 class ColorBlobOnBall : public ::testing::Test {
  protected:

@@ -11,7 +11,7 @@
 namespace diminish {
 namespace {
 
-const std::filesystem::path recordings = testing::recordings_dir();
+using testing::recordings;
 
 /// The marker of a recording's only occluder, and where it is in the occluder's frame.
 struct RecordedMarker {

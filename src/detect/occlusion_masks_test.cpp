@@ -11,7 +11,7 @@
 namespace diminish {
 namespace {
 
-Rig small_rig() {
+Rig rig_with_one_camera() {
   Rig rig;
   rig.color = {64, 48, 60, 60, 32, 24, {}};
   RgbdCamera camera;
@@ -37,7 +37,7 @@ GivenMask pixel(const std::string& occluder, const Rig& rig, int x, int y) {
 }
 
 TEST(OccluderStage, UnitesTheOccludersMasksAndGrowsThem) {
-  Detection detection(small_rig());
+  Detection detection(rig_with_one_camera());
   detection.frame.masks = {pixel("a", detection.rig, 10, 10), pixel("b", detection.rig, 30, 20)};
   detection.options.mask_margin_px = 2;
   detection.options.rgbd_mask_margin_px = 3;
@@ -84,7 +84,7 @@ class LostSign : public ::testing::Test {
   }
 
   Detection detection = [] {
-    Detection with_poses(small_rig());
+    Detection with_poses(rig_with_one_camera());
     with_poses.options.memory = "on";
     with_poses.poses.color_from_world = RigidTransform{};
     with_poses.poses.color_from_depth[0] = RigidTransform{};
@@ -122,7 +122,7 @@ TEST_F(LostSign, IsLostAtOnceWithoutMemory) {
 }
 
 TEST(OccluderStage, TheDepthMasksMarginCoversTheSameAngle) {
-  Detection detection(small_rig());
+  Detection detection(rig_with_one_camera());
   Image<std::uint16_t>& depth = detection.frame.rgbd[0].depth.own();
   depth(15, 10) = 1000;
   const std::string box =
@@ -148,7 +148,7 @@ class BrokenDrawer : public MaskDrawer {
 
 TEST(OccluderStage, WhereTheGpuFailsTheCpuDraws) {
   Registry<MaskDrawer>::add("broken", [] { return std::make_unique<BrokenDrawer>(); });
-  Detection detection(small_rig());
+  Detection detection(rig_with_one_camera());
   detection.frame.masks = {pixel("a", detection.rig, 10, 10)};
   detection.options.mask_margin_px = 2;
   OccluderStage stage(detection.rig, scene_with("[{name: a, detector: mask, color: x}]"));
@@ -172,12 +172,13 @@ TEST(OccluderStage, WhereTheGpuFailsTheCpuDraws) {
 
 TEST(OccluderStage, AnUnknownDetectorIsNamed) {
   EXPECT_THAT(
-      error_of([] { OccluderStage(small_rig(), scene_with("[{name: a, detector: magic}]")); }),
+      error_of(
+          [] { OccluderStage(rig_with_one_camera(), scene_with("[{name: a, detector: magic}]")); }),
       ::testing::MatchesRegex("scene.yaml:1: .*detector: expected one of .*marker.*, got 'magic'"));
 }
 
 TEST(OccluderStage, AFrameWithoutAGivenMaskIsReported) {
-  Detection detection(small_rig());
+  Detection detection(rig_with_one_camera());
   OccluderStage stage(detection.rig, scene_with("[{name: a, detector: mask, color: x}]"));
   const OcclusionMasks& masks = stage.masks();
   std::vector<OccluderReport> reports;

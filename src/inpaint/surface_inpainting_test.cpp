@@ -9,11 +9,11 @@
 namespace diminish {
 namespace {
 
-constexpr std::uint8_t wall = surface_label::first_plane;
-constexpr std::uint8_t table = wall + 1;
-const Bgr wall_color{120, 130, 140};
-const Bgr table_color{40, 90, 160};
-const Bgr box_color{200, 30, 30};
+constexpr std::uint8_t wall_label = surface_label::first_plane;
+constexpr std::uint8_t table_label = wall_label + 1;
+const Bgr wall_paint{120, 130, 140};
+const Bgr table_paint{40, 90, 160};
+const Bgr box_paint{200, 30, 30};
 
 /// A wall above a table, a box in front, and an object to remove that hides all three.
 struct Room {
@@ -28,8 +28,8 @@ struct Room {
     for (int y = 0; y < 160; ++y) {
       for (int x = 0; x < 200; ++x) {
         const bool box = x < 70 && y > 30;
-        picture(x, y) = box ? box_color : y < 90 ? wall_color : table_color;
-        surfaces.label(x, y) = box ? surface_label::foreground : y < 90 ? wall : table;
+        picture(x, y) = box ? box_paint : y < 90 ? wall_paint : table_paint;
+        surfaces.label(x, y) = box ? surface_label::foreground : y < 90 ? wall_label : table_label;
       }
     }
     remove({60, 20, 100, 110});
@@ -41,7 +41,7 @@ struct Room {
         if (x < 70 && y > 30) continue;  // the box's part is seen by an RGB-D camera
         missing(x, y) = 255;
         picture(x, y) = {0, 255, 0};
-        surfaces.label(x, y) = y < 90 ? wall : table;
+        surfaces.label(x, y) = y < 90 ? wall_label : table_label;
       }
     }
   }
@@ -59,10 +59,10 @@ TEST(SurfaceInpainting, FillsEachPlaneFromItself) {
   for (int y = 20; y < 130; ++y) {
     for (int x = 60; x < 160; ++x) {
       if (room.missing(x, y) == 0) continue;
-      EXPECT_EQ(filled(x, y), y < 90 ? wall_color : table_color) << x << ' ' << y;
+      EXPECT_EQ(filled(x, y), y < 90 ? wall_paint : table_paint) << x << ' ' << y;
     }
   }
-  EXPECT_NE(room.fill("harmonic")(75, 60), wall_color) << "the box would bleed";
+  EXPECT_NE(room.fill("harmonic")(75, 60), wall_paint) << "the box would bleed";
 }
 
 TEST(SurfaceInpainting, LeavesEverythingElseAlone) {
@@ -83,7 +83,7 @@ TEST(SurfaceInpainting, DoesNotSpreadAContactShadow) {
     for (int x = 55; x < 165; ++x) room.picture(x, y) = {10, 20, 35};
   }
   const Image<Bgr> filled = room.fill();
-  EXPECT_EQ(filled(110, 125), table_color);
+  EXPECT_EQ(filled(110, 125), table_paint);
   EXPECT_EQ(filled(110, 131), room.picture(110, 131)) << "it stays where the camera sees it";
 }
 
@@ -95,10 +95,10 @@ TEST(SurfaceInpainting, AHoleInTheForegroundIsFilledFromAround) {
     for (int x = 20; x < 40; ++x) {
       room.missing(x, y) = 255;
       room.picture(x, y) = {0, 255, 0};
-      room.surfaces.label(x, y) = wall;
+      room.surfaces.label(x, y) = wall_label;
     }
   }
-  EXPECT_EQ(room.fill()(30, 70), box_color);
+  EXPECT_EQ(room.fill()(30, 70), box_paint);
 }
 
 // Its plane has no other hole.
@@ -110,11 +110,11 @@ TEST(SurfaceInpainting, AHoleInTheForegroundAloneChangesNothingElse) {
   room.occlusion.fill(hole, 255);
   room.missing.fill(hole, 255);
   room.picture.fill(hole, {0, 255, 0});
-  room.surfaces.label.fill(hole, wall);
+  room.surfaces.label.fill(hole, wall_label);
   const Image<Bgr> filled = room.fill();
   for (int y = 0; y < 160; ++y) {
     for (int x = 0; x < 200; ++x) {
-      ASSERT_EQ(filled(x, y), hole.contains(x, y) ? box_color : room.picture(x, y));
+      ASSERT_EQ(filled(x, y), hole.contains(x, y) ? box_paint : room.picture(x, y));
     }
   }
 }
@@ -255,7 +255,7 @@ TEST(FarSide, WhatWasNotMeasuredIsNotTakenForThePlane) {
       if (room.missing(x, y) != 0) depth_m(x, y) = 0;
       // On the wall above the hole.
       if (y < 20 && x > 80 && x < 100) {
-        room.picture(x, y) = box_color;
+        room.picture(x, y) = box_paint;
         depth_m(x, y) = 0;
       }
     }
@@ -263,8 +263,8 @@ TEST(FarSide, WhatWasNotMeasuredIsNotTakenForThePlane) {
   Image<Bgr> filled = room.picture;
   EXPECT_TRUE(make_surface_inpainting(FillFrom::far_side)
                   ->inpaint({room.missing, room.occlusion, room.surfaces, depth_m}, {}, filled));
-  EXPECT_EQ(filled(90, 22), wall_color);
-  EXPECT_NE(room.fill()(90, 22), wall_color);
+  EXPECT_EQ(filled(90, 22), wall_paint);
+  EXPECT_NE(room.fill()(90, 22), wall_paint);
 
   // Where nothing at all was measured, all of it lends.
   depth_m.fill(0);

@@ -23,7 +23,7 @@ using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
-const std::filesystem::path recordings = testing::recordings_dir();
+using testing::recordings;
 
 /// Waits until `is_true`, for a generous time, because test machines may be slow.
 template <class Condition>

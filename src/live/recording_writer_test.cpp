@@ -20,7 +20,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-const std::filesystem::path recordings = testing::recordings_dir();
+using testing::recordings;
 
 std::vector<FrameSet> frames_of(const std::filesystem::path& folder) {
   const Recording recording = load_recording(folder);

@@ -24,10 +24,11 @@ namespace {
 using std::chrono::milliseconds;
 using ::testing::HasSubstr;
 
-const std::filesystem::path folder = std::filesystem::path(testing::recordings_dir()) / "workbench";
+const std::filesystem::path workbench =
+    std::filesystem::path(testing::recordings_dir()) / "workbench";
 
 std::string camera_uri(const std::string& name) {
-  return "recording:" + folder.string() + "?loop&in-step&rate=0.2" +
+  return "recording:" + workbench.string() + "?loop&in-step&rate=0.2" +
          (name == "color" ? "" : "&camera=" + name);
 }
 std::string node_uri(const std::string& name, const std::string& coding) {
@@ -82,7 +83,7 @@ class RenderNodeTest : public ::testing::Test {
   }
 
   Ros2Domain domain_;
-  Recording recording_ = load_recording(folder);
+  Recording recording_ = load_recording(workbench);
   Options options_;
 };
 
@@ -126,7 +127,7 @@ TEST_F(RenderNodeTest, ItsContributionMakesTheLocalPicture) {
 TEST_F(RenderNodeTest, AKilledNodeIsBackWhenItIsStartedAgain) {
   const std::vector<std::string> arguments = {
       "render-node", camera_uri("rgbd1"), "--topic", "/rgbd1", "--name", "rgbd1",
-      "--rig",       folder.string()};
+      "--rig",       workbench.string()};
   auto program = std::make_unique<BackgroundProgram>(arguments);
   const auto running = session({"rgbd1"});
   ASSERT_TRUE(frame_where(*running, is_complete));

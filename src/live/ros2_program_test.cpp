@@ -20,7 +20,8 @@ namespace {
 using std::chrono::milliseconds;
 using ::testing::HasSubstr;
 
-const std::filesystem::path folder = std::filesystem::path(testing::recordings_dir()) / "calendar";
+const std::filesystem::path calendar =
+    std::filesystem::path(testing::recordings_dir()) / "calendar";
 
 class Ros2Program : public ::testing::Test {
  protected:
@@ -46,7 +47,7 @@ class Ros2Program : public ::testing::Test {
   }
 
   Ros2Domain domain_;
-  Recording recording_ = load_recording(folder);
+  Recording recording_ = load_recording(calendar);
 };
 
 TEST_F(Ros2Program, ANodesImagesAreTheLocalCameras) {
@@ -54,7 +55,7 @@ TEST_F(Ros2Program, ANodesImagesAreTheLocalCameras) {
   const auto source = open_recording(recording_, {});
   for (FrameSet frame; source->next(frame);) recorded.push_back(frame);
 
-  const BackgroundProgram node(camera_node_arguments(folder));
+  const BackgroundProgram node(camera_node_arguments(calendar));
   const auto camera = open_camera("ros2:/rgbd0", {"rgbd0", &recording_.rig, 0});
   int depths = 0;
   int colors = 0;
@@ -97,7 +98,7 @@ TEST_F(Ros2Program, ANodesImagesAreTheLocalCameras) {
 }
 
 TEST_F(Ros2Program, AKilledNodeIsBackWhenItIsStartedAgain) {
-  auto node = std::make_unique<BackgroundProgram>(camera_node_arguments(folder));
+  auto node = std::make_unique<BackgroundProgram>(camera_node_arguments(calendar));
   const auto camera = open_camera("ros2:/rgbd0", {"rgbd0", &recording_.rig, 0});
   next_image(*camera, Sensor::depth);
   node->kill_now();
@@ -105,15 +106,15 @@ TEST_F(Ros2Program, AKilledNodeIsBackWhenItIsStartedAgain) {
   while (camera->read(image, milliseconds(300)) == CameraSource::Status::image) {
   }
   const double started_s = monotonic_now_s();
-  node = std::make_unique<BackgroundProgram>(camera_node_arguments(folder));
+  node = std::make_unique<BackgroundProgram>(camera_node_arguments(calendar));
   next_image(*camera, Sensor::depth);
   RecordProperty("seconds_until_back", std::to_string(monotonic_now_s() - started_s));
 }
 
 TEST_F(Ros2Program, ALiveSessionRunsOnNodesAndPublishesItsResult) {
-  const BackgroundProgram node(camera_node_arguments(folder));
-  const BackgroundProgram session({"live", folder.string(), "--color",
-                                   "recording:" + folder.string() + "?loop", "--rgbd",
+  const BackgroundProgram node(camera_node_arguments(calendar));
+  const BackgroundProgram session({"live", calendar.string(), "--color",
+                                   "recording:" + calendar.string() + "?loop", "--rgbd",
                                    "ros2:/rgbd0", "--ros2", "/diminish", "--seconds", "60"});
   const auto result = open_camera("ros2:/diminish?color=image", {"color", nullptr, 0});
   const CameraImage picture = next_image(*result, Sensor::color);
@@ -134,9 +135,9 @@ TEST_F(Ros2Program, ALiveSessionRunsOnNodesAndPublishesItsResult) {
 }
 
 TEST_F(Ros2Program, InitWritesWhatTheNodeTells) {
-  const BackgroundProgram node(camera_node_arguments(folder));
-  const BackgroundProgram eye({"camera-node", "recording:" + folder.string() + "?loop", "--topic",
-                               "/eye", "--name", "color", "--rig", folder.string()});
+  const BackgroundProgram node(camera_node_arguments(calendar));
+  const BackgroundProgram eye({"camera-node", "recording:" + calendar.string() + "?loop", "--topic",
+                               "/eye", "--name", "color", "--rig", calendar.string()});
   const TemporaryFolder out;
   const std::string made = (out.path() / "desk").string();
   const auto outcome =
@@ -154,9 +155,9 @@ TEST_F(Ros2Program, WrongUseIsOneLine) {
   for (const auto& [arguments, what] :
        {std::pair{std::vector<std::string>{"camera-node", "v4l2:/dev/video0", "--topic", "a b"},
                   "expected a topic such as"},
-        {{"camera-node", "recording:x", "--topic", "/a", "--rig", folder.string(), "--name", "x"},
+        {{"camera-node", "recording:x", "--topic", "/a", "--rig", calendar.string(), "--name", "x"},
          "the rig has no camera 'x'"},
-        {{"live", folder.string(), "--ros2", "/a?interfaces=1", "--seconds", "1"},
+        {{"live", calendar.string(), "--ros2", "/a?interfaces=1", "--seconds", "1"},
          "unknown parameter 'interfaces'"}}) {
     const auto outcome = Program::run(arguments);
     EXPECT_EQ(outcome.exit_code, 1);

@@ -20,7 +20,7 @@ namespace {
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
-const std::filesystem::path recordings = testing::recordings_dir();
+using testing::recordings;
 
 /// The bundled recordings, and what may be wrong with them.
 class Doubtful : public ::testing::TestWithParam<const char*> {

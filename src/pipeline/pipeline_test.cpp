@@ -21,7 +21,7 @@
 namespace diminish {
 namespace {
 
-const std::filesystem::path recordings = testing::recordings_dir();
+using testing::recordings;
 
 /// A bundled recording, frame after frame through the whole pipeline.
 class BundledRecording {

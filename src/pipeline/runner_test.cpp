@@ -19,7 +19,7 @@
 namespace diminish {
 namespace {
 
-const std::filesystem::path recordings = testing::recordings_dir();
+using testing::recordings;
 
 /// Keeps what it is given.
 class MemorySink : public FrameSink {

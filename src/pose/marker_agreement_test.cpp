@@ -10,7 +10,7 @@
 namespace diminish {
 namespace {
 
-constexpr double size_m = 0.15;
+constexpr double printed_m = 0.15;
 
 /// Two markers at different distances, seen by the colour camera and by an RGB-D camera beside it.
 class MarkerAgreementTest : public ::testing::Test {
@@ -22,9 +22,9 @@ class MarkerAgreementTest : public ::testing::Test {
     camera.color = {.width = 960, .height = 540, .fx = 530, .fy = 530, .cx = 480, .cy = 270};
     camera.color_from_depth.translation = {0.05, 0, 0};
     rig.rgbd.push_back(camera);
-    scene.world_marker = {0, size_m};
+    scene.world_marker = {0, printed_m};
     auto on_object = std::make_shared<MarkerSettings>();
-    on_object->marker = {1, size_m};
+    on_object->marker = {1, printed_m};
     scene.occluders = {{"thing", "marker", on_object}};
     frame.rgbd.resize(1);
     frame.rgbd[0].color.own().resize(960, 540, Bgr{0, 0, 0});
@@ -50,7 +50,7 @@ class MarkerAgreementTest : public ::testing::Test {
   static Marker seen(int id, const RigidTransform& camera_from_marker, const Lens& lens) {
     Marker marker;
     marker.id = id;
-    const auto corners = marker_corners(size_m);
+    const auto corners = marker_corners(printed_m);
     for (std::size_t i = 0; i < corners.size(); ++i) {
       marker.corners[i] = *lens.project(camera_from_marker * corners[i]);
     }

@@ -12,7 +12,7 @@ namespace {
 using testing::AnalyticFrame;
 using testing::AnalyticScene;
 
-constexpr double size_m = 0.12;
+constexpr double panel_marker_m = 0.12;
 const Eigen::Vector3d panel_min{-0.15, -0.1, 0.38};
 const Eigen::Vector3d panel_max{0.15, 0.1, 0.4};
 const Eigen::Vector3d marker_at{0, 0, 0.4};
@@ -32,11 +32,11 @@ class ObjectPlaceTest : public ::testing::Test {
         }
       }
     }
-    settings->marker = {1, size_m};
+    settings->marker = {1, panel_marker_m};
     scene.occluders = {{"panel", "marker", settings}};
     Marker marker;
     marker.id = 1;
-    const auto corners = marker_corners(size_m);
+    const auto corners = marker_corners(panel_marker_m);
     const Lens lens(frame.rig.color);
     for (std::size_t i = 0; i < corners.size(); ++i) {
       marker.corners[i] = *lens.project(*frame.poses.color_from_world * (corners[i] + marker_at));
@@ -61,7 +61,7 @@ class ObjectPlaceTest : public ::testing::Test {
 
 TEST_F(ObjectPlaceTest, IsRight) {
   for (const double said : {0.98, 1., 1.02}) {
-    const auto place = find(said * size_m);
+    const auto place = find(said * panel_marker_m);
     ASSERT_TRUE(place);
     EXPECT_EQ(place->marker, 1);
     EXPECT_LT(place->seen_through, 0.05);
@@ -71,14 +71,14 @@ TEST_F(ObjectPlaceTest, IsRight) {
 }
 
 TEST_F(ObjectPlaceTest, IsBeforeWhatTheDepthCameraMeasures) {
-  const auto place = find(0.9 * size_m);
+  const auto place = find(0.9 * panel_marker_m);
   ASSERT_TRUE(place);
   EXPECT_GT(place->seen_through, 0.9);
   EXPECT_TRUE(place->is_wrong());
 }
 
 TEST_F(ObjectPlaceTest, IsBehindItself) {
-  const auto place = find(1.1 * size_m);
+  const auto place = find(1.1 * panel_marker_m);
   ASSERT_TRUE(place);
   EXPECT_GT(place->covered, 0.9);
   EXPECT_TRUE(place->is_wrong());
@@ -87,21 +87,21 @@ TEST_F(ObjectPlaceTest, IsBehindItself) {
 TEST_F(ObjectPlaceTest, IsKnownOfMeshes) {
   settings->triangles = {{0, 1, 2}, {1, 3, 2}, {4, 6, 5}, {5, 6, 7}, {0, 4, 1}, {1, 4, 5},
                          {2, 3, 6}, {3, 7, 6}, {0, 2, 4}, {2, 6, 4}, {1, 5, 3}, {3, 5, 7}};
-  ASSERT_TRUE(find(size_m));
-  EXPECT_FALSE(find(size_m)->is_wrong());
-  EXPECT_TRUE(find(0.9 * size_m)->is_wrong());
-  EXPECT_TRUE(find(1.1 * size_m)->is_wrong());
+  ASSERT_TRUE(find(panel_marker_m));
+  EXPECT_FALSE(find(panel_marker_m)->is_wrong());
+  EXPECT_TRUE(find(0.9 * panel_marker_m)->is_wrong());
+  EXPECT_TRUE(find(1.1 * panel_marker_m)->is_wrong());
 }
 
 TEST_F(ObjectPlaceTest, IsUnknownWhereACameraDoesNotLook) {
   const Markers seen = markers;
   markers.color.clear();
-  EXPECT_FALSE(find(size_m));
+  EXPECT_FALSE(find(panel_marker_m));
   markers = seen;
   frame.frame.rgbd[0].depth.own().fill(0);
-  EXPECT_FALSE(find(size_m));
+  EXPECT_FALSE(find(panel_marker_m));
   frame.frame.rgbd[0].depth = {};
-  EXPECT_FALSE(find(size_m));
+  EXPECT_FALSE(find(panel_marker_m));
 }
 
 }  // namespace

@@ -16,8 +16,8 @@ RigidTransform robot_at(double time_s) {
   return turned(.3 * time_s, {1 + .5 * time_s, -.2 * time_s, 0});
 }
 
-TransformStamped edge(const std::string& parent, const std::string& child,
-                      const RigidTransform& parent_from_child, double stamp_s = 0) {
+TransformStamped stamped_edge(const std::string& parent, const std::string& child,
+                              const RigidTransform& parent_from_child, double stamp_s = 0) {
   return {{stamp_s, parent}, child, parent_from_child};
 }
 
@@ -30,7 +30,7 @@ class TransformBuffers : public ::testing::Test {
  protected:
   void drive(double from_s, double to_s, double step_s) {
     for (double t = from_s; t < to_s + 1e-9; t += step_s) {
-      buffer_.add({{edge("map", "base", robot_at(t), t)}}, 0);
+      buffer_.add({{stamped_edge("map", "base", robot_at(t), t)}}, 0);
     }
   }
   TransformBuffer buffer_;
@@ -38,7 +38,7 @@ class TransformBuffers : public ::testing::Test {
 
 TEST_F(TransformBuffers, AnEvenMotionIsInterpolatedExactly) {
   const RigidTransform base_from_camera = turned(1.2, {.1, .2, .3});
-  buffer_.add_static({{edge("base", "camera", base_from_camera)}});
+  buffer_.add_static({{stamped_edge("base", "camera", base_from_camera)}});
   drive(0, 2, .1);
   for (const double t : {0., .05, .1, .777, 1.9999, 2.}) {
     const auto found = buffer_.find("camera", "map", t, .2);
@@ -53,7 +53,7 @@ TEST_F(TransformBuffers, EachFrameIsInterpolatedByItsOwnMoments) {
   drive(0, 2, .1);
   // An arm that moves on the robot, told at other times.
   for (double t = -.03; t < 2.1; t += .07) {
-    buffer_.add({{edge("base", "camera", turned(-t, {0, t, 0}), t)}}, 0);
+    buffer_.add({{stamped_edge("base", "camera", turned(-t, {0, t, 0}), t)}}, 0);
   }
   const auto found = buffer_.find("map", "camera", 1.234, .2);
   ASSERT_EQ(found.kind, Kind::known);
@@ -76,14 +76,14 @@ TEST_F(TransformBuffers, WhatIsMissingIsSaid) {
 }
 
 TEST_F(TransformBuffers, StampsOfAnotherClockAreMoved) {
-  buffer_.add({{edge("map", "base", robot_at(1), 1001)}}, -1000);
-  buffer_.add({{edge("map", "base", robot_at(2), 1002)}}, -1000);
+  buffer_.add({{stamped_edge("map", "base", robot_at(1), 1001)}}, -1000);
+  buffer_.add({{stamped_edge("map", "base", robot_at(2), 1002)}}, -1000);
   expect_same(buffer_.find("map", "base", 1.5, 2).to_from_from, robot_at(1.5));
 }
 
 TEST_F(TransformBuffers, TheOrderOfArrivalDoesNotMatter) {
   for (const double t : {1., 3., 2., 0., 2.}) {
-    buffer_.add({{edge("map", "base", robot_at(t), t)}}, 0);
+    buffer_.add({{stamped_edge("map", "base", robot_at(t), t)}}, 0);
   }
   for (const double t : {.5, 1.5, 2.5}) {
     expect_same(buffer_.find("map", "base", t, 1).to_from_from, robot_at(t));
@@ -99,25 +99,26 @@ TEST_F(TransformBuffers, OldOnesGoAndAClockMayBeSetBack) {
   EXPECT_EQ(buffer_.find("map", "base", 21, 1).kind, Kind::not_yet);
   // More than there is room for: the newest stay.
   for (int i = 0; i < 2000; ++i) {
-    buffer_.add({{edge("map", "base", robot_at(.5 + i * .001), .5 + i * .001)}}, 0);
+    buffer_.add({{stamped_edge("map", "base", robot_at(.5 + i * .001), .5 + i * .001)}}, 0);
   }
   EXPECT_EQ(buffer_.find("map", "base", .25, 1).kind, Kind::lost);
   expect_same(buffer_.find("map", "base", 2.2, 1).to_from_from, robot_at(2.2));
 }
 
 TEST_F(TransformBuffers, CirclesEndAndFramesAreLimited) {
-  buffer_.add_static({{edge("a", "b", {}), edge("b", "a", {}), edge("c", "c", {})}});
+  buffer_.add_static(
+      {{stamped_edge("a", "b", {}), stamped_edge("b", "a", {}), stamped_edge("c", "c", {})}});
   EXPECT_EQ(buffer_.find("a", "b", 1, 1).kind, Kind::known);
   EXPECT_EQ(buffer_.find("a", "c", 1, 1).kind, Kind::unknown);
   for (int i = 0; i < 2000; ++i) {
-    buffer_.add_static({{edge("a", std::to_string(i), {})}});
+    buffer_.add_static({{stamped_edge("a", std::to_string(i), {})}});
   }
   EXPECT_EQ(buffer_.frames(), 1000U);
 }
 
 TEST_F(TransformBuffers, AFrameThatGetsAnotherParentBeginsAnew) {
   drive(0, 2, .1);
-  buffer_.add({{edge("lift", "base", {}, 2.1)}}, 0);
+  buffer_.add({{stamped_edge("lift", "base", {}, 2.1)}}, 0);
   EXPECT_EQ(buffer_.find("map", "base", 1, 1).kind, Kind::unknown);
   EXPECT_EQ(buffer_.find("lift", "base", 2.1, 1).kind, Kind::known);
 }

@@ -11,13 +11,13 @@
 namespace diminish {
 namespace {
 
-constexpr int width = 96;
-constexpr int height = 64;
+constexpr int view_width = 96;
+constexpr int view_height = 64;
 const cv::Rect object(20, 15, 56, 34);
 
 cv::Mat grey(const std::function<int(int x)>& level) {
-  cv::Mat picture(height, width, CV_8UC3);
-  for (int x = 0; x < width; ++x) picture.col(x).setTo(cv::Scalar::all(level(x)));
+  cv::Mat picture(view_height, view_width, CV_8UC3);
+  for (int x = 0; x < view_width; ++x) picture.col(x).setTo(cv::Scalar::all(level(x)));
   return picture;
 }
 /// Dark, and bright from column `at` on.
@@ -28,7 +28,7 @@ cv::Mat ramp(double slope) {
   return grey([slope](int x) { return static_cast<int>(20 + slope * x); });
 }
 cv::Mat painted(const cv::Rect& rect, int value) {
-  cv::Mat image(height, width, CV_8U, cv::Scalar(0));
+  cv::Mat image(view_height, view_width, CV_8U, cv::Scalar(0));
   image(rect).setTo(value);
   return image;
 }
@@ -103,8 +103,8 @@ TEST(ViewerFigures, ABlurredPatternIsLessSharp) {
 TEST(ViewerFigures, TellWhatIsSeenFromWhatIsInvented) {
   const cv::Mat truth = ramp(2);
   cv::Mat result = truth.clone();
-  const cv::Rect left(0, 0, 48, height);
-  const cv::Rect right(48, 0, width - 48, height);
+  const cv::Rect left(0, 0, 48, view_height);
+  const cv::Rect right(48, 0, view_width - 48, view_height);
   ramp(1)(right).copyTo(result(right));
   cv::Mat origin = painted(object, provenance::first_rgbd);
   // Away from where the two meet.
@@ -124,7 +124,7 @@ TEST(ViewerFigures, LookAtTheGrownMaskOnly) {
   const cv::Mat truth = step(48);
   cv::Mat result = truth.clone();
   // So far away that no filter reaches the region.
-  result(cv::Rect(0, 0, object.x - 8, height)).setTo(cv::Scalar::all(255));
+  result(cv::Rect(0, 0, object.x - 8, view_height)).setTo(cv::Scalar::all(255));
   const ViewerFigures same = figures(result, truth);
   EXPECT_EQ(same.edge_f1, 1);
   EXPECT_NEAR(same.gradient_similarity, 1, 1e-6);

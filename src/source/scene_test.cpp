@@ -10,7 +10,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-Scene read(const std::string& yaml) {
+Scene scene_of(const std::string& yaml) {
   return read_scene(Config::parse(yaml, "scene.yaml"));
 }
 
@@ -28,7 +28,7 @@ TEST(Scene, ReadsTheBundledScenes) {
 }
 
 TEST(Scene, MarkersMayBeLeftOut) {
-  const Scene scene = read("occluders: [{name: a, detector: mask, color: a}]\n");
+  const Scene scene = scene_of("occluders: [{name: a, detector: mask, color: a}]\n");
   EXPECT_EQ(scene.marker_dictionary, "DICT_4X4_50");
   EXPECT_EQ(scene.world_marker.size_m, 0);
 }
@@ -56,7 +56,7 @@ TEST(Scene, EachWrongValueIsNamed) {
       {"occluder: []\n", "scene.yaml:1: occluder: unknown key, expected one of"},
   };
   for (const auto& [yaml, message] : cases) {
-    EXPECT_THAT(error_of([&yaml = yaml] { read(yaml); }), HasSubstr(message));
+    EXPECT_THAT(error_of([&yaml = yaml] { scene_of(yaml); }), HasSubstr(message));
   }
 }
 

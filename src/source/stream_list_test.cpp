@@ -10,7 +10,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-std::vector<StreamEntry> read(const std::string& text) {
+std::vector<StreamEntry> entries_of(const std::string& text) {
   std::istringstream stream(text);
   return read_stream_list(stream, "color.txt");
 }
@@ -22,7 +22,7 @@ std::vector<StreamEntry> at(const std::vector<double>& stamps) {
 }
 
 TEST(StreamList, ToleratesCommentsBlankLinesAndCarriageReturns) {
-  const auto entries = read(
+  const auto entries = entries_of(
       "# timestamp filename\r\n\r\n 1305031102.175304\trgb/1305031102.175304.png \r\n"
       "#\n1305031102.25  /data/my pictures/b.jpg");
   ASSERT_EQ(entries.size(), 2U);
@@ -49,11 +49,11 @@ TEST(StreamList, MalformedLinesAreNamed) {
       {"# nothing\n\n", "color.txt: expected at least one line of \"timestamp filename\""},
   };
   for (const auto& [text, message] : cases)
-    EXPECT_EQ(error_of([&text = text] { read(text); }), message);
+    EXPECT_EQ(error_of([&text = text] { entries_of(text); }), message);
 }
 
 TEST(StreamList, LinesOfOneVideoAreItsFrames) {
-  const auto entries = read("1 a.mkv\n2 b.MP4\n3 a.mkv\n4 c.png\n5 a.mkv\n");
+  const auto entries = entries_of("1 a.mkv\n2 b.MP4\n3 a.mkv\n4 c.png\n5 a.mkv\n");
   EXPECT_EQ(entries[0].frame, 0);
   EXPECT_EQ(entries[1].frame, std::nullopt);  // all of it, see expand_videos
   EXPECT_TRUE(is_video(entries[1].file));
@@ -66,7 +66,7 @@ TEST(StreamList, LinesOfOneVideoAreItsFrames) {
 
 TEST(StreamList, OneLineOfAVideoStandsForAllItsFrames) {
   const std::string video = testing::source_test_data() + "/depth.mkv";
-  const auto entries = expand_videos(read("0.5 a.png\n1 " + video + "\n"), "color.txt");
+  const auto entries = expand_videos(entries_of("0.5 a.png\n1 " + video + "\n"), "color.txt");
   ASSERT_EQ(entries.size(), 6U);
   for (int frame = 0; frame < 5; ++frame) {
     const StreamEntry& entry = entries[static_cast<std::size_t>(frame) + 1];
@@ -74,9 +74,10 @@ TEST(StreamList, OneLineOfAVideoStandsForAllItsFrames) {
     EXPECT_DOUBLE_EQ(entry.stamp_s, 1 + 0.1 * frame);
     EXPECT_EQ(entry.line, 2);
   }
-  EXPECT_THAT(error_of([&] { expand_videos(read("1 " + video + "\n1.3 b.png\n"), "color.txt"); }),
-              HasSubstr("color.txt:2: expected a timestamp after 1.4"));
-  EXPECT_EQ(error_of([&] { expand_videos(read("1 none.mp4\n"), "here/color.txt"); }),
+  EXPECT_THAT(
+      error_of([&] { expand_videos(entries_of("1 " + video + "\n1.3 b.png\n"), "color.txt"); }),
+      HasSubstr("color.txt:2: expected a timestamp after 1.4"));
+  EXPECT_EQ(error_of([&] { expand_videos(entries_of("1 none.mp4\n"), "here/color.txt"); }),
             "here/none.mp4: there is no such file");
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-KinematicChain read(const std::string& links) {
+KinematicChain read_chain(const std::string& links) {
   return KinematicChain::read(Config::parse("links:\n" + links, "arm.yaml"));
 }
 
@@ -17,11 +17,11 @@ const std::string base = "  - {name: base, mesh: base.obj}\n";
 
 TEST(KinematicChain, MovesLinksAsTheirJointsTurn) {
   // Two bars of 1 m, the second at the end of the first, and a slide along the second.
-  const KinematicChain chain =
-      read(base +
-           "  - {name: first, mesh: bar.obj, parent: base, origin: [0, 0, 0.5], axis: [0, 0, 2]}\n"
-           "  - {name: second, mesh: bar.obj, parent: first, origin: [1, 0, 0], axis: [0, 0, 1]}\n"
-           "  - {name: slide, mesh: bar.obj, parent: second, axis: [1, 0, 0], joint: prismatic}\n");
+  const KinematicChain chain = read_chain(
+      base +
+      "  - {name: first, mesh: bar.obj, parent: base, origin: [0, 0, 0.5], axis: [0, 0, 2]}\n"
+      "  - {name: second, mesh: bar.obj, parent: first, origin: [1, 0, 0], axis: [0, 0, 1]}\n"
+      "  - {name: slide, mesh: bar.obj, parent: second, axis: [1, 0, 0], joint: prismatic}\n");
   EXPECT_EQ(chain.joint_count(), 3U);
   std::vector<RigidTransform> base_from_link;
   const double quarter = std::acos(0.0);
@@ -35,7 +35,7 @@ TEST(KinematicChain, MovesLinksAsTheirJointsTurn) {
 }
 
 TEST(KinematicChain, JointsMayBeTurnedInTheirParent) {
-  const KinematicChain chain = read(
+  const KinematicChain chain = read_chain(
       base +
       "  - {name: up, mesh: bar.obj, parent: base, rotation: [1, 0, 0, 0, 0, -1, 0, 1, 0], axis: "
       "[0, 0, 1]}\n");
@@ -46,7 +46,9 @@ TEST(KinematicChain, JointsMayBeTurnedInTheirParent) {
 }
 
 TEST(KinematicChain, WhatIsWrongIsNamed) {
-  const auto complaint = [](const std::string& links) { return error_of([&] { read(links); }); };
+  const auto complaint = [](const std::string& links) {
+    return error_of([&] { read_chain(links); });
+  };
   EXPECT_THAT(complaint(base + "  - {name: a, mesh: a.obj, parent: none}\n"),
               HasSubstr("links[1].parent: expected one of the earlier links base, got 'none'"));
   EXPECT_THAT(complaint("  - {name: a, mesh: a.obj, parent: a}\n"),

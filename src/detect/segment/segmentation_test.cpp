@@ -11,8 +11,8 @@
 namespace diminish {
 namespace {
 
-constexpr int width = 480;
-constexpr int height = 360;
+constexpr int image_width = 480;
+constexpr int image_height = 360;
 
 /// A red square with a pattern on it that moves over a patterned wall.
 class SegmentationTest : public ::testing::Test {
@@ -28,11 +28,11 @@ class SegmentationTest : public ::testing::Test {
   static Rect square(int frame) { return {100 + 6 * frame, 120 + 3 * frame, 120, 110}; }
 
   static Image<Bgr> picture(int frame, int noise = 0, unsigned seed = 0) {
-    Image<Bgr> picture(width, height);
+    Image<Bgr> picture(image_width, image_height);
     std::mt19937 random(seed);
     const Rect object = square(frame);
-    for (int y = 0; y < height; ++y) {
-      for (int x = 0; x < width; ++x) {
+    for (int y = 0; y < image_height; ++y) {
+      for (int x = 0; x < image_width; ++x) {
         const bool on = contains(object, x, y);
         const int u = on ? x - object.x : x;
         const int v = on ? y - object.y : y;
@@ -56,15 +56,15 @@ class SegmentationTest : public ::testing::Test {
 
   std::unique_ptr<Segmentation> make() const {
     return std::make_unique<Segmentation>(settings, Config::parse("name: red", "s.yaml"),
-                                          cv::Size(width, height));
+                                          cv::Size(image_width, image_height));
   }
   static Mask truth(int frame) {
-    Mask mask(width, height);
+    Mask mask(image_width, image_height);
     mask.fill(square(frame), 255);
     return mask;
   }
   static Mask segment(Segmentation& network, const Image<Bgr>& picture, int frame) {
-    Mask mask(width, height);
+    Mask mask(image_width, image_height);
     network.segment(picture, frame / 30., mask);
     return mask;
   }
@@ -118,8 +118,9 @@ TEST_F(SegmentationTest, SteadyAnswersFlickerLess) {
     for (int frame = 0; frame < 12; ++frame) {
       const Mask found = segment(*network, picture(0, 90, static_cast<unsigned>(frame) + 1), frame);
       if (frame > 3) {
-        for (int y = 0; y < height; ++y) {
-          for (int x = 0; x < width; ++x) changed += found.row(y)[x] != before.row(y)[x] ? 1 : 0;
+        for (int y = 0; y < image_height; ++y) {
+          for (int x = 0; x < image_width; ++x)
+            changed += found.row(y)[x] != before.row(y)[x] ? 1 : 0;
         }
       }
       before = found;

@@ -100,20 +100,20 @@ Points random_points(std::mt19937& random, int count, const Eigen::Vector3d& cen
   return points;
 }
 
-struct Case {
+struct Shape {
   const char* name;
   Eigen::Vector3d centre;
   double size_m;
 };
-const Case cases[] = {{"inside", {0, 0, 2}, 0.7},      {"partly outside", {0.9, 0.7, 1.5}, 0.8},
-                      {"behind", {0.1, 0.1, 0.3}, 1},  {"around the camera", {0, 0, 0}, 1.5},
-                      {"tiny", {0.2, -0.1, 1}, 0.005}, {"covers all", {0, 0, 4}, 30}};
+const Shape shapes[] = {{"inside", {0, 0, 2}, 0.7},      {"partly outside", {0.9, 0.7, 1.5}, 0.8},
+                        {"behind", {0.1, 0.1, 0.3}, 1},  {"around the camera", {0, 0, 0}, 1.5},
+                        {"tiny", {0.2, -0.1, 1}, 0.005}, {"covers all", {0, 0, 4}, 30}};
 
 TEST(Silhouette, ConvexHullIsWhatRaysMeet) {
   std::mt19937 random(1);
   for (const Intrinsics& intrinsics : {barrel, pincushion, folding, rational, fisheye}) {
     const Lens lens(intrinsics);
-    for (const Case& shape : cases) {
+    for (const Shape& shape : shapes) {
       SCOPED_TRACE(shape.name);
       int hits = 0;
       for (int repeat = 0; repeat < 4; ++repeat) {
@@ -132,7 +132,7 @@ TEST(Silhouette, TrianglesAreWhatRaysMeet) {
   std::mt19937 random(2);
   for (const Intrinsics& intrinsics : {barrel, pincushion, folding, rational, fisheye}) {
     const Lens lens(intrinsics);
-    for (const Case& shape : cases) {
+    for (const Shape& shape : shapes) {
       SCOPED_TRACE(shape.name);
       for (int repeat = 0; repeat < 4; ++repeat) {
         const Points points = random_points(random, 7, shape.centre, shape.size_m);

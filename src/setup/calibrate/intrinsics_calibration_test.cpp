@@ -14,7 +14,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-const Intrinsics truth{640, 480, 556.3, 554.9, 322.7, 236.1, {-0.21, 0.11, 0.0011, -0.0007, 0}};
+const Intrinsics true_intrinsics{
+    640, 480, 556.3, 554.9, 322.7, 236.1, {-0.21, 0.11, 0.0011, -0.0007, 0}};
 
 /// Poses of a board that is waved before a camera: near and far, leaning, in all corners.
 RigidTransform board_pose(int index) {
@@ -38,7 +39,7 @@ struct Views {
   }
 
   Board board;
-  testing::TargetRenderer renderer{truth};
+  testing::TargetRenderer renderer{true_intrinsics};
 };
 
 /// The largest distance between what the two cameras make of the same ray, in the whole picture.
@@ -62,7 +63,7 @@ class CalibrateIntrinsics : public ::testing::TestWithParam<const char*> {};
 TEST_P(CalibrateIntrinsics, RecoversTheCameraOfRenderedBoards) {
   const Views views{parse_board(GetParam())};
   const BoardDetector detector(views.board);
-  ViewCollection collection(truth.width, truth.height);
+  ViewCollection collection(true_intrinsics.width, true_intrinsics.height);
   for (int i = 0; i < 24; ++i) {
     auto view = detector.detect(views.image(i), std::to_string(i));
     if (!view) continue;
@@ -78,21 +79,22 @@ TEST_P(CalibrateIntrinsics, RecoversTheCameraOfRenderedBoards) {
       "figures",
       fmt::sprintf("%s: fx %+.2f fy %+.2f cx %+.2f cy %+.2f (sd %.2f %.2f %.2f %.2f), rms %.3f px, "
                    "largest difference %.2f px, %zu views",
-                   GetParam(), found.fx - truth.fx, found.fy - truth.fy, found.cx - truth.cx,
-                   found.cy - truth.cy, result.deviations[0], result.deviations[1],
-                   result.deviations[2], result.deviations[3], result.error_px,
-                   largest_difference_px(truth, found), result.views.size()));
-  EXPECT_NEAR(found.fx, truth.fx, 0.002 * truth.fx);
-  EXPECT_NEAR(found.fy, truth.fy, 0.002 * truth.fy);
-  EXPECT_NEAR(found.cx, truth.cx, 1);
-  EXPECT_NEAR(found.cy, truth.cy, 1);
+                   GetParam(), found.fx - true_intrinsics.fx, found.fy - true_intrinsics.fy,
+                   found.cx - true_intrinsics.cx, found.cy - true_intrinsics.cy,
+                   result.deviations[0], result.deviations[1], result.deviations[2],
+                   result.deviations[3], result.error_px,
+                   largest_difference_px(true_intrinsics, found), result.views.size()));
+  EXPECT_NEAR(found.fx, true_intrinsics.fx, 0.002 * true_intrinsics.fx);
+  EXPECT_NEAR(found.fy, true_intrinsics.fy, 0.002 * true_intrinsics.fy);
+  EXPECT_NEAR(found.cx, true_intrinsics.cx, 1);
+  EXPECT_NEAR(found.cy, true_intrinsics.cy, 1);
   EXPECT_EQ(found.distortion[4], 0) << "k3 is not there, and not fitted";
   // In the picture's very corners, where no board was.
-  EXPECT_LT(largest_difference_px(truth, found), 1.5);
+  EXPECT_LT(largest_difference_px(true_intrinsics, found), 1.5);
   EXPECT_LT(result.error_px, 0.15);
   // What it says of its own uncertainty is true.
-  const double errors[] = {found.fx - truth.fx, found.fy - truth.fy, found.cx - truth.cx,
-                           found.cy - truth.cy};
+  const double errors[] = {found.fx - true_intrinsics.fx, found.fy - true_intrinsics.fy,
+                           found.cx - true_intrinsics.cx, found.cy - true_intrinsics.cy};
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_GT(result.deviations[i], 0);
     EXPECT_LT(std::abs(errors[i]), 6 * result.deviations[i]) << i;
@@ -121,7 +123,7 @@ BoardView projected_view(int index, const Intrinsics& camera) {
 }
 
 TEST(CalibrateIntrinsicsToo, IsExactForExactCornersAndFindsK3) {
-  Intrinsics camera = truth;
+  Intrinsics camera = true_intrinsics;
   camera.distortion = {-0.2, 0.1, 0.001, -0.002, 0.05};
   ViewCollection collection(camera.width, camera.height);
   for (int i = 0; i < 12; ++i) EXPECT_EQ(collection.add(projected_view(i, camera)), "");
@@ -208,9 +210,9 @@ TEST(CalibrateIntrinsicsToo, WarnsOfFisheyesThatSeeTooMuch) {
 }
 
 TEST(CalibrateIntrinsicsToo, LeavesOutAViewThatDoesNotAgree) {
-  ViewCollection collection(truth.width, truth.height);
+  ViewCollection collection(true_intrinsics.width, true_intrinsics.height);
   for (int i = 0; i < 12; ++i) {
-    BoardView view = projected_view(i, truth);
+    BoardView view = projected_view(i, true_intrinsics);
     // As of a bent board, and of a picture that was taken while it moved.
     for (std::size_t c = 0; c < view.pixels.size(); ++c) {
       if (i == 4) view.pixels[c].x() += 3 * std::sin(static_cast<double>(c));
@@ -224,26 +226,26 @@ TEST(CalibrateIntrinsicsToo, LeavesOutAViewThatDoesNotAgree) {
     EXPECT_EQ(result.views[i].used, i != 4 && i != 7) << i;
     EXPECT_EQ(result.views[i].error_px > 0.5, i == 4 || i == 7) << i;
   }
-  EXPECT_LT(largest_difference_px(truth, result.intrinsics), 0.05);
+  EXPECT_LT(largest_difference_px(true_intrinsics, result.intrinsics), 0.05);
 }
 
 TEST(ViewCollection, SaysWhichViewsDoNotHelp) {
-  ViewCollection collection(truth.width, truth.height);
-  EXPECT_EQ(collection.add(projected_view(1, truth)), "");
-  BoardView again = projected_view(1, truth);
+  ViewCollection collection(true_intrinsics.width, true_intrinsics.height);
+  EXPECT_EQ(collection.add(projected_view(1, true_intrinsics)), "");
+  BoardView again = projected_view(1, true_intrinsics);
   again.pixels[3].x() += 5;
   again.name = "again";
   EXPECT_THAT(collection.add(again), HasSubstr("like 1"));
-  EXPECT_EQ(collection.add(projected_view(2, truth)), "");
+  EXPECT_EQ(collection.add(projected_view(2, true_intrinsics)), "");
   EXPECT_EQ(collection.views().size(), 2U);
 }
 
 TEST(CalibrateIntrinsicsToo, WarnsOfWhatTheViewsDoNotShow) {
-  ViewCollection few(truth.width, truth.height);
-  few.add(projected_view(0, truth));
+  ViewCollection few(true_intrinsics.width, true_intrinsics.height);
+  few.add(projected_view(0, true_intrinsics));
   EXPECT_THAT(error_of([&] { calibrate_intrinsics(few); }), HasSubstr("got 1"));
   // Boards that all face the camera.
-  for (int i = 1; i < 3; ++i) few.add(projected_view(5 * i, truth));
+  for (int i = 1; i < 3; ++i) few.add(projected_view(5 * i, true_intrinsics));
   const auto result = calibrate_intrinsics(few);
   EXPECT_THAT(result.warnings, ::testing::Contains(HasSubstr("hardly leans")));
   EXPECT_THAT(result.warnings, ::testing::Contains(HasSubstr("only 3 views")));
