@@ -29,8 +29,9 @@ struct Surface {
     const auto inverse_z = hn::LoadU(d, row.inverse_z + i);
     there = hn::Gt(inverse_z, hn::Zero(d));
     z = hn::IfThenElse(there, hn::Div(hn::Set(d, 1.F), inverse_z), hn::Set(d, beyond_m));
-    const auto slope = hn::MulAdd(hn::Iota(d, static_cast<float>(i)), hn::Set(d, row.depth_step),
-                                  hn::Set(d, row.depth_slope));
+    const auto slope =
+        hn::Add(hn::Mul(hn::Iota(d, static_cast<float>(i)), hn::Set(d, row.depth_step)),
+                hn::Set(d, row.depth_slope));
     const auto depth = hn::Sub(hn::Mul(z, slope), hn::Set(d, row.depth_offset_m));
     noise = NoiseAt(d, DepthNoise(), depth);
   }

@@ -17,7 +17,7 @@ namespace diminish {
 namespace {
 
 // Of the last multigrid correction; what is left of the error is smaller.
-constexpr float cloning_tolerance_levels = 0.5F;
+constexpr float cloning_tolerance_levels = 0.2F;
 constexpr float filling_tolerance_levels = 1.F;
 
 using ConstView = Membrane::ConstView;

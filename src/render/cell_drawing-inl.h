@@ -61,7 +61,7 @@ HWY_INLINE IntVector At(const LinearFunctions<std::int32_t>& f, int lane, IntVec
 }
 template <class Of>
 HWY_INLINE Vector At(const LinearFunctions<float>& f, int lane, Vector x) {
-  return hn::MulAdd(x, Of::Spread(f.step_x + lane), Of::Spread(f.value + lane));
+  return hn::Add(hn::Mul(x, Of::Spread(f.step_x + lane)), Of::Spread(f.value + lane));
 }
 template <class Of, class V>
 struct LinearWalk {

@@ -83,8 +83,8 @@ HWY_INLINE void StorePlane(const Edge& ea, const Edge& eb, const Edge& ec, Vecto
                            Vector c, Vector scale, LinearFunctions<float>& out) {
   const Floats d;
   const auto sum = [&](IntVector wa, IntVector wb, IntVector wc) HWY_ATTR {
-    return hn::MulAdd(hn::ConvertTo(d, wa), a,
-                      hn::MulAdd(hn::ConvertTo(d, wb), b, hn::Mul(hn::ConvertTo(d, wc), c)));
+    return hn::Add(hn::Mul(hn::ConvertTo(d, wa), a),
+                   hn::Add(hn::Mul(hn::ConvertTo(d, wb), b), hn::Mul(hn::ConvertTo(d, wc), c)));
   };
   const Vector pixel_scale = hn::Mul(scale, hn::Set(d, static_cast<float>(sdct::subpixels)));
   hn::Store(hn::Mul(sum(ea.value, eb.value, ec.value), scale), d, out.value);

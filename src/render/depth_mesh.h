@@ -37,20 +37,23 @@ class DepthMesh {
     const Mask& color_mask;
     FloatTransform to_color;
   };
-  /// The vertex of a depth pixel, by rule 1 of sdct.h.
-  MeshVertex vertex(const Frame& frame, int column, int row) const;
+  /// The vertex of a depth pixel, by rule 1 of sdct.h; its colour is looked up where it lies.
+  MeshVertex vertex(const Frame& frame, int column, int row) const {
+    return vertex(frame, column, row, (*rays_)(column, row));
+  }
   /// The place in the RGB-D camera's colour image of a depth pixel with a measurement. False if it
   /// has none.
   bool texture(ImageView<std::uint16_t> depth, int column, int row, float& u, float& v) const;
-  /// The vertices of all depth pixels.
+  /// The vertices of all depth pixels; their colours are looked up along color_ray.
   void compute(const Frame& frame, Image<MeshVertex>& vertices) const;
 
   /// The point that a depth pixel measures, in the colour camera's frame, masked or not.
   Eigen::Vector3f point_m(const Frame& frame, int column, int row) const;
 
  private:
-  /// x, y, z: in the depth sensor's frame.
-  bool texture(float x, float y, float z, float& u, float& v) const;
+  MeshVertex vertex(const Frame& frame, int column, int row,
+                    const Eigen::Vector2f& color_ray) const;
+  bool texture(const Eigen::Vector2f& ray, float z, float& u, float& v) const;
 
   RgbdCamera camera_;
   std::shared_ptr<const RayTable> rays_;

@@ -1,7 +1,9 @@
 #include "render/vertex_row.h"
 
 #include <algorithm>
+#include <limits>
 
+#include "render/color_ray.h"
 #include "render/sdct.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -120,7 +122,7 @@ void ProjectRow(const VertexRows::Constants& constants, const FloatTransform& to
   with_lens_model(constants.color.model, project);
 }
 
-/// The places of the colours of one block.
+/// The places of the colours of one block, which lie on these rays.
 template <LensModel model>
 void FindColorsBy(const VertexRows::Constants& constants, const float* ray_x, const float* ray_y,
                   const Mask& color_mask, int start, VertexRow& row) {
@@ -132,8 +134,8 @@ void FindColorsBy(const VertexRows::Constants& constants, const float* ray_x, co
     LaneMask valid = hn::Gt(inverse_z, hn::Zero(d));
     if (hn::AllFalse(d, valid)) continue;
     const Vector z = hn::LoadU(d, row.depth_m.data() + i);
-    const Vector x = hn::Mul(hn::LoadU(d, ray_x + i), z);
-    const Vector y = hn::Mul(hn::LoadU(d, ray_y + i), z);
+    const Vector x = hn::Mul(hn::LoadU(d, ray_x + i - start), z);
+    const Vector y = hn::Mul(hn::LoadU(d, ray_y + i - start), z);
     const Vector rgbd_z = Apply(d, constants.to_rgbd_color, 2, x, y, z);
     valid = hn::And(valid, hn::Gt(rgbd_z, Set(sdct::near_plane_m)));
     Vector u, v;
@@ -169,6 +171,20 @@ void FindColors(const VertexRows::Constants& constants, const float* ray_x, cons
   with_lens_model(constants.rgbd_color.model, find);
 }
 
+/// Whether a block's pixels, or some beside them, have no depth. rows: from the row above its first
+/// pixel to the row below.
+bool HasHoles(const std::uint16_t* above, const std::uint16_t* here, const std::uint16_t* below) {
+  const hn::CappedTag<std::uint16_t, VertexRow::block> d;
+  const auto lanes = static_cast<int>(hn::Lanes(d));
+  auto least = hn::Set(d, std::numeric_limits<std::uint16_t>::max());
+  for (int i = 0; i < VertexRow::block; i += lanes) {
+    for (const std::uint16_t* row : {above, here, below, here - 1, here + 1}) {
+      least = hn::Min(least, hn::LoadU(d, row + i));
+    }
+  }
+  return !hn::AllFalse(d, hn::Eq(least, hn::Zero(d)));
+}
+
 }  // namespace
 }  // namespace diminish::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -178,6 +194,7 @@ namespace diminish {
 
 HWY_EXPORT(ProjectRow);
 HWY_EXPORT(FindColors);
+HWY_EXPORT(HasHoles);
 
 void VertexRow::resize(int width) {
   const std::size_t blocks = static_cast<std::size_t>((width + block - 1) / block) + 1;
@@ -204,18 +221,38 @@ VertexRows::VertexRows(const RgbdCamera& camera, const Intrinsics& color)
   static_assert(RayTable::block % VertexRow::block == 0);
 }
 
+bool VertexRows::may_have_gaps(ImageView<std::uint16_t> depth, int first, int row) const {
+  const bool at_rim = first < 1 || first + VertexRow::block + 1 > depth.width() || row < 1 ||
+                      row + 1 >= depth.height();
+  return at_rim ||
+         HWY_DYNAMIC_DISPATCH(HasHoles)(depth.row(row - 1) + first, depth.row(row) + first,
+                                        depth.row(row + 1) + first);
+}
+
 void VertexRows::project(const Frame& frame, int row, VertexRow& vertices) const {
   const int first = frame.first_block * VertexRow::block;
-  const float* const ray_x = rays_->x(row) + first;
-  const float* const ray_y = rays_->y(row) + first;
   HWY_DYNAMIC_DISPATCH(ProjectRow)
   (constants_, frame.to_color, frame.visible.row(row) + frame.first_block,
    std::min(frame.blocks * VertexRow::block, width() - first), frame.depth.row(row) + first,
-   frame.depth_mask.row(row) + first, ray_x, ray_y, vertices);
+   frame.depth_mask.row(row) + first, rays_->x(row) + first, rays_->y(row) + first, vertices);
   for (int block = 0; block < frame.blocks; ++block) {
     if (vertices.bounds[static_cast<std::size_t>(block)].empty()) continue;
-    HWY_DYNAMIC_DISPATCH(FindColors)
-    (constants_, ray_x, ray_y, frame.color_mask, block * VertexRow::block, vertices);
+    const int start = block * VertexRow::block;
+    float x[VertexRow::block], y[VertexRow::block];
+    const float* ray_x = rays_->x(row) + first + start;
+    const float* ray_y = rays_->y(row) + first + start;
+    if (may_have_gaps(frame.depth, first + start, row)) {
+      for (int i = 0; i < VertexRow::block; ++i) {
+        const bool valid = vertices.inverse_z[static_cast<std::size_t>(start + i)] > 0;
+        const Eigen::Vector2f ray =
+            valid ? color_ray(frame.depth, *rays_, first + start + i, row) : Eigen::Vector2f(0, 0);
+        x[i] = ray.x();
+        y[i] = ray.y();
+      }
+      ray_x = x;
+      ray_y = y;
+    }
+    HWY_DYNAMIC_DISPATCH(FindColors)(constants_, ray_x, ray_y, frame.color_mask, start, vertices);
   }
 }
 

@@ -75,6 +75,9 @@ class VertexRows {
   };
 
  private:
+  /// Whether color_ray may not be a pixel's own, for a block of a row.
+  bool may_have_gaps(ImageView<std::uint16_t> depth, int first, int row) const;
+
   std::shared_ptr<const RayTable> rays_;
   Constants constants_;
 };

@@ -4,6 +4,8 @@
 #include <hwy/highway.h>
 #include <hwy/targets.h>
 
+#include <random>
+
 #include "analytic_scene.h"
 #include "render/depth_mesh.h"
 
@@ -18,7 +20,14 @@ void expect_the_plain_versions_vertices() {
     OcclusionMasks masks = testing::empty_masks(scene.rig);
     masks.rgbd_depth[0].fill({30, 40, 37, 21}, 255);
     masks.rgbd_color[0].fill({200, 90, 61, 50}, 255);
-    const Image<std::uint16_t> depth = testing::depths_of(scene.frame)[0];
+    Image<std::uint16_t> depth = testing::depths_of(scene.frame)[0];
+    std::mt19937 random(4);
+    for (int i = 0; i < 400; ++i) {  // thin gaps and holes, some at the rim
+      const int x = static_cast<int>(random() % static_cast<unsigned>(depth.width()));
+      const int y = static_cast<int>(random() % static_cast<unsigned>(depth.height()));
+      const Rect hole{x, y, 1 + static_cast<int>(random() % 4), 1 + static_cast<int>(random() % 4)};
+      depth.fill(intersect(hole, depth.bounds()), 0);
+    }
     const FloatTransform to_color(*scene.poses.color_from_depth[0]);
 
     Image<MeshVertex> expected;

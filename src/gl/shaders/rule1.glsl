@@ -15,6 +15,35 @@ bool project(Lens lens, Transform camera_from_depth, vec3 point, out vec2 pixel,
   return z > NEAR_PLANE_M && is_inside;
 }
 
+bool has_depth(ivec2 pixel) {
+  return all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, depth_size)) &&
+         read_short(depth_at, uint(pixel.y * depth_size.x + pixel.x)) != 0u;
+}
+
+bool is_gap(ivec2 pixel, ivec2 side) {
+  return !has_depth(pixel + side) && (has_depth(pixel + 2 * side) || has_depth(pixel + 3 * side));
+}
+
+vec2 ray_of(ivec2 pixel) {
+  return texelFetch(rays, int(first_pixel) + pixel.y * depth_size.x + pixel.x).xy;
+}
+
+// color_ray.h
+vec2 color_ray(uint index) {
+  ivec2 pixel = ivec2(int(index) % depth_size.x, int(index) / depth_size.x);
+  ivec2 right = pixel + ivec2(int(is_gap(pixel, ivec2(-1, 0))) - int(is_gap(pixel, ivec2(1, 0))), 0);
+  ivec2 down = pixel + ivec2(0, int(is_gap(pixel, ivec2(0, -1))) - int(is_gap(pixel, ivec2(0, 1))));
+  vec2 ray = ray_of(pixel);
+  precise vec2 result = ray;
+  if (right.x != pixel.x && right.x >= 0 && right.x < depth_size.x) {
+    result = result + 0.6 * (ray_of(right) - ray);
+  }
+  if (down.y != pixel.y && down.y >= 0 && down.y < depth_size.y) {
+    result = result + 0.6 * (ray_of(down) - ray);
+  }
+  return result;
+}
+
 bool find_vertex(uint pixel, out ivec4 position, out vec2 place) {
   uint value = read_short(depth_at, pixel);
   if (value == 0u || read_byte(depth_mask_at, pixel) != 0u) return false;
@@ -23,7 +52,8 @@ bool find_vertex(uint pixel, out ivec4 position, out vec2 place) {
   vec3 point = vec3(ray * z, z);
 
   float rgbd_z;
-  if (!project(rgbd_color, rgbd_color_from_depth, point, place, rgbd_z) ||
+  vec3 color_point = vec3(color_ray(pixel) * z, z);
+  if (!project(rgbd_color, rgbd_color_from_depth, color_point, place, rgbd_z) ||
       !(all(greaterThanEqual(place, vec2(0))) && all(lessThanEqual(place, vec2(color_size - 1))))) {
     return false;
   }

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "diminish/image.h"
+#include "geometry/ray_table.h"
+
+namespace diminish {
+
+/// The ray on which the colour of a depth pixel's point is looked up, as deep as the point: the
+/// pixel's own; beside a gap, .6 of a pixel further from it (rule 1 of sdct.h).
+///
+/// A gap is one or two pixels without depth, with depth beyond. Something ends there, or something
+/// thin stands there, and the colour image shows half of it in the pixels beside it: its lens and
+/// its demosaicing spread an edge, and depth and colour are registered to a pixel at best.
+inline Eigen::Vector2f color_ray(ImageView<std::uint16_t> depth, const RayTable& rays, int column,
+                                 int row) {
+  constexpr float share = 0.6F;
+  const Eigen::Vector2f ray = rays(column, row);
+  // Nearly all pixels: there is depth on all sides.
+  if (column > 0 && column + 1 < depth.width() && row > 0 && row + 1 < depth.height()) {
+    const std::uint16_t* here = depth.row(row) + column;
+    if (here[-1] != 0 && here[1] != 0 && depth(column, row - 1) != 0 &&
+        depth(column, row + 1) != 0) {
+      return ray;
+    }
+  }
+  const auto has_depth = [&](int x, int y) {
+    return x >= 0 && x < depth.width() && y >= 0 && y < depth.height() && depth(x, y) != 0;
+  };
+  const auto is_gap = [&](int dx, int dy) {
+    return !has_depth(column + dx, row + dy) &&
+           (has_depth(column + 2 * dx, row + 2 * dy) || has_depth(column + 3 * dx, row + 3 * dy));
+  };
+  const int right = (is_gap(-1, 0) ? 1 : 0) - (is_gap(1, 0) ? 1 : 0);
+  const int down = (is_gap(0, -1) ? 1 : 0) - (is_gap(0, 1) ? 1 : 0);
+  Eigen::Vector2f result = ray;
+  if (right != 0 && column + right >= 0 && column + right < depth.width()) {
+    result += share * (rays(column + right, row) - ray);
+  }
+  if (down != 0 && row + down >= 0 && row + down < depth.height()) {
+    result += share * (rays(column, row + down) - ray);
+  }
+  return result;
+}
+
+}  // namespace diminish
