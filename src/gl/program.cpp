@@ -9,6 +9,7 @@
 #include "diminish/error.h"
 #include "diminish/tiled_region.h"
 #include "geometry/distortion.h"
+#include "render/color_ray.h"
 #include "render/sdct.h"
 #include "shader_files.h"
 
@@ -96,14 +97,15 @@ std::string shader_prologue() {
       "#define SUBPIXEL_BITS {}\n"
       "#define MAX_COORDINATE_PX {:.1f}\n"
       "#define NEAR_PLANE_M {:.9g}\n"
+      "#define COLOR_RAY_SHIFT {:.9g}\n"
       "#define TILE_PX {}\n"
       "#define RATIONAL {}u\n"
       "#define FISHEYE {}u\n"
       "#define ANGLE_TERMS vec4({:.9g}, {:.9g}, {:.9g}, {:.9g})\n",
-      sdct::subpixel_bits, sdct::max_coordinate_px, sdct::near_plane_m, TiledRegion::tile,
-      static_cast<int>(LensModel::rational), static_cast<int>(LensModel::fisheye),
-      distortion::angle_terms[0], distortion::angle_terms[1], distortion::angle_terms[2],
-      distortion::angle_terms[3]);
+      sdct::subpixel_bits, sdct::max_coordinate_px, sdct::near_plane_m, color_ray_shift,
+      TiledRegion::tile, static_cast<int>(LensModel::rational),
+      static_cast<int>(LensModel::fisheye), distortion::angle_terms[0], distortion::angle_terms[1],
+      distortion::angle_terms[2], distortion::angle_terms[3]);
 }
 
 Program::Program(const std::vector<Shader>& shaders) : name_(glCreateProgram()) {

@@ -8,15 +8,17 @@
 
 namespace diminish {
 
+/// How far from a gap, in depth pixels.
+inline constexpr float color_ray_shift = 0.6F;
+
 /// The ray on which the colour of a depth pixel's point is looked up, as deep as the point: the
-/// pixel's own; beside a gap, .6 of a pixel further from it (rule 1 of sdct.h).
+/// pixel's own; beside a gap, `color_ray_shift` further from it (rule 1 of sdct.h).
 ///
 /// A gap is one or two pixels without depth, with depth beyond. Something ends there, or something
 /// thin stands there, and the colour image shows half of it in the pixels beside it: its lens and
 /// its demosaicing spread an edge, and depth and colour are registered to a pixel at best.
 inline Eigen::Vector2f color_ray(ImageView<std::uint16_t> depth, const RayTable& rays, int column,
                                  int row) {
-  constexpr float share = 0.6F;
   const Eigen::Vector2f ray = rays(column, row);
   // Nearly all pixels: there is depth on all sides.
   if (column > 0 && column + 1 < depth.width() && row > 0 && row + 1 < depth.height()) {
@@ -37,10 +39,10 @@ inline Eigen::Vector2f color_ray(ImageView<std::uint16_t> depth, const RayTable&
   const int down = (is_gap(0, -1) ? 1 : 0) - (is_gap(0, 1) ? 1 : 0);
   Eigen::Vector2f result = ray;
   if (right != 0 && column + right >= 0 && column + right < depth.width()) {
-    result += share * (rays(column + right, row) - ray);
+    result += color_ray_shift * (rays(column + right, row) - ray);
   }
   if (down != 0 && row + down >= 0 && row + down < depth.height()) {
-    result += share * (rays(column, row + down) - ray);
+    result += color_ray_shift * (rays(column, row + down) - ray);
   }
   return result;
 }

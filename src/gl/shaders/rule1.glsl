@@ -36,10 +36,10 @@ vec2 color_ray(uint index) {
   vec2 ray = ray_of(pixel);
   precise vec2 result = ray;
   if (right.x != pixel.x && right.x >= 0 && right.x < depth_size.x) {
-    result = result + 0.6 * (ray_of(right) - ray);
+    result = result + COLOR_RAY_SHIFT * (ray_of(right) - ray);
   }
   if (down.y != pixel.y && down.y >= 0 && down.y < depth_size.y) {
-    result = result + 0.6 * (ray_of(down) - ray);
+    result = result + COLOR_RAY_SHIFT * (ray_of(down) - ray);
   }
   return result;
 }
