@@ -92,8 +92,9 @@ class TargetRenderer {
       for (int x = 0; x < width_; ++x) {
         float sum = 0;
         for (int i = 0; i < samples * samples; ++i) {
+          const int sample_row = i / samples;
           const double u = (i % samples + 0.5) / samples;
-          const double v = (i / samples + 0.5) / samples;
+          const double v = (sample_row + 0.5) / samples;
           const Eigen::Vector2d ray =
               (1 - v) * ((1 - u) * corners_(x, y) + u * corners_(x + 1, y)) +
               v * ((1 - u) * corners_(x, y + 1) + u * corners_(x + 1, y + 1));
@@ -157,6 +158,7 @@ class TargetRenderer {
   static std::vector<View> look(const std::vector<Target>& targets,
                                 const RigidTransform& camera_from_world) {
     std::vector<View> views;
+    views.reserve(targets.size());
     for (const Target& target : targets) {
       views.push_back({&target, (camera_from_world * target.world_from_target).inverse()});
     }

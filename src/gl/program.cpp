@@ -53,7 +53,8 @@ std::string log_of(GLuint object, const Get& get, const Log& get_log) {
   get(object, GL_INFO_LOG_LENGTH, &length);
   std::string log(static_cast<std::size_t>(length > 0 ? length : 1), '\0');
   get_log(object, static_cast<GLsizei>(log.size()), nullptr, log.data());
-  return log.c_str();
+  log.resize(std::min(log.size(), log.find('\0')));  // the driver's text ends there
+  return log;
 }
 
 /// A shader object; deleted after its program has been linked.

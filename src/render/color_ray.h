@@ -19,7 +19,7 @@ inline constexpr float color_ray_shift = 0.6F;
 /// its demosaicing spread an edge, and depth and colour are registered to a pixel at best.
 inline Eigen::Vector2f color_ray(ImageView<std::uint16_t> depth, const RayTable& rays, int column,
                                  int row) {
-  const Eigen::Vector2f ray = rays(column, row);
+  Eigen::Vector2f ray = rays(column, row);
   // Nearly all pixels: there is depth on all sides.
   if (column > 0 && column + 1 < depth.width() && row > 0 && row + 1 < depth.height()) {
     const std::uint16_t* here = depth.row(row) + column;

@@ -238,14 +238,15 @@ void VertexRows::project(const Frame& frame, int row, VertexRow& vertices) const
   for (int block = 0; block < frame.blocks; ++block) {
     if (vertices.bounds[static_cast<std::size_t>(block)].empty()) continue;
     const int start = block * VertexRow::block;
+    const float* const inverse_z = vertices.inverse_z.data() + start;
     float x[VertexRow::block], y[VertexRow::block];
     const float* ray_x = rays_->x(row) + first + start;
     const float* ray_y = rays_->y(row) + first + start;
     if (may_have_gaps(frame.depth, first + start, row)) {
       for (int i = 0; i < VertexRow::block; ++i) {
-        const bool valid = vertices.inverse_z[static_cast<std::size_t>(start + i)] > 0;
-        const Eigen::Vector2f ray =
-            valid ? color_ray(frame.depth, *rays_, first + start + i, row) : Eigen::Vector2f(0, 0);
+        const Eigen::Vector2f ray = inverse_z[i] > 0
+                                        ? color_ray(frame.depth, *rays_, first + start + i, row)
+                                        : Eigen::Vector2f(0, 0);
         x[i] = ray.x();
         y[i] = ray.y();
       }

@@ -29,7 +29,8 @@ void expect_same(const RigidTransform& a, const RigidTransform& b) {
 class TransformBuffers : public ::testing::Test {
  protected:
   void drive(double from_s, double to_s, double step_s) {
-    for (double t = from_s; t < to_s + 1e-9; t += step_s) {
+    for (int i = 0; from_s + i * step_s < to_s + 1e-9; ++i) {
+      const double t = from_s + i * step_s;
       buffer_.add({{stamped_edge("map", "base", robot_at(t), t)}}, 0);
     }
   }
@@ -52,7 +53,8 @@ TEST_F(TransformBuffers, AnEvenMotionIsInterpolatedExactly) {
 TEST_F(TransformBuffers, EachFrameIsInterpolatedByItsOwnMoments) {
   drive(0, 2, .1);
   // An arm that moves on the robot, told at other times.
-  for (double t = -.03; t < 2.1; t += .07) {
+  for (int i = 0; i < 31; ++i) {
+    const double t = -.03 + .07 * i;
     buffer_.add({{stamped_edge("base", "camera", turned(-t, {0, t, 0}), t)}}, 0);
   }
   const auto found = buffer_.find("map", "camera", 1.234, .2);

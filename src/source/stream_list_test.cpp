@@ -17,6 +17,7 @@ std::vector<StreamEntry> entries_of(const std::string& text) {
 
 std::vector<StreamEntry> at(const std::vector<double>& stamps) {
   std::vector<StreamEntry> entries;
+  entries.reserve(stamps.size());
   for (const double stamp : stamps) entries.push_back({stamp, "a.png", std::nullopt, 1});
   return entries;
 }

@@ -137,8 +137,9 @@ TEST(CalibrateIntrinsicsToo, IsExactForExactCornersAndFindsK3) {
 BoardView leaning_view(int index, const Intrinsics& camera, std::mt19937& random) {
   std::normal_distribution<double> error_px(0, 0.02);
   const Lens lens(camera);
+  const int part_row = index / 6;
   const Eigen::Vector2d middle((index % 6 + 0.5) / 6 * camera.width,
-                               (index / 6 + 0.5) / 5 * camera.height);
+                               (part_row + 0.5) / 5 * camera.height);
   const Eigen::Vector3d direction = lens.undistort(middle).homogeneous().normalized();
   const Eigen::Vector3d axis(std::cos(2.4 * index), std::sin(2.4 * index), 0);
   RigidTransform camera_from_board;
@@ -149,7 +150,8 @@ BoardView leaning_view(int index, const Intrinsics& camera, std::mt19937& random
   BoardView view;
   view.name = std::to_string(index);
   for (int i = 0; i < 54; ++i) {
-    const Eigen::Vector3d point((i % 9 - 4) * 0.025, (i / 9 - 2.5) * 0.025, 0);
+    const int corner_row = i / 9;
+    const Eigen::Vector3d point((i % 9 - 4) * 0.025, (corner_row - 2.5) * 0.025, 0);
     const auto pixel = lens.project(camera_from_board * point);
     if (!pixel || pixel->x() < 0 || pixel->y() < 0 || pixel->x() > camera.width - 1 ||
         pixel->y() > camera.height - 1) {
@@ -157,7 +159,7 @@ BoardView leaning_view(int index, const Intrinsics& camera, std::mt19937& random
     }
     view.ids.push_back(i);
     view.points_m.push_back(point);
-    view.pixels.push_back(*pixel + Eigen::Vector2d(error_px(random), error_px(random)));
+    view.pixels.emplace_back(*pixel + Eigen::Vector2d(error_px(random), error_px(random)));
   }
   return view;
 }
