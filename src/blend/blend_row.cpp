@@ -29,6 +29,7 @@ struct Surface {
     const auto inverse_z = hn::LoadU(d, row.inverse_z + i);
     there = hn::Gt(inverse_z, hn::Zero(d));
     z = hn::IfThenElse(there, hn::Div(hn::Set(d, 1.F), inverse_z), hn::Set(d, beyond_m));
+    // Not fused: every kind of CPU rounds alike.
     const auto slope =
         hn::Add(hn::Mul(hn::Iota(d, static_cast<float>(i)), hn::Set(d, row.depth_step)),
                 hn::Set(d, row.depth_slope));

@@ -24,8 +24,7 @@ namespace {
 using std::chrono::milliseconds;
 using ::testing::HasSubstr;
 
-const std::filesystem::path workbench =
-    std::filesystem::path(testing::recordings_dir()) / "workbench";
+const std::filesystem::path workbench = testing::recordings / "workbench";
 
 std::string camera_uri(const std::string& name) {
   return "recording:" + workbench.string() + "?loop&in-step&rate=0.2" +

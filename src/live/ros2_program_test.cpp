@@ -20,8 +20,7 @@ namespace {
 using std::chrono::milliseconds;
 using ::testing::HasSubstr;
 
-const std::filesystem::path calendar =
-    std::filesystem::path(testing::recordings_dir()) / "calendar";
+const std::filesystem::path calendar = testing::recordings / "calendar";
 
 class Ros2Program : public ::testing::Test {
  protected:

@@ -59,6 +59,7 @@ template <class Of>
 HWY_INLINE IntVector At(const LinearFunctions<std::int32_t>& f, int lane, IntVector x) {
   return hn::Add(Of::Spread(f.value + lane), hn::Mul(x, Of::Spread(f.step_x + lane)));
 }
+/// Rounded alike on every kind of CPU: not fused.
 template <class Of>
 HWY_INLINE Vector At(const LinearFunctions<float>& f, int lane, Vector x) {
   return hn::Add(hn::Mul(x, Of::Spread(f.step_x + lane)), Of::Spread(f.value + lane));

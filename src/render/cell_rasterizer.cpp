@@ -82,6 +82,8 @@ HWY_INLINE void StoreEdge(const Edge& edge, IntVector value, hn::Mask<Ints> exis
 HWY_INLINE void StorePlane(const Edge& ea, const Edge& eb, const Edge& ec, Vector a, Vector b,
                            Vector c, Vector scale, LinearFunctions<float>& out) {
   const Floats d;
+  // Not fused, so that every kind of CPU rounds alike (likewise where cells are drawn, and
+  // blend_row.cpp): what is nearest, or shown, is decided by these values.
   const auto sum = [&](IntVector wa, IntVector wb, IntVector wc) HWY_ATTR {
     return hn::Add(hn::Mul(hn::ConvertTo(d, wa), a),
                    hn::Add(hn::Mul(hn::ConvertTo(d, wb), b), hn::Mul(hn::ConvertTo(d, wc), c)));

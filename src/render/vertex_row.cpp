@@ -171,8 +171,8 @@ void FindColors(const VertexRows::Constants& constants, const float* ray_x, cons
   with_lens_model(constants.rgbd_color.model, find);
 }
 
-/// Whether a block's pixels, or some beside them, have no depth. rows: from the row above its first
-/// pixel to the row below.
+/// Whether some of a block's pixels, or of those beside them, have no depth. here: the block's
+/// first pixel; above, below: those in the rows beside it.
 bool HasHoles(const std::uint16_t* above, const std::uint16_t* here, const std::uint16_t* below) {
   const hn::CappedTag<std::uint16_t, VertexRow::block> d;
   const auto lanes = static_cast<int>(hn::Lanes(d));
