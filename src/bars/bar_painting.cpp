@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/channels.h"
+#include "core/rows.h"
 #include "geometry/point_projection.h"
 
 namespace diminish {
@@ -88,6 +89,56 @@ BarPainting::End BarPainting::find_end(const Input& input, const Bar& bar) {
   }
 }
 
+BarPainting::Counts BarPainting::paint_row(const Input& input, const Stroke& stroke, int y,
+                                           const Rect& box, DiminishedFrame& result) const {
+  const Bar& bar = stroke.bar;
+  const float half = bar.width_px / 2;
+  const Reconstruction& drawn = result.reconstruction;
+  const Surfaces& surfaces = result.surfaces;
+  const auto color_at = [](const Profile& profile, float position) -> Eigen::Array4f {
+    const auto first = std::min(static_cast<std::size_t>(position), profile.size() - 2);
+    const float share = position - static_cast<float>(first);
+    return profile[first] + share * (profile[first + 1] - profile[first]);
+  };
+  Counts counts;
+  const Columns columns = columns_of(bar, y, box);
+  for (int x = columns.begin; x < columns.end; ++x) {
+    std::uint8_t& origin = result.provenance(x, y);
+    if (input.occlusion(x, y) == 0 || origin == provenance::witnessed ||
+        origin == provenance::remembered || origin == provenance::estimated) {
+      continue;
+    }
+    const Eigen::Vector2f at(static_cast<float>(x), static_cast<float>(y));
+    const float along = bar.along(at);
+    const float side = bar.side(at);
+    const float weight = std::min(half + 0.5F - std::abs(side), 1.0F);
+    if (weight <= 0 || along < -reach_px || along > stroke.end) continue;
+    const Eigen::Vector3f ray = input.views.ray(x, y);
+    const float inverse = bar.plane.inverse_depth(ray.x(), ray.y());
+    if (!(inverse > 0)) continue;
+    const float z_m = 1 / inverse;
+    const bool has_drawn = drawn.region.contains(x, y) && drawn.depth_m(x, y) > 0;
+    if (has_drawn && drawn.depth_m(x, y) < z_m - nearer_m) continue;
+    if (!surfaces.standing_depth_m.empty() && surfaces.label(x, y) == surface_label::standing &&
+        surfaces.standing_depth_m(x, y) < z_m - nearer_side_m) {
+      continue;
+    }
+    const float position = side + half + margin_px;
+    Eigen::Array4f color = color_at(near_, position);
+    const float share = std::clamp(along / stroke.length, 0.0F, 1.0F);
+    if (stroke.has_far) color += share * (color_at(far_, position) - color);
+    Bgr& pixel = result.picture(x, y);
+    const Eigen::Array4f below(pixel.b, pixel.g, pixel.r, 0);
+    const float fade = stroke.has_far ? 1 : 1 - far_fade * share;
+    pixel = to_color((below + fade * weight * (color - below)).head<3>());
+    if (weight < 0.5F) continue;
+    counts.inpainted += origin == provenance::inpainted ? 1 : 0;
+    ++counts.estimated;
+    origin = provenance::estimated;
+  }
+  return counts;
+}
+
 void BarPainting::paint(const Input& input, const Bar& bar, DiminishedFrame& result) {
   const auto [length, leaves_mask] = find_end(input, bar);
   if (length <= 0 || !collect(input, bar, 0, -1, near_)) return;
@@ -105,55 +156,17 @@ void BarPainting::paint(const Input& input, const Bar& bar, DiminishedFrame& res
   const Rect box = intersect({floor(low.x()), floor(low.y()), floor(high.x()) - floor(low.x()) + 3,
                               floor(high.y()) - floor(low.y()) + 3},
                              input.objects);
-  const Reconstruction& drawn = result.reconstruction;
-  const auto color_at = [](const Profile& profile, float position) -> Eigen::Array4f {
-    const auto first = std::min(static_cast<std::size_t>(position), profile.size() - 2);
-    const float share = position - static_cast<float>(first);
-    return profile[first] + share * (profile[first + 1] - profile[first]);
-  };
-  for (int y = box.y; y < box.bottom(); ++y) {
-    const Columns columns = columns_of(bar, y, box);
-    for (int x = columns.begin; x < columns.end; ++x) {
-      std::uint8_t& origin = result.provenance(x, y);
-      if (input.occlusion(x, y) == 0 || origin == provenance::witnessed ||
-          origin == provenance::remembered || origin == provenance::estimated) {
-        continue;
-      }
-      const Eigen::Vector2f at(static_cast<float>(x), static_cast<float>(y));
-      const float along = bar.along(at);
-      const float side = bar.side(at);
-      const float weight = std::min(half + 0.5F - std::abs(side), 1.0F);
-      if (weight <= 0 || along < -reach_px || along > end) continue;
-      const Eigen::Vector3f ray = input.views.ray(x, y);
-      const float inverse = bar.plane.inverse_depth(ray.x(), ray.y());
-      if (!(inverse > 0)) continue;
-      const float z_m = 1 / inverse;
-      const bool has_drawn = drawn.region.contains(x, y) && drawn.depth_m(x, y) > 0;
-      if (has_drawn && drawn.depth_m(x, y) < z_m - nearer_m) continue;
-      const Surfaces& surfaces = result.surfaces;
-      if (!surfaces.standing_depth_m.empty() && surfaces.label(x, y) == surface_label::standing &&
-          surfaces.standing_depth_m(x, y) < z_m - nearer_side_m) {
-        continue;
-      }
-      const float position = side + half + margin_px;
-      Eigen::Array4f color = color_at(near_, position);
-      if (has_far) {
-        const float share = std::clamp(along / length, 0.0F, 1.0F);
-        color += share * (color_at(far_, position) - color);
-      }
-      Bgr& pixel = result.picture(x, y);
-      const Eigen::Array4f below(pixel.b, pixel.g, pixel.r, 0);
-      const float fade = has_far ? 1 : 1 - far_fade * std::clamp(along / length, 0.0F, 1.0F);
-      pixel = to_color((below + fade * weight * (color - below)).head<3>());
-      if (weight < 0.5F) continue;
-      if (origin == provenance::inpainted) {
-        --result.report.missing_pixels;
-        ++result.report.valid_pixels;
-      }
-      ++result.report.estimated_pixels;
-      origin = provenance::estimated;
+  const Stroke stroke{bar, length, end, has_far};
+  const Counts counts = sum_over_rows(box.height, [&](Rows rows) {
+    Counts sum;
+    for (int y = box.y + rows.first; y < box.y + rows.last; ++y) {
+      sum = sum + paint_row(input, stroke, y, box, result);
     }
-  }
+    return sum;
+  });
+  result.report.missing_pixels -= counts.inpainted;
+  result.report.valid_pixels += counts.inpainted;
+  result.report.estimated_pixels += counts.estimated;
 }
 
 void BarPainting::paint(const Input& input, DiminishedFrame& result) {

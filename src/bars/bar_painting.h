@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -40,6 +41,24 @@ class BarPainting {
     bool leaves_mask;
   };
   static End find_end(const Input& input, const Bar& bar);
+  /// A bar as it is painted.
+  struct Stroke {
+    const Bar& bar;
+    float length;  ///< in the mask
+    float end;     ///< the last place along it
+    bool has_far;  ///< colours of its other end
+  };
+  /// How many pixels are estimated now, and how many of them were invented.
+  struct Counts {
+    std::size_t estimated = 0, inpainted = 0;
+
+    friend Counts operator+(const Counts& a, const Counts& b) {
+      return {a.estimated + b.estimated, a.inpainted + b.inpainted};
+    }
+  };
+  /// box: what of the objects' box may show the bar.
+  Counts paint_row(const Input& input, const Stroke& stroke, int y, const Rect& box,
+                   DiminishedFrame& result) const;
   void paint(const Input& input, const Bar& bar, DiminishedFrame& result);
 
   Profile near_, far_;

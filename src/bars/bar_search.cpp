@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "bars/bar_evidence.h"
+#include "core/tasks.h"
 #include "geometry/point_projection.h"
 
 namespace diminish {
@@ -125,7 +126,8 @@ bool exclude_each_other(const BarViews& views, const Bar& bar, const Bar& other)
 
 }  // namespace
 
-void BarSearch::judge(const Input& input, const RimLine& a, const RimLine& b) {
+void BarSearch::judge(const Input& input, const RimLine& a, const RimLine& b,
+                      std::vector<Bar>& found) {
   const BarViews& views = input.views;
   const Eigen::Vector2f between = b.entry - a.entry;
   if (std::abs(a.outward.dot(b.outward)) < least_parallel || a.outward.dot(b.outward) < 0) {
@@ -188,17 +190,23 @@ void BarSearch::judge(const Input& input, const RimLine& a, const RimLine& b) {
     if (contrast < least_contrast) continue;
     placed.goes_on = goes_on(input.lines, placed);
     placed.score = most * most * most * std::min(contrast, most_contrast);
-    found_.push_back(placed);
+    found.push_back(placed);
   }
 }
 
 void BarSearch::find(const Input& input) {
   found_.clear();
   bars_.clear();
-  for (std::size_t i = 0; i < input.lines.size(); ++i) {
-    for (std::size_t k = i + 1; k < input.lines.size(); ++k) {
-      judge(input, input.lines[i], input.lines[k]);
+  const std::size_t lines = input.lines.size();
+  if (found_by_line_.size() < lines) found_by_line_.resize(lines);
+  for_tasks(lines, [&](std::size_t i) {
+    found_by_line_[i].clear();
+    for (std::size_t k = i + 1; k < lines; ++k) {
+      judge(input, input.lines[i], input.lines[k], found_by_line_[i]);
     }
+  });
+  for (std::size_t i = 0; i < lines; ++i) {
+    found_.insert(found_.end(), found_by_line_[i].begin(), found_by_line_[i].end());
   }
   // Ends with what tells any two apart, so that the order does not depend on the library.
   std::sort(found_.begin(), found_.end(), [](const Bar& a, const Bar& b) {

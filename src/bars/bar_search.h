@@ -28,8 +28,11 @@ class BarSearch {
   void clear() { bars_.clear(); }
 
  private:
-  void judge(const Input& input, const RimLine& a, const RimLine& b);
+  /// Adds what the pair may be to `found`.
+  static void judge(const Input& input, const RimLine& a, const RimLine& b,
+                    std::vector<Bar>& found);
 
+  std::vector<std::vector<Bar>> found_by_line_;  ///< by the pair's first line
   std::vector<Bar> found_, bars_;
 };
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/channels.h"
+#include "core/tasks.h"
 #include "diminish/diminished_frame.h"
 
 namespace diminish {
@@ -28,6 +29,8 @@ constexpr float confirmed_error = 15;
 
 constexpr float not_looked_at = -1;
 
+constexpr int rows_of_task = 16;
+
 }  // namespace
 
 DepthGaps::DepthGaps(const Rig& rig)
@@ -40,6 +43,7 @@ bool DepthGaps::find_known(const Mask& occlusion, const Reconstruction& reconstr
   known_.resize(columns, rows);
   above_.resize(columns, rows);
   below_.resize(columns, rows);
+  right_.resize(columns, rows);
   nodes_.resize(columns, rows);
   // Of a node, what is known there or of an end beyond it.
   const auto next_to = [](float known, const End& end) -> End {
@@ -150,12 +154,12 @@ DepthGaps::Node DepthGaps::look(const GapScene& scene, int x, int y, const Range
   return is_alike && looks >= fewest_looks ? node : Node{};
 }
 
-void DepthGaps::look_along_row(const GapScene& scene, int y, std::vector<End>& rights) {
+void DepthGaps::look_along_row(const GapScene& scene, int y) {
   const float* const known = known_.row(y);
   Node* const nodes = nodes_.row(y);
   const int columns = known_.width();
   // From the right end on: for each node what is to its right.
-  rights.resize(static_cast<std::size_t>(columns));
+  End* const right = right_.row(y);
   End end{0, 0};
   const auto step_on = [&](int x) {
     if (known[x] > 0) {
@@ -165,14 +169,13 @@ void DepthGaps::look_along_row(const GapScene& scene, int y, std::vector<End>& r
     }
   };
   for (int x = columns - 1; x >= 0; --x) {
-    rights[static_cast<std::size_t>(x)] = end;
+    right[x] = end;
     step_on(x);
   }
   end = {0, 0};
   for (int x = 0; x < columns; ++x) {
     if (known[x] == 0 && !nodes[x].is_in_shadow) {
-      const Range range =
-          range_of(end, rights[static_cast<std::size_t>(x)], above_(x, y), below_(x, y));
+      const Range range = range_of(end, right[x], above_(x, y), below_(x, y));
       if (range.guess > 0) nodes[x] = look(scene, x, y, range);
     }
     step_on(x);
@@ -245,23 +248,28 @@ void DepthGaps::draw_node(const GapScene& scene, const Node& node, const Rect& p
   }
 }
 
+/// Calls visit(y) for each row of nodes. Threads share them.
+template <class Visit>
+void DepthGaps::for_groups_of_rows(const Visit& visit) const {
+  const int rows = nodes_.height();
+  for_tasks(static_cast<std::size_t>((rows + rows_of_task - 1) / rows_of_task), [&](std::size_t i) {
+    const int first = static_cast<int>(i) * rows_of_task;
+    for (int y = first; y < std::min(first + rows_of_task, rows); ++y) visit(y);
+  });
+}
+
 void DepthGaps::draw(const GapScene& scene, const Rect& part, Reconstruction& reconstruction) {
   part_ = intersect(part, intersect(reconstruction.region, reconstruction.source.bounds()));
   if (part_.empty()) return;
   if (!find_known(scene.masks.color, reconstruction)) return;
-  shadows_.find(scene);
   take_shadows(scene);
-  for_rows(known_.height(), [&](Rows rows) {
-    for (int y = rows.first; y < rows.last; ++y) look_along_row(scene, y, rights_[rows.band]);
-  });
+  for_groups_of_rows([&](int y) { look_along_row(scene, y); });
   confirm(scene);
-  for_rows(nodes_.height(), [&](Rows rows) {
-    for (int y = rows.first; y < rows.last; ++y) {
-      for (int x = 0; x < nodes_.width(); ++x) {
-        if (!(nodes_(x, y).inverse_m > 0)) continue;
-        draw_node(scene, nodes_(x, y), intersect({column(x), row(y), step_, step_}, part_),
-                  reconstruction);
-      }
+  for_groups_of_rows([&](int y) {
+    for (int x = 0; x < nodes_.width(); ++x) {
+      if (!(nodes_(x, y).inverse_m > 0)) continue;
+      draw_node(scene, nodes_(x, y), intersect({column(x), row(y), step_, step_}, part_),
+                reconstruction);
     }
   });
 }

@@ -7,7 +7,6 @@
 #include "bars/bar_views.h"
 #include "bars/shadow_surfaces.h"
 #include "core/connected_regions.h"
-#include "core/rows.h"
 #include "diminish/reconstruction.h"
 #include "scene/color_map.h"
 
@@ -30,7 +29,10 @@ class DepthGaps {
  public:
   explicit DepthGaps(const Rig& rig);
 
-  /// part: of the picture: the objects and what is around them.
+  /// Looks for shadows of the cameras' projectors. scene.views need not outlive it. Deterministic.
+  void find_shadows(const GapScene& scene) { shadows_.find(scene); }
+
+  /// After find_shadows. part: of the picture: the objects and what is around them.
   /// Changes pixels of the mask without a source: provenance::estimated, in the user's colours.
   /// Deterministic. Cost: 5 to 10 million instructions a frame of the bundled recordings.
   void draw(const GapScene& scene, const Rect& part, Reconstruction& reconstruction);
@@ -59,8 +61,9 @@ class DepthGaps {
   bool find_known(const Mask& occlusion, const Reconstruction& reconstruction);
   void take_shadows(const GapScene& scene);
   static Range range_of(const End& left, const End& right, const End& above, const End& below);
-  /// rights: scratch.
-  void look_along_row(const GapScene& scene, int y, std::vector<End>& rights);
+  void look_along_row(const GapScene& scene, int y);
+  template <class Visit>
+  void for_groups_of_rows(const Visit& visit) const;
   Node look(const GapScene& scene, int x, int y, const Range& range) const;
   /// Keeps what is confirmed.
   void confirm(const GapScene& scene);
@@ -73,12 +76,11 @@ class DepthGaps {
   Rect part_;  ///< of the picture
   // By node.
   Image<float> known_;  ///< inverse depth; 0: unknown; less: not looked at
-  Image<End> above_, below_;
+  Image<End> above_, below_, right_;
   Image<Node> nodes_;
   Mask found_;  ///< and their neighbours
   ConnectedRegions regions_;
   std::vector<float> errors_;
-  std::vector<End> rights_[most_bands];
 };
 
 }  // namespace diminish

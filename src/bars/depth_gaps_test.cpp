@@ -58,6 +58,7 @@ class Gaps : public ::testing::Test {
     views.begin(seen->frame, seen->poses, masks);
     DepthGaps gaps(seen->rig);
     const std::vector<ColorMap> maps(256);
+    gaps.find_shadows({views, seen->frame, seen->poses, masks, {}, maps});
     gaps.draw({views, seen->frame, seen->poses, masks, {}, maps}, seen->rig.color.bounds(), drawn);
   }
   std::size_t count_drawn() const {

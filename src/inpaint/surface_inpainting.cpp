@@ -89,15 +89,14 @@ class SurfaceInpainting : public Inpainter {
 
   void collect_states(const Holes& holes) {
     states_.resize(window_.width, window_.height);
-    for (auto& runs : open_runs_) runs.clear();
     const Surfaces& surfaces = holes.surfaces;
     const Rect seen = intersect(window_, holes.missing.bounds());
     const Rect drawn = intersect(intersect(surfaces.region, surfaces.label.bounds()), seen);
     const bool marks_guesses = uses_depth(holes);
-    for (int y = window_.y; y < window_.bottom(); ++y) {
+    const auto collect_row = [&](int y, OpenRuns& open_runs) {
       state::Code* const states = state_row(y);
       std::fill(states + window_.x, states + window_.right(), state::outside);
-      if (y < seen.y || y >= seen.bottom()) continue;
+      if (y < seen.y || y >= seen.bottom()) return;
       const std::uint8_t* const missing = holes.missing.row(y);
       std::transform(missing + seen.x, missing + seen.right(), states + seen.x,
                      [](std::uint8_t is_missing) { return is_missing & state::open; });
@@ -111,11 +110,19 @@ class SurfaceInpainting : public Inpainter {
       for_each_run(missing, seen.x, seen.right(), Pixels::set, [&](int first, int last) {
         for (int end; first < last; first = end) {
           end = find_other(states, first, last, states[first]);
-          open_runs_[states[first] & state::label_bits].push_back(
+          open_runs[states[first] & state::label_bits].push_back(
               {y - window_.y, first - window_.x, end - window_.x});
         }
       });
+    };
+    for (OpenRuns& band : open_runs_) {
+      for (auto& runs : band) runs.clear();
     }
+    for_rows(window_.height, [&](Rows rows) {
+      for (int y = rows.first; y < rows.last; ++y) {
+        collect_row(window_.y + y, open_runs_[static_cast<std::size_t>(rows.band)]);
+      }
+    });
   }
 
   static void mark_guesses(const float* depth_m, int count, state::Code* states) {
@@ -132,9 +139,11 @@ class SurfaceInpainting : public Inpainter {
     boxes_.fill({});
     for (std::size_t k = 0; k < label_count; ++k) {
       const auto label = static_cast<Label>(k);
-      if (open_runs_[k].empty()) continue;
       regions_.begin();
-      for (const OpenRun& run : open_runs_[k]) regions_.add(run.y, run.first, run.last);
+      for (const OpenRuns& band : open_runs_) {
+        for (const OpenRun& run : band[k]) regions_.add(run.y, run.first, run.last);
+      }
+      if (regions_.runs().empty()) continue;
       regions_.connect(Connectivity::four);
       const bool is_plane = label != surface_label::unknown && label != state::standing;
       if (is_plane) count_rims(label);
@@ -332,7 +341,8 @@ class SurfaceInpainting : public Inpainter {
   struct OpenRun {
     int y, first, last;
   };
-  std::array<std::vector<OpenRun>, label_count> open_runs_;  ///< by label
+  using OpenRuns = std::array<std::vector<OpenRun>, label_count>;  ///< by label
+  std::array<OpenRuns, most_bands> open_runs_;
   ConnectedRegions regions_;
   std::vector<Rim> rims_;
   FarSide far_side_;

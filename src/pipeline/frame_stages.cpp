@@ -186,7 +186,16 @@ void FrameStages::process(const FrameSet& given, DiminishedFrame& result) {
   report.poses = measured_poses;
   background.clear();
   contact_line.clear();
+  const bool closes_gaps = options.close_gaps && !objects.empty();
+  bool has_gap_shadows = false;
+  const auto find_gap_shadows = [&] {
+    if (!closes_gaps || has_gap_shadows) return;
+    gaps.find_shadows(
+        {views, frame, report.poses, masks, samples.surfaces, color_maps.by_source()});
+    has_gap_shadows = true;
+  };
   const auto learn = [&] {
+    views.begin(frame, report.poses, masks);
     do_all(
         [&] {
           stage(Stage::background, [&] {
@@ -199,6 +208,7 @@ void FrameStages::process(const FrameSet& given, DiminishedFrame& result) {
             color_maps.fit(frame.color, masks.color, samples.surfaces, methods.color.maps);
             find_smoothing(frame);
           });
+          if (backend.only_draws()) stage(Stage::compositing, find_gap_shadows);
         });
   };
   FrameInputs drawing{frame,   depth.depths(), report.poses, masks,
@@ -292,9 +302,9 @@ void FrameStages::process(const FrameSet& given, DiminishedFrame& result) {
   // 3.4 Compositing, colour correction, inpainting; a backend may have done these
   const Compositor::Inputs inputs{frame.color, masks.color, objects,
                                   options,     smoothing,   inventions.lines()};
-  views.begin(frame, report.poses, masks);
   stage(Stage::compositing, [&] {
-    if (options.close_gaps && !objects.empty()) {
+    if (closes_gaps) {
+      find_gap_shadows();  // if a GPU was to compose
       gaps.draw({views, frame, report.poses, masks, samples.surfaces, color_maps.by_source()},
                 grow(objects, surroundings_px()), result.reconstruction);
     }

@@ -1,6 +1,7 @@
 #include "scene/standing_things.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -49,8 +50,8 @@ const BackgroundPlane* find_support(const std::vector<BackgroundPlane>& planes) 
 struct StandingThings::View {
   const Input& input;
   const BackgroundPlane& plane;
-  const Image<std::uint8_t>& label;
-  Rect part;  ///< of the mask's box, what was drawn
+  const Image<std::uint8_t>& label;  ///< without sides
+  Rect part;                         ///< of the mask's box, what was drawn
 
   float depth_m(int x, int y) const { return input.reconstruction.depth_m(x, y); }
   /// What is only remembered may have gone.
@@ -147,6 +148,18 @@ bool StandingThings::is_top(const View& view, int x, int y) const {
          any([&](int columns) { return is_level(x + columns, y); });
 }
 
+/// The nearest of all sides, whichever thread comes first.
+void lower_to(float z_m, float& side_m, std::uint8_t& label) {
+  const std::atomic_ref<float> side(side_m);
+  float before = side.load(std::memory_order_relaxed);
+  if (before == 0) {
+    std::atomic_ref<std::uint8_t>(label).store(surface_label::standing, std::memory_order_relaxed);
+  }
+  while ((before == 0 || z_m < before) &&
+         !side.compare_exchange_weak(before, z_m, std::memory_order_relaxed)) {
+  }
+}
+
 /// Labels what is below a pixel of a top's edge.
 void StandingThings::lower(const View& view, int x, int y, Surfaces& surfaces) const {
   const Eigen::Vector2f ray = (*rays_)(x, y);
@@ -176,9 +189,7 @@ void StandingThings::lower(const View& view, int x, int y, Surfaces& surfaces) c
     if (!view.hides_at(at, z)) continue;
     if (!is_checked && !is_solid(view, top, height_m)) return;
     is_checked = true;
-    float& standing = surfaces.standing_depth_m.data()[at];
-    if (standing == 0 || z < standing) standing = z;
-    surfaces.label.data()[at] = surface_label::standing;
+    lower_to(z, surfaces.standing_depth_m.data()[at], surfaces.label.data()[at]);
   }
 }
 
@@ -204,49 +215,47 @@ void StandingThings::find_edges(const View& view, int y, int begin, int end, std
   }
 }
 
-/// What lies in a row between two such pixels, or between one and the thing itself, is part of the
+/// What lies in row y between two such pixels, or between one and the thing itself, is part of the
 /// thing, too: things have no slits.
-void StandingThings::close_slits(const View& view, Surfaces& surfaces) {
+void StandingThings::close_slits(const View& view, int y, Surfaces& surfaces) {
   const int begin = view.part.x;
   const int end = view.part.right();
-  for (int y = view.part.y; y < view.part.bottom(); ++y) {
-    std::uint8_t* const label = surfaces.label.row(y);
-    const std::uint8_t* const source = view.input.reconstruction.source.row(y);
-    float* const side_m = surfaces.standing_depth_m.row(y);
-    const auto depth_m = [&](int x) {
-      return label[x] == surface_label::standing ? side_m[x] : view.depth_m(x, y);
-    };
-    const auto is_thing_at = [&](int x, float z_m) {
-      const bool is_seen =
-          label[x] == surface_label::foreground && source[x] != provenance::remembered;
-      return (is_seen || label[x] == surface_label::standing) &&
-             std::abs(depth_m(x) - z_m) < slit_step_m;
-    };
-    // From a side's last pixel on, to the left or the right.
-    const auto close = [&](int from, int step) {
-      const int widest = std::min(widest_slit_px, step < 0 ? from - begin : end - 1 - from);
-      const float z = side_m[from];
-      int away = 1;
-      while (away <= widest && !is_thing_at(from + away * step, z)) {
-        if (!view.hides(from + away * step, y, z)) return;
-        ++away;
-      }
-      if (away > widest) return;
-      const int to = from + away * step;
-      const float farthest = std::max(z, depth_m(to));
-      for (int x = from + step; x != to; x += step) {
-        if (!view.hides(x, y, farthest)) return;
-      }
-      for (int x = from + step; x != to; x += step) {
-        label[x] = surface_label::standing;
-        side_m[x] = farthest;
-      }
-    };
-    for_each_run(label, begin, end, surface_label::standing, [&](int first, int last) {
-      close(first, -1);
-      close(last - 1, 1);
-    });
-  }
+  std::uint8_t* const label = surfaces.label.row(y);
+  const std::uint8_t* const source = view.input.reconstruction.source.row(y);
+  float* const side_m = surfaces.standing_depth_m.row(y);
+  const auto depth_m = [&](int x) {
+    return label[x] == surface_label::standing ? side_m[x] : view.depth_m(x, y);
+  };
+  const auto is_thing_at = [&](int x, float z_m) {
+    const bool is_seen =
+        label[x] == surface_label::foreground && source[x] != provenance::remembered;
+    return (is_seen || label[x] == surface_label::standing) &&
+           std::abs(depth_m(x) - z_m) < slit_step_m;
+  };
+  // From a side's last pixel on, to the left or the right.
+  const auto close = [&](int from, int step) {
+    const int widest = std::min(widest_slit_px, step < 0 ? from - begin : end - 1 - from);
+    const float z = side_m[from];
+    int away = 1;
+    while (away <= widest && !is_thing_at(from + away * step, z)) {
+      if (!view.hides(from + away * step, y, z)) return;
+      ++away;
+    }
+    if (away > widest) return;
+    const int to = from + away * step;
+    const float farthest = std::max(z, depth_m(to));
+    for (int x = from + step; x != to; x += step) {
+      if (!view.hides(x, y, farthest)) return;
+    }
+    for (int x = from + step; x != to; x += step) {
+      label[x] = surface_label::standing;
+      side_m[x] = farthest;
+    }
+  };
+  for_each_run(label, begin, end, surface_label::standing, [&](int first, int last) {
+    close(first, -1);
+    close(last - 1, 1);
+  });
 }
 
 /// What touches nothing of its thing would have no colour: the old labels come back.
@@ -283,31 +292,39 @@ void StandingThings::drop_loose(const View& view, const Surfaces& seen, Surfaces
 void StandingThings::find(const Input& input, const Surfaces& seen, Surfaces& surfaces) {
   const Rect& region = surfaces.region = seen.region;
   surfaces.label.resize(seen.label.width(), seen.label.height());
-  for (int y = region.y; y < region.bottom(); ++y) {
-    std::copy_n(seen.label.row(y) + region.x, region.width, surfaces.label.row(y) + region.x);
-  }
+  for_rows(region.height, [&](Rows rows) {
+    for (int y = region.y + rows.first; y < region.y + rows.last; ++y) {
+      std::copy_n(seen.label.row(y) + region.x, region.width, surfaces.label.row(y) + region.x);
+    }
+  });
   surfaces.standing_depth_m.resize(0, 0);
   const BackgroundPlane* const plane = find_support(input.planes);
   const Rect drawn = intersect(input.reconstruction.region, surfaces.label.bounds());
   const Rect part = intersect(drawn, input.objects);
   if (plane == nullptr || part.empty()) return;
-  const View view{input, *plane, surfaces.label, part};
+  const View view{input, *plane, seen.label, part};
   place_cameras(input);
   surfaces.standing_depth_m.resize(surfaces.label.width(), surfaces.label.height());
   surfaces.standing_depth_m.fill(view.part, 0);
   const Rect inner = intersect(view.part, grow(drawn, -1));
-  row_.resize(static_cast<std::size_t>(surfaces.label.width()));
-  for (int y = inner.y; y < inner.bottom(); ++y) {
-    find_edges(view, y, inner.x, inner.right(), row_.data());
-    for (int x = inner.x; (x = find_equal(row_.data(), x, inner.right(), 1)) < inner.right(); ++x) {
-      if (view.is_remembered(x, y)) continue;
-      const float z = view.depth_m(x, y);
-      const bool hides =
-          view.hides(x - 1, y, z) || view.hides(x + 1, y, z) || view.hides(x, y + 1, z);
-      if (hides && is_top(view, x, y)) lower(view, x, y, surfaces);
+  for_rows(inner.height, [&](Rows rows) {
+    std::vector<std::uint8_t>& edges = edges_[rows.band];
+    edges.resize(static_cast<std::size_t>(surfaces.label.width()));
+    for (int y = inner.y + rows.first; y < inner.y + rows.last; ++y) {
+      find_edges(view, y, inner.x, inner.right(), edges.data());
+      for (int x = inner.x; (x = find_equal(edges.data(), x, inner.right(), 1)) < inner.right();
+           ++x) {
+        if (view.is_remembered(x, y)) continue;
+        const float z = view.depth_m(x, y);
+        const bool hides =
+            view.hides(x - 1, y, z) || view.hides(x + 1, y, z) || view.hides(x, y + 1, z);
+        if (hides && is_top(view, x, y)) lower(view, x, y, surfaces);
+      }
     }
-  }
-  close_slits(view, surfaces);
+  });
+  for_rows(part.height, [&](Rows rows) {
+    for (int y = part.y + rows.first; y < part.y + rows.last; ++y) close_slits(view, y, surfaces);
+  });
   drop_loose(view, seen, surfaces);
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/connected_regions.h"
+#include "core/rows.h"
 #include "diminish/frame_set.h"
 #include "diminish/image.h"
 #include "diminish/occlusion_masks.h"
@@ -59,13 +60,13 @@ class StandingThings {
   bool is_top(const View& view, int x, int y) const;
   void lower(const View& view, int x, int y, Surfaces& surfaces) const;
   static void find_edges(const View& view, int y, int begin, int end, std::uint8_t* edges);
-  void close_slits(const View& view, Surfaces& surfaces);
+  static void close_slits(const View& view, int y, Surfaces& surfaces);
   void drop_loose(const View& view, const Surfaces& seen, Surfaces& surfaces);
 
   std::vector<Camera> cameras_;
   Projection color_;
   std::shared_ptr<const RayTable> rays_;
-  std::vector<std::uint8_t> row_;  ///< what pixels of a row are
+  std::vector<std::uint8_t> edges_[most_bands];  ///< of a row
   ConnectedRegions regions_;
   std::vector<std::uint8_t> is_held_;  ///< by region
 };
