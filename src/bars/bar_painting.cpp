@@ -89,9 +89,8 @@ BarPainting::End BarPainting::find_end(const Input& input, const Bar& bar) {
   }
 }
 
-BarPainting::Counts BarPainting::paint_row(const Input& input, const Stroke& stroke, int y,
-                                           const Rect& box, DiminishedFrame& result) const {
-  const Bar& bar = stroke.bar;
+BarPainting::Counts BarPainting::paint_row(const Input& input, const Bar& bar, const Stroke& stroke,
+                                           int y, const Rect& box, DiminishedFrame& result) {
   const float half = bar.width_px / 2;
   const Reconstruction& drawn = result.reconstruction;
   const Surfaces& surfaces = result.surfaces;
@@ -124,9 +123,9 @@ BarPainting::Counts BarPainting::paint_row(const Input& input, const Stroke& str
       continue;
     }
     const float position = side + half + margin_px;
-    Eigen::Array4f color = color_at(near_, position);
+    Eigen::Array4f color = color_at(stroke.near_colors, position);
     const float share = std::clamp(along / stroke.length, 0.0F, 1.0F);
-    if (stroke.has_far) color += share * (color_at(far_, position) - color);
+    if (stroke.has_far) color += share * (color_at(stroke.far_colors, position) - color);
     Bgr& pixel = result.picture(x, y);
     const Eigen::Array4f below(pixel.b, pixel.g, pixel.r, 0);
     const float fade = stroke.has_far ? 1 : 1 - far_fade * share;
@@ -139,16 +138,26 @@ BarPainting::Counts BarPainting::paint_row(const Input& input, const Stroke& str
   return counts;
 }
 
-void BarPainting::paint(const Input& input, const Bar& bar, DiminishedFrame& result) {
+void BarPainting::lay_out(const Input& input, const Bar& bar, Stroke& stroke) {
   const auto [length, leaves_mask] = find_end(input, bar);
-  if (length <= 0 || !collect(input, bar, 0, -1, near_)) return;
-  const bool has_far = bar.goes_on && leaves_mask && collect(input, bar, length, 1, far_);
-  const float end = leaves_mask ? length + reach_px : length;
+  stroke.is_painted = length > 0 && collect(input, bar, 0, -1, stroke.near_colors);
+  if (!stroke.is_painted) return;
+  stroke.length = length;
+  stroke.has_far = bar.goes_on && leaves_mask && collect(input, bar, length, 1, stroke.far_colors);
+  stroke.end = leaves_mask ? length + reach_px : length;
+}
 
+void BarPainting::lay_out(const Input& input) {
+  if (strokes_.size() < input.bars.size()) strokes_.resize(input.bars.size());
+  for_tasks(input.bars.size(), [&](std::size_t i) { lay_out(input, input.bars[i], strokes_[i]); });
+}
+
+void BarPainting::paint(const Input& input, const Bar& bar, const Stroke& stroke,
+                        DiminishedFrame& result) {
   const float half = bar.width_px / 2;
   Eigen::Array2f low = bar.at(-reach_px, -half), high = low;
   for (const Eigen::Vector2f& corner :
-       {bar.at(-reach_px, half), bar.at(end, -half), bar.at(end, half)}) {
+       {bar.at(-reach_px, half), bar.at(stroke.end, -half), bar.at(stroke.end, half)}) {
     low = low.min(corner.array());
     high = high.max(corner.array());
   }
@@ -156,11 +165,10 @@ void BarPainting::paint(const Input& input, const Bar& bar, DiminishedFrame& res
   const Rect box = intersect({floor(low.x()), floor(low.y()), floor(high.x()) - floor(low.x()) + 3,
                               floor(high.y()) - floor(low.y()) + 3},
                              input.objects);
-  const Stroke stroke{bar, length, end, has_far};
   const Counts counts = sum_over_rows(box.height, [&](Rows rows) {
     Counts sum;
     for (int y = box.y + rows.first; y < box.y + rows.last; ++y) {
-      sum = sum + paint_row(input, stroke, y, box, result);
+      sum = sum + paint_row(input, bar, stroke, y, box, result);
     }
     return sum;
   });
@@ -169,8 +177,10 @@ void BarPainting::paint(const Input& input, const Bar& bar, DiminishedFrame& res
   result.report.estimated_pixels += counts.estimated;
 }
 
-void BarPainting::paint(const Input& input, DiminishedFrame& result) {
-  for (const Bar& bar : input.bars) paint(input, bar, result);
+void BarPainting::paint(const Input& input, DiminishedFrame& result) const {
+  for (std::size_t i = 0; i < input.bars.size(); ++i) {
+    if (strokes_[i].is_painted) paint(input, input.bars[i], strokes_[i], result);
+  }
 }
 
 }  // namespace diminish

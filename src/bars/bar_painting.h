@@ -12,7 +12,8 @@
 
 namespace diminish {
 
-/// Draws bars into the mask, over what is invented and over what an RGB-D camera sees behind them.
+/// Draws bars into the mask, over what is invented and over what an RGB-D camera sees behind them:
+/// lay_out, then paint.
 class BarPainting {
  public:
   struct Input {
@@ -23,30 +24,28 @@ class BarPainting {
     const Mask& occlusion;  ///< of the colour camera
     const Rect& objects;    ///< its box
   };
-  /// Changes picture, provenance and counts of `result`. A bar has the colours that the user's
-  /// camera sees beside the mask, of both ends where it goes on beyond. It ends where it leaves the
-  /// mask, meets another plane, or where an RGB-D camera sees what would be behind it. What stands
-  /// in front hides it; what the user's camera has seen itself stays. Cost: 30 ns a pixel.
-  void paint(const Input& input, DiminishedFrame& result);
+  /// Where bars end, and their colours: those that the user's camera sees beside the mask, of both
+  /// ends where a bar goes on beyond. A bar ends where it leaves the mask, meets another plane, or
+  /// where an RGB-D camera sees what would be behind it. Needs nothing that is invented.
+  void lay_out(const Input& input);
+  /// Paints them. Changes picture, provenance and counts of `result`. What stands in front hides a
+  /// bar; what the user's camera has seen itself stays. Cost: 30 ns a pixel.
+  void paint(const Input& input, DiminishedFrame& result) const;
 
  private:
   /// A fourth channel, 0, makes it a vector.
   using Profile = std::vector<Eigen::Array4f>;
-
-  static bool collect(const Input& input, const Bar& bar, float begin, float sign,
-                      Profile& profile);
-  /// How far it goes on, pixels; and whether it ends only because the mask does.
+  struct Stroke {
+    bool is_painted = false;
+    float length = 0;                 ///< in the mask
+    float end = 0;                    ///< the last place along it
+    bool has_far = false;             ///< colours of its other end
+    Profile near_colors, far_colors;  ///< across it
+  };
+  /// How far a bar goes on, pixels; and whether it ends only because the mask does.
   struct End {
     float along;
     bool leaves_mask;
-  };
-  static End find_end(const Input& input, const Bar& bar);
-  /// A bar as it is painted.
-  struct Stroke {
-    const Bar& bar;
-    float length;  ///< in the mask
-    float end;     ///< the last place along it
-    bool has_far;  ///< colours of its other end
   };
   /// How many pixels are estimated now, and how many of them were invented.
   struct Counts {
@@ -56,12 +55,18 @@ class BarPainting {
       return {a.estimated + b.estimated, a.inpainted + b.inpainted};
     }
   };
-  /// box: what of the objects' box may show the bar.
-  Counts paint_row(const Input& input, const Stroke& stroke, int y, const Rect& box,
-                   DiminishedFrame& result) const;
-  void paint(const Input& input, const Bar& bar, DiminishedFrame& result);
 
-  Profile near_, far_;
+  static bool collect(const Input& input, const Bar& bar, float begin, float sign,
+                      Profile& profile);
+  static End find_end(const Input& input, const Bar& bar);
+  static void lay_out(const Input& input, const Bar& bar, Stroke& stroke);
+  static void paint(const Input& input, const Bar& bar, const Stroke& stroke,
+                    DiminishedFrame& result);
+  /// box: what of the objects' box may show the bar.
+  static Counts paint_row(const Input& input, const Bar& bar, const Stroke& stroke, int y,
+                          const Rect& box, DiminishedFrame& result);
+
+  std::vector<Stroke> strokes_;  ///< of the bars; there may be more
 };
 
 }  // namespace diminish

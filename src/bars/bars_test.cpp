@@ -66,7 +66,9 @@ class Bars : public ::testing::Test {
     return search.bars();
   }
   void paint() {
-    painting.paint({find(), *views, planes, seen->frame.color, masks.color, hidden}, result);
+    const BarPainting::Input input{find(), *views, planes, seen->frame.color, masks.color, hidden};
+    painting.lay_out(input);
+    painting.paint(input, result);
   }
   std::size_t count(std::uint8_t origin, bool of_bar) const {
     std::size_t pixels = 0;

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "core/channels.h"
-#include "core/tasks.h"
+#include "core/rows.h"
 #include "diminish/diminished_frame.h"
 
 namespace diminish {
@@ -29,7 +29,8 @@ constexpr float confirmed_error = 15;
 
 constexpr float not_looked_at = -1;
 
-constexpr int rows_of_task = 16;
+/// Rows of nodes.
+constexpr int rows_together = 12;
 
 }  // namespace
 
@@ -248,28 +249,22 @@ void DepthGaps::draw_node(const GapScene& scene, const Node& node, const Rect& p
   }
 }
 
-/// Calls visit(y) for each row of nodes. Threads share them.
-template <class Visit>
-void DepthGaps::for_groups_of_rows(const Visit& visit) const {
-  const int rows = nodes_.height();
-  for_tasks(static_cast<std::size_t>((rows + rows_of_task - 1) / rows_of_task), [&](std::size_t i) {
-    const int first = static_cast<int>(i) * rows_of_task;
-    for (int y = first; y < std::min(first + rows_of_task, rows); ++y) visit(y);
-  });
-}
-
 void DepthGaps::draw(const GapScene& scene, const Rect& part, Reconstruction& reconstruction) {
   part_ = intersect(part, intersect(reconstruction.region, reconstruction.source.bounds()));
   if (part_.empty()) return;
   if (!find_known(scene.masks.color, reconstruction)) return;
   take_shadows(scene);
-  for_groups_of_rows([&](int y) { look_along_row(scene, y); });
+  for_row_groups(known_.height(), rows_together, [&](Rows rows) {
+    for (int y = rows.first; y < rows.last; ++y) look_along_row(scene, y);
+  });
   confirm(scene);
-  for_groups_of_rows([&](int y) {
-    for (int x = 0; x < nodes_.width(); ++x) {
-      if (!(nodes_(x, y).inverse_m > 0)) continue;
-      draw_node(scene, nodes_(x, y), intersect({column(x), row(y), step_, step_}, part_),
-                reconstruction);
+  for_row_groups(nodes_.height(), rows_together, [&](Rows rows) {
+    for (int y = rows.first; y < rows.last; ++y) {
+      for (int x = 0; x < nodes_.width(); ++x) {
+        if (!(nodes_(x, y).inverse_m > 0)) continue;
+        draw_node(scene, nodes_(x, y), intersect({column(x), row(y), step_, step_}, part_),
+                  reconstruction);
+      }
     }
   });
 }

@@ -62,8 +62,6 @@ class DepthGaps {
   void take_shadows(const GapScene& scene);
   static Range range_of(const End& left, const End& right, const End& above, const End& below);
   void look_along_row(const GapScene& scene, int y);
-  template <class Visit>
-  void for_groups_of_rows(const Visit& visit) const;
   Node look(const GapScene& scene, int x, int y, const Range& range) const;
   /// Keeps what is confirmed.
   void confirm(const GapScene& scene);

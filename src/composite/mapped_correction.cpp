@@ -53,7 +53,8 @@ class MappedCorrection : public ColorCorrector {
     const Rect& region = reconstruction.region;
     constexpr int step = SoftMembrane::step;
     static_assert(step % Reconstructor::sparse_step == 0, "other colours may be missing");
-    for (int y = region.y; y < region.bottom(); y += step) {
+    membrane_.for_each_row([&, &camera = camera, &occlusion = occlusion,
+                            &reconstruction = reconstruction, &maps = maps](int y) {
       for (int x = region.x; x < region.right(); x += step) {
         const std::uint8_t source = reconstruction.source(x, y);
         if (occlusion(x, y) != 0 || source == 0) continue;
@@ -65,7 +66,7 @@ class MappedCorrection : public ColorCorrector {
         }
         membrane_.add(x, y, to_channels(camera(x, y)) - mapped);
       }
-    }
+    });
     membrane_.solve();
   }
 

@@ -1,6 +1,7 @@
 #include "composite/shadow_gain.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "composite/scale_light.h"
@@ -24,6 +25,8 @@ constexpr float least_light = ShadowFit::least_light;
 /// Of whole parts of cells in a shadow, and of cells that show the field.
 constexpr int fewest_shaded = 32;
 constexpr std::size_t fewest_cells = 24;
+/// Rows of cells.
+constexpr int rows_together = 8;
 /// Of a cell that counts.
 constexpr float least_weight = 0.05F;
 /// Colours are 0 to 1.
@@ -133,7 +136,8 @@ bool ShadowGain::gather(const Inputs& inputs, const Surfaces& surfaces, std::uin
     fine.dark(column, row) += weight * dark;
     return dark[brightness] > 1 - lit;
   };
-  const int shaded = sum_over_rows(fine.weight.height(), [&](Rows rows) {
+  std::atomic<int> shaded = 0;
+  for_row_groups(fine.weight.height(), rows_together, [&](Rows rows) {
     int count = 0;
     for (int row = rows.first; row < rows.last; ++row) {
       for (int y = 0; y < cell_px; y += part_px) {
@@ -142,7 +146,7 @@ bool ShadowGain::gather(const Inputs& inputs, const Surfaces& surfaces, std::uin
         }
       }
     }
-    return count;
+    shaded += count;
   });
   if (shaded < fewest_shaded) return false;
   for (std::size_t i = 1; i < scales; ++i) {

@@ -7,7 +7,7 @@
 
 namespace diminish {
 
-/// Rows [first, last) of an image that threads share: one of its bands.
+/// Rows [first, last) of an image that threads share: one of its bands or groups.
 struct Rows {
   int first, last;
   int band = 0;  ///< its number, from 0 on: threads that work on different bands share no memory
@@ -55,6 +55,15 @@ void for_rows(int rows, const Visit& visit, int least = least_band) {
         return 0;
       },
       least);
+}
+
+/// Calls visit(rows) for groups of `height` rows: of what has few rows that take long.
+template <class Visit>
+void for_row_groups(int rows, int height, const Visit& visit) {
+  for_tasks(static_cast<std::size_t>((rows + height - 1) / height), [&](std::size_t i) {
+    const auto group = static_cast<int>(i);
+    visit(Rows{group * height, std::min((group + 1) * height, rows), group});
+  });
 }
 
 }  // namespace diminish

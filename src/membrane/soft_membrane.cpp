@@ -59,24 +59,28 @@ Eigen::Array3f SoftMembrane::usual(std::span<const Eigen::Array3f> differences) 
   return count == differences.size() ? center : medians({near.data(), count});
 }
 
-void SoftMembrane::weigh_differences() {
+/// Of a grid point.
+void SoftMembrane::weigh_differences(std::size_t at) {
   constexpr float each = full_weight / cell_samples;
-  for (std::size_t at = 0; at < differences_.size(); ++at) {
-    const std::span differences(differences_[at].values.data(), differences_[at].count);
-    if (differences.empty()) continue;
-    const Eigen::Array3f center = usual(differences);
-    for (const Eigen::Array3f& difference : differences) {
-      const Eigen::Array3f relative = (difference - center) / largest_deviation;
-      if ((relative.abs() >= 1).any()) continue;
-      const float weight = each * (1 - relative.square()).square().prod();
-      weights_[at] += weight;
-      sums_[at].head<3>() += weight * difference;
-    }
+  const std::span differences(differences_[at].values.data(), differences_[at].count);
+  if (differences.empty()) return;
+  const Eigen::Array3f center = usual(differences);
+  for (const Eigen::Array3f& difference : differences) {
+    const Eigen::Array3f relative = (difference - center) / largest_deviation;
+    if ((relative.abs() >= 1).any()) continue;
+    const float weight = each * (1 - relative.square()).square().prod();
+    weights_[at] += weight;
+    sums_[at].head<3>() += weight * difference;
   }
 }
 
 void SoftMembrane::solve() {
-  weigh_differences();
+  const auto columns = static_cast<std::size_t>(columns_);
+  for_tasks(static_cast<std::size_t>(rows_), [&](std::size_t row) {
+    for (std::size_t column = 0; column < columns; ++column) {
+      weigh_differences(row * columns + column);
+    }
+  });
   // From here on with the gradients to the neighbours that are there, and the fading.
   float* own = weights_.data();
   for (int row = 0; row < rows_; ++row) {

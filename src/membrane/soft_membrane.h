@@ -1,11 +1,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
 
+#include "core/tasks.h"
 #include "diminish/image.h"
 
 namespace diminish {
@@ -36,6 +38,16 @@ class SoftMembrane {
   static constexpr int sweeps = 24;
 
   void begin(const Rect& region);
+  /// Calls visit(y) for each row of the region from which differences are wanted. Threads share
+  /// them, so that no two add to the same grid point.
+  template <class Visit>
+  void for_each_row(const Visit& visit) const {
+    for_tasks(static_cast<std::size_t>(rows_), [&](std::size_t row) {
+      const int middle = static_cast<int>(row) * cell;
+      const int end = std::min(middle + cell / 2, region_.height);
+      for (int y = std::max(middle - cell / 2, 0); y < end; y += step) visit(region_.y + y);
+    });
+  }
   /// x, y: multiples of `step` from the region's corner. difference: in levels.
   void add(int x, int y, const Eigen::Array3f& difference);
   void solve();
@@ -54,7 +66,7 @@ class SoftMembrane {
   };
   static Eigen::Array3f medians(std::span<const Eigen::Array3f> differences);
   static Eigen::Array3f usual(std::span<const Eigen::Array3f> differences);
-  void weigh_differences();
+  void weigh_differences(std::size_t at);
   /// To be indexed by the column; from row -1 on.
   Node* value_row(int row) { return values_.row(row + 1) + 1; }
   const Node* value_row(int row) const { return values_.row(row + 1) + 1; }

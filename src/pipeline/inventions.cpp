@@ -49,19 +49,21 @@ void Inventions::fill(const Inputs& inputs, const Compositor::Inputs& composed,
                                 inputs.objects,          *inputs.planes,
                                 inputs.samples.surfaces, inputs.poses.color_from_world};
   };
+  const bool has_bars = finds_bars(inputs) && !bar_search_.bars().empty();
+  const auto bars = [&] {
+    return BarPainting::Input{bar_search_.bars(), inputs.views,       *inputs.planes,
+                              inputs.frame.color, inputs.masks.color, inputs.objects};
+  };
   bool is_filled = false;
-  const auto inpaint = [&] { is_filled = compositor.inpaint(composed, inpainter, result); };
-  if (has_grain) {
-    do_all(inpaint, [&] { plane_texture_.find(grain(), result); });
-  } else {
-    inpaint();
-  }
+  do_all([&] { is_filled = compositor.inpaint(composed, inpainter, result); },
+         [&] {
+           if (has_grain) plane_texture_.find(grain(), result);
+         },
+         [&] {
+           if (has_bars) bar_painting_.lay_out(bars());
+         });
   if (!is_filled) Compositor::mark_unknown(inputs.objects, result);
-  if (finds_bars(inputs) && !bar_search_.bars().empty()) {
-    bar_painting_.paint({bar_search_.bars(), inputs.views, *inputs.planes, inputs.frame.color,
-                         inputs.masks.color, inputs.objects},
-                        result);
-  }
+  if (has_bars) bar_painting_.paint(bars(), result);
   if (wanted_.steady) {
     steady_.steady(
         {inputs.frame.stamp_s, inputs.poses.color_from_world, inputs.objects, inputs.planes},

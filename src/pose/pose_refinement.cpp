@@ -53,6 +53,7 @@ PoseRefinement::PoseRefinement(const Intrinsics& color, const PoseRefinementSett
                                                     5 * settings.last_step, true},
                           deviations(settings.reach));
   }
+  has_begun_.resize(coarser_.size());
 }
 
 std::optional<RigidTransform> PoseRefinement::refine(const FrameSet& frame, const Mask& occlusion,
@@ -63,15 +64,16 @@ std::optional<RigidTransform> PoseRefinement::refine(const FrameSet& frame, cons
   DirectAlignment::Estimate measured;
   DirectAlignment::Estimate estimate;
   bool is_seen = false;
-  do_all(
-      [&] { is_seen = fine_.begin(frame, occlusion, scene) && fine_.iterate(0, measured); },
-      [&] {
-        for (DirectAlignment& level : coarser_) {
-          if (!level.begin(frame, occlusion, scene) || !level.iterate(most_iterations, estimate)) {
-            estimate = {};
-          }
-        }
-      });
+  do_all([&] { is_seen = fine_.begin(frame, occlusion, scene) && fine_.iterate(0, measured); },
+         [&] {
+           for_tasks(coarser_.size(), [&](std::size_t i) {
+             has_begun_[i] = coarser_[i].begin(frame, occlusion, scene) ? 1 : 0;
+           });
+           for (std::size_t i = 0; i < coarser_.size(); ++i) {
+             if (has_begun_[i] == 0 || !coarser_[i].iterate(most_iterations, estimate))
+               estimate = {};
+           }
+         });
   if (!is_seen || !fine_.iterate(most_iterations, estimate)) return std::nullopt;
   estimate_ = estimate;
   costs_ = {measured.cost, estimate.cost};

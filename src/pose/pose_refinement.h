@@ -72,6 +72,7 @@ class PoseRefinement {
   DirectAlignment::Estimate estimate_;  ///< of the last `refine`
   std::optional<Costs> costs_;
   std::vector<DirectAlignment> coarser_;  ///< the smallest picture first
+  std::vector<std::uint8_t> has_begun_;   ///< which of them
   Projection projection_;
 };
 

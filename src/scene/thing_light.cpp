@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "core/runs.h"
@@ -18,6 +19,8 @@ constexpr int fewest_blocks = 5;
 /// A thing gets light from its surroundings that the plane does not get, from the plane itself
 /// above all. So what the beams lose counts less. Between .5 and .75 scores hardly differ.
 constexpr float share_of_beams = 2 / 3.F;
+/// Rows of blocks.
+constexpr int rows_together = 8;
 
 /// The direction that a surface faces at a block, towards the camera; 0 if it is unknown. Along a
 /// plane the inverse depth is linear in the ray. ray_step: from block to block.
@@ -73,7 +76,7 @@ void ThingLight::shade(std::span<const CastShadow> shadows, const RayGrid& rays,
 void ThingLight::find_depths(const Image<float>& depth_m, const Surfaces& surfaces) {
   const Rect& region = surfaces.region;
   inverse_depth_.resize(region.width / block_px, region.height / block_px, 0);
-  for_rows(inverse_depth_.height(), [&](Rows rows) {
+  for_row_groups(inverse_depth_.height(), rows_together, [&](Rows rows) {
     for (int row = rows.first; row < rows.last; ++row) {
       for (int column = 0; column < inverse_depth_.width(); ++column) {
         const int left = region.x + column * block_px;
@@ -98,8 +101,9 @@ void ThingLight::find_depths(const Image<float>& depth_m, const Surfaces& surfac
 bool ThingLight::find_light(std::span<const CastShadow> shadows, const RayGrid& rays,
                             const Rect& region) {
   light_.resize(inverse_depth_.width(), inverse_depth_.height());
-  const int shaded = sum_over_rows(light_.height(), [&](Rows rows) {
-    int count = 0;
+  std::atomic<bool> is_any_shaded = false;
+  for_row_groups(light_.height(), rows_together, [&](Rows rows) {
+    bool is_shaded_here = false;
     for (int row = rows.first; row < rows.last; ++row) {
       for (int column = 0; column < light_.width(); ++column) {
         Levels& light = light_(column, row);
@@ -121,12 +125,12 @@ bool ThingLight::find_light(std::span<const CastShadow> shadows, const RayGrid& 
         for (const CastShadow& shadow : shadows) {
           light.head<3>() = light.head<3>().min(light_on(point_m, normal, shadow));
         }
-        count += light.head<3>().minCoeff() < 1 - CastShadow::invisible ? 1 : 0;
+        is_shaded_here |= light.head<3>().minCoeff() < 1 - CastShadow::invisible;
       }
     }
-    return count;
+    if (is_shaded_here) is_any_shaded.store(true, std::memory_order_relaxed);
   });
-  return shaded > 0;
+  return is_any_shaded;
 }
 
 /// The mean of what is known in three by three blocks: lights have a size.
