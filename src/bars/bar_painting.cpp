@@ -1,6 +1,7 @@
 #include "bars/bar_painting.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "core/channels.h"
@@ -22,6 +23,7 @@ constexpr float far_fade = 0.4F;
 /// Something this much nearer hides it.
 constexpr float nearer_m = 0.03F;
 constexpr float nearer_side_m = 0.02F;
+constexpr int rows_together = 32;
 
 struct Columns {
   int begin, end;
@@ -89,8 +91,8 @@ BarPainting::End BarPainting::find_end(const Input& input, const Bar& bar) {
   }
 }
 
-BarPainting::Counts BarPainting::paint_row(const Input& input, const Bar& bar, const Stroke& stroke,
-                                           int y, const Rect& box, DiminishedFrame& result) {
+void BarPainting::paint_row(const Input& input, const Bar& bar, const Stroke& stroke, int y,
+                            const Rect& box, DiminishedFrame& result, Counts& counts) {
   const float half = bar.width_px / 2;
   const Reconstruction& drawn = result.reconstruction;
   const Surfaces& surfaces = result.surfaces;
@@ -99,7 +101,6 @@ BarPainting::Counts BarPainting::paint_row(const Input& input, const Bar& bar, c
     const float share = position - static_cast<float>(first);
     return profile[first] + share * (profile[first + 1] - profile[first]);
   };
-  Counts counts;
   const Columns columns = columns_of(bar, y, box);
   for (int x = columns.begin; x < columns.end; ++x) {
     std::uint8_t& origin = result.provenance(x, y);
@@ -135,7 +136,6 @@ BarPainting::Counts BarPainting::paint_row(const Input& input, const Bar& bar, c
     ++counts.estimated;
     origin = provenance::estimated;
   }
-  return counts;
 }
 
 void BarPainting::lay_out(const Input& input, const Bar& bar, Stroke& stroke) {
@@ -165,16 +165,19 @@ void BarPainting::paint(const Input& input, const Bar& bar, const Stroke& stroke
   const Rect box = intersect({floor(low.x()), floor(low.y()), floor(high.x()) - floor(low.x()) + 3,
                               floor(high.y()) - floor(low.y()) + 3},
                              input.objects);
-  const Counts counts = sum_over_rows(box.height, [&](Rows rows) {
-    Counts sum;
+  std::atomic<std::size_t> estimated = 0;
+  std::atomic<std::size_t> inpainted = 0;
+  for_row_groups(box.height, rows_together, [&](Rows rows) {
+    Counts counts;
     for (int y = box.y + rows.first; y < box.y + rows.last; ++y) {
-      sum = sum + paint_row(input, bar, stroke, y, box, result);
+      paint_row(input, bar, stroke, y, box, result, counts);
     }
-    return sum;
+    estimated += counts.estimated;
+    inpainted += counts.inpainted;
   });
-  result.report.missing_pixels -= counts.inpainted;
-  result.report.valid_pixels += counts.inpainted;
-  result.report.estimated_pixels += counts.estimated;
+  result.report.missing_pixels -= inpainted;
+  result.report.valid_pixels += inpainted;
+  result.report.estimated_pixels += estimated;
 }
 
 void BarPainting::paint(const Input& input, DiminishedFrame& result) const {

@@ -50,10 +50,6 @@ class BarPainting {
   /// How many pixels are estimated now, and how many of them were invented.
   struct Counts {
     std::size_t estimated = 0, inpainted = 0;
-
-    friend Counts operator+(const Counts& a, const Counts& b) {
-      return {a.estimated + b.estimated, a.inpainted + b.inpainted};
-    }
   };
 
   static bool collect(const Input& input, const Bar& bar, float begin, float sign,
@@ -63,8 +59,8 @@ class BarPainting {
   static void paint(const Input& input, const Bar& bar, const Stroke& stroke,
                     DiminishedFrame& result);
   /// box: what of the objects' box may show the bar.
-  static Counts paint_row(const Input& input, const Bar& bar, const Stroke& stroke, int y,
-                          const Rect& box, DiminishedFrame& result);
+  static void paint_row(const Input& input, const Bar& bar, const Stroke& stroke, int y,
+                        const Rect& box, DiminishedFrame& result, Counts& counts);
 
   std::vector<Stroke> strokes_;  ///< of the bars; there may be more
 };

@@ -30,7 +30,7 @@ constexpr float confirmed_error = 15;
 constexpr float not_looked_at = -1;
 
 /// Rows of nodes.
-constexpr int rows_together = 12;
+constexpr int node_rows_together = 12;
 
 }  // namespace
 
@@ -254,11 +254,11 @@ void DepthGaps::draw(const GapScene& scene, const Rect& part, Reconstruction& re
   if (part_.empty()) return;
   if (!find_known(scene.masks.color, reconstruction)) return;
   take_shadows(scene);
-  for_row_groups(known_.height(), rows_together, [&](Rows rows) {
+  for_row_groups(known_.height(), node_rows_together, [&](Rows rows) {
     for (int y = rows.first; y < rows.last; ++y) look_along_row(scene, y);
   });
   confirm(scene);
-  for_row_groups(nodes_.height(), rows_together, [&](Rows rows) {
+  for_row_groups(nodes_.height(), node_rows_together, [&](Rows rows) {
     for (int y = rows.first; y < rows.last; ++y) {
       for (int x = 0; x < nodes_.width(); ++x) {
         if (!(nodes_(x, y).inverse_m > 0)) continue;

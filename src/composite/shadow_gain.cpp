@@ -26,7 +26,7 @@ constexpr float least_light = ShadowFit::least_light;
 constexpr int fewest_shaded = 32;
 constexpr std::size_t fewest_cells = 24;
 /// Rows of cells.
-constexpr int rows_together = 8;
+constexpr int cell_rows_together = 8;
 /// Of a cell that counts.
 constexpr float least_weight = 0.05F;
 /// Colours are 0 to 1.
@@ -137,7 +137,7 @@ bool ShadowGain::gather(const Inputs& inputs, const Surfaces& surfaces, std::uin
     return dark[brightness] > 1 - lit;
   };
   std::atomic<int> shaded = 0;
-  for_row_groups(fine.weight.height(), rows_together, [&](Rows rows) {
+  for_row_groups(fine.weight.height(), cell_rows_together, [&](Rows rows) {
     int count = 0;
     for (int row = rows.first; row < rows.last; ++row) {
       for (int y = 0; y < cell_px; y += part_px) {

@@ -35,6 +35,8 @@ constexpr float measured_side = 4;  ///< pixels beside it
 /// Its colours are half those outside, half the smooth filling's with only its contrast.
 constexpr float own_colors = 0.5F;
 
+constexpr int rows_together = 32;
+
 std::uint8_t label_at(const Surfaces& surfaces, int x, int y) {
   if (!surfaces.region.contains(x, y) || !surfaces.label.bounds().contains(x, y)) {
     return surface_label::unknown;
@@ -305,7 +307,7 @@ void LinePainting::paint(const Holes& holes, const Rect& objects, Image<Bgr>& pi
   objects_ = objects;
   nearest_.resize(objects.width, objects.height, 0);
   claims_.resize(objects.width, objects.height);
-  for_rows(objects.height, [&](Rows rows) {
+  for_row_groups(objects.height, rows_together, [&](Rows rows) {
     claim(holes.missing, holes.surfaces,
           {objects.x, objects.y + rows.first, objects.width, rows.last - rows.first});
     for (int row = rows.first; row < rows.last; ++row) {

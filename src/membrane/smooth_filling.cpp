@@ -1,6 +1,7 @@
 #include "membrane/smooth_filling.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/rows.h"
 #include "core/runs.h"
@@ -54,30 +55,41 @@ int SmoothFilling::Grid::shared_rows() const {
 /// become absent.
 void SmoothFilling::Grid::find_known() {
   const int width = kinds.width();
-  row.resize(static_cast<std::size_t>(width));
-  for (int y = 0; y < kinds.height(); ++y) {
+  const int height = kinds.height();
+  next_kinds.resize(width, height);
+  const auto find_in_row = [&](int y, Kind* beside, std::vector<Place>& found) {
     // In the rim, its own row does for the one beyond: neither holds an open cell.
     const Kind* const above = kinds.row(std::max(y - 1, 0));
-    const Kind* const below = kinds.row(std::min(y + 1, kinds.height() - 1));
-    Kind* const here = kinds.row(y);
-    Kind* const beside = row.data();
+    const Kind* const below = kinds.row(std::min(y + 1, height - 1));
+    const Kind* const here = kinds.row(y);
+    Kind* const next = next_kinds.row(y);
     beside[0] = here[1] & open;
     beside[width - 1] = here[width - 2] & open;
     for (int x = 1; x < width - 1; ++x) {
       beside[x] = (above[x] | below[x] | here[x - 1] | here[x + 1]) & ~here[x] & open;
     }
     for (int x = 0; x < width; ++x) {
-      here[x] &= static_cast<Kind>(open | (beside[x] << 1));
+      next[x] = here[x] & static_cast<Kind>(open | (beside[x] << 1));
     }
     Color* const row_colors = colors.row(y);
     for_each_set(beside, width, [&](int x) {
-      if (here[x] == SmoothFilling::known) {
-        known.push_back({box.x - 1 + x, box.y - 1 + y});
+      if (next[x] == SmoothFilling::known) {
+        found.push_back({box.x - 1 + x, box.y - 1 + y});
       } else {
         row_colors[x].setZero();
       }
     });
-  }
+  };
+  for (auto& found : known_in_band) found.clear();
+  for_rows(height, [&](Rows rows) {
+    std::vector<Kind>& beside = row_in_band[rows.band];
+    beside.resize(static_cast<std::size_t>(width));
+    for (int y = rows.first; y < rows.last; ++y) {
+      find_in_row(y, beside.data(), known_in_band[rows.band]);
+    }
+  });
+  std::swap(kinds, next_kinds);
+  for (const auto& found : known_in_band) known.insert(known.end(), found.begin(), found.end());
 }
 
 void SmoothFilling::Grid::coarsen(const Grid& fine) {
@@ -85,26 +97,29 @@ void SmoothFilling::Grid::coarsen(const Grid& fine) {
   // The fine grid's place in this one's, in fine cells.
   const int left = fine.box.x - 1 - 2 * (box.x - 1);
   const int top = fine.box.y - 1 - 2 * (box.y - 1);
-  row.assign(2 * static_cast<std::size_t>(kinds.width()), absent);
-  for (int y = 0; y < kinds.height(); ++y) {
-    const int last = fine.kinds.height() - 1;
-    const int first_row = 2 * y - top;
-    Kind* const here = kinds.row(y);
-    if (first_row + 1 < 0 || first_row > last) {
-      std::fill_n(here, kinds.width(), absent);
-      continue;
-    }
-    const Kind* const upper = fine.kinds.row(std::max(first_row, 0));
-    const Kind* const lower = fine.kinds.row(std::min(first_row + 1, last));
+  const int last = fine.kinds.height() - 1;
+  const int fine_width = fine.kinds.width();
+  const int width = kinds.width();
+  for_rows(kinds.height(), [&](Rows rows) {
+    std::vector<Kind>& row = row_in_band[rows.band];
+    row.assign(2 * static_cast<std::size_t>(width), absent);
     Kind* const both = row.data() + left;
-    const int fine_width = fine.kinds.width();
-    for (int x = 0; x < fine_width; ++x) both[x] = std::max(upper[x], lower[x]);
     const Kind* const pairs = row.data();
-    const int width = kinds.width();
-    for (std::ptrdiff_t x = 0; x < width; ++x) here[x] = std::max(pairs[2 * x], pairs[2 * x + 1]);
-  }
+    for (int y = rows.first; y < rows.last; ++y) {
+      std::fill_n(colors.row(y), width, Color::Zero());
+      const int first_row = 2 * y - top;
+      Kind* const here = kinds.row(y);
+      if (first_row + 1 < 0 || first_row > last) {
+        std::fill_n(here, width, absent);
+        continue;
+      }
+      const Kind* const upper = fine.kinds.row(std::max(first_row, 0));
+      const Kind* const lower = fine.kinds.row(std::min(first_row + 1, last));
+      for (int x = 0; x < fine_width; ++x) both[x] = std::max(upper[x], lower[x]);
+      for (std::ptrdiff_t x = 0; x < width; ++x) here[x] = std::max(pairs[2 * x], pairs[2 * x + 1]);
+    }
+  });
   find_open();
-  colors.fill(Color::Zero());
   for (const Place place : fine.known) {
     Color& color = color_row(place.y >> 1)[place.x >> 1];
     if (color[3] == 0) known.push_back({place.x >> 1, place.y >> 1});

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/rows.h"
 #include "diminish/image.h"
 #include "membrane/filling_rows.h"
 
@@ -85,7 +86,10 @@ class SmoothFilling {
     std::vector<Run> runs;               ///< of open cells
     std::vector<std::size_t> row_begin;  ///< in `runs`: of the box's rows, and the end
     std::vector<Place> known;            ///< known cells
-    std::vector<Kind> row;
+    // Scratch, by band of rows.
+    Image<Kind> next_kinds;
+    std::vector<Place> known_in_band[most_bands];
+    std::vector<Kind> row_in_band[most_bands];
 
     void begin(const Rect& open_box);
     /// To be indexed by x.

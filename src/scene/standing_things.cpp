@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "core/conditions.h"
+#include "core/rows.h"
 #include "core/runs.h"
 #include "depth/depth_noise.h"
 #include "diminish/diminished_frame.h"
@@ -34,6 +35,7 @@ constexpr int widest_slit_px = 24;
 /// From one side of a slit to the other: what is seen of a thing may be its front, and its side
 /// hang from the far end of its top.
 constexpr float slit_step_m = 3 * thing_step_m;
+constexpr int rows_together = 16;
 
 const BackgroundPlane* find_support(const std::vector<BackgroundPlane>& planes) {
   const BackgroundPlane* best = nullptr;
@@ -307,8 +309,10 @@ void StandingThings::find(const Input& input, const Surfaces& seen, Surfaces& su
   surfaces.standing_depth_m.resize(surfaces.label.width(), surfaces.label.height());
   surfaces.standing_depth_m.fill(view.part, 0);
   const Rect inner = intersect(view.part, grow(drawn, -1));
-  for_rows(inner.height, [&](Rows rows) {
-    std::vector<std::uint8_t>& edges = edges_[rows.band];
+  edges_.resize(
+      static_cast<std::size_t>(surfaces.label.height() / rows_together + 1));  // of any part
+  for_row_groups(inner.height, rows_together, [&](Rows rows) {
+    std::vector<std::uint8_t>& edges = edges_[static_cast<std::size_t>(rows.band)];
     edges.resize(static_cast<std::size_t>(surfaces.label.width()));
     for (int y = inner.y + rows.first; y < inner.y + rows.last; ++y) {
       find_edges(view, y, inner.x, inner.right(), edges.data());

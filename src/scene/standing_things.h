@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "core/connected_regions.h"
-#include "core/rows.h"
 #include "diminish/frame_set.h"
 #include "diminish/image.h"
 #include "diminish/occlusion_masks.h"
@@ -66,7 +65,7 @@ class StandingThings {
   std::vector<Camera> cameras_;
   Projection color_;
   std::shared_ptr<const RayTable> rays_;
-  std::vector<std::uint8_t> edges_[most_bands];  ///< of a row
+  std::vector<std::vector<std::uint8_t>> edges_;  ///< of a row; by group of rows
   ConnectedRegions regions_;
   std::vector<std::uint8_t> is_held_;  ///< by region
 };

@@ -20,7 +20,7 @@ constexpr int fewest_blocks = 5;
 /// above all. So what the beams lose counts less. Between .5 and .75 scores hardly differ.
 constexpr float share_of_beams = 2 / 3.F;
 /// Rows of blocks.
-constexpr int rows_together = 8;
+constexpr int block_rows_together = 8;
 
 /// The direction that a surface faces at a block, towards the camera; 0 if it is unknown. Along a
 /// plane the inverse depth is linear in the ray. ray_step: from block to block.
@@ -76,7 +76,7 @@ void ThingLight::shade(std::span<const CastShadow> shadows, const RayGrid& rays,
 void ThingLight::find_depths(const Image<float>& depth_m, const Surfaces& surfaces) {
   const Rect& region = surfaces.region;
   inverse_depth_.resize(region.width / block_px, region.height / block_px, 0);
-  for_row_groups(inverse_depth_.height(), rows_together, [&](Rows rows) {
+  for_row_groups(inverse_depth_.height(), block_rows_together, [&](Rows rows) {
     for (int row = rows.first; row < rows.last; ++row) {
       for (int column = 0; column < inverse_depth_.width(); ++column) {
         const int left = region.x + column * block_px;
@@ -102,7 +102,7 @@ bool ThingLight::find_light(std::span<const CastShadow> shadows, const RayGrid& 
                             const Rect& region) {
   light_.resize(inverse_depth_.width(), inverse_depth_.height());
   std::atomic<bool> is_any_shaded = false;
-  for_row_groups(light_.height(), rows_together, [&](Rows rows) {
+  for_row_groups(light_.height(), block_rows_together, [&](Rows rows) {
     bool is_shaded_here = false;
     for (int row = rows.first; row < rows.last; ++row) {
       for (int column = 0; column < light_.width(); ++column) {
