@@ -82,7 +82,8 @@ ShadowSurfaces::Camera::Camera(const RgbdCamera& camera)
     : rays(RayTable::of(camera.depth)),
       unit_m(static_cast<float>(camera.depth_unit_m)),
       step((camera.depth.width + most_vertex_columns - 1) / most_vertex_columns),
-      vertices(camera.depth.width / step, camera.depth.height / step) {}
+      columns(camera.depth.width / step),
+      rows(camera.depth.height / step) {}
 
 ShadowSurfaces::ShadowSurfaces(const Rig& rig)
     : nearest_m_(rig.color.width / cell_px + 1, rig.color.height / cell_px + 1),
@@ -128,7 +129,7 @@ void ShadowSurfaces::find_gaps(const GapScene& scene, std::size_t k, int row, Ca
     if (right - left <= widest && !is_object(objects, left, y) && !is_object(objects, right, y)) {
       const float depth_m =
           camera.unit_m * static_cast<float>(std::max(depths[left], depths[right]));
-      const int last = std::min((right - 1) / step, camera.vertices.width() - 1);
+      const int last = std::min((right - 1) / step, camera.columns - 1);
       for (int column = left / step + 1; column <= last; ++column) {
         if (!is_object(objects, column * step, y)) camera.gaps.push_back({column, row, depth_m});
       }
@@ -169,6 +170,7 @@ bool ShadowSurfaces::is_confirmed(const GapScene& scene, std::size_t k) const {
 }
 
 void ShadowSurfaces::make_vertices(const GapScene& scene, std::size_t k, Camera& camera) {
+  if (camera.vertices.empty()) camera.vertices = Image<Vertex>(camera.columns, camera.rows);
   for (const Place& gap : camera.gaps) {
     Vertex& own = camera.vertices(gap.column, gap.row);
     own = vertex(scene, gap, camera);
@@ -206,7 +208,7 @@ void ShadowSurfaces::find(const GapScene& scene) {
     camera.is_confirmed = false;
     if (!scene.views.centre(k)) continue;
     camera.user_from_depth = FloatTransform(*scene.poses.color_from_depth[k]);
-    for (int row = 0; row < camera.vertices.height(); ++row) find_gaps(scene, k, row, camera);
+    for (int row = 0; row < camera.rows; ++row) find_gaps(scene, k, row, camera);
     camera.is_confirmed = is_confirmed(scene, k);
     if (camera.is_confirmed) make_vertices(scene, k, camera);
   }

@@ -69,10 +69,11 @@ class ShadowSurfaces {
     std::shared_ptr<const RayTable> rays;
     float unit_m;
     FloatTransform user_from_depth{RigidTransform{}};
-    int step;  ///< depth pixels from one vertex to the next
+    int step;           ///< depth pixels from one vertex to the next
+    int columns, rows;  ///< of vertices
     std::vector<Place> gaps;
     // Of a camera that is confirmed:
-    Image<Vertex> vertices;  ///< in gaps, and next to them
+    Image<Vertex> vertices;  ///< in gaps, and next to them; empty until it is the first time
     std::vector<Place> ends;
     bool is_confirmed = false;
   };

@@ -258,7 +258,9 @@ void ColorSmoothing::smooth(const Mask& origins, const Rect& box, int share, Ima
   if (share == 0) return;
   begin(box);
   for_rows(box.height, [&](Rows rows) {
-    for (int y = rows.first; y < rows.last; ++y) split_row(origins, picture, box, y);
+    Image<std::uint8_t>& values = values_[rows.band];
+    values.resize(box.width + reach + padding, 3, 0);
+    for (int y = rows.first; y < rows.last; ++y) split_row(origins, picture, box, y, values);
   });
   for_rows(box.height, [&](Rows rows) {
     for (int y = rows.first; y < rows.last; ++y) guide_row(y, box.width);
@@ -283,7 +285,6 @@ void ColorSmoothing::begin(const Rect& box) {
   const int height = box.height + 2 * reach;
   seen_.resize(width, height);
   for (int c = 0; c < 3; ++c) {
-    values_[c].resize(width, height);
     words_[c].resize(width, height);
     row_means_[c].resize(width, height);
     guide_[c].resize(width, height);
@@ -298,7 +299,7 @@ void ColorSmoothing::begin(const Rect& box) {
 }
 
 void ColorSmoothing::split_row(const Mask& origins, const Image<Bgr>& picture, const Rect& box,
-                               int y) {
+                               int y, Image<std::uint8_t>& values) {
   const int width = box.width;
   const std::uint8_t* const origin = origins.row(box.y + y) + box.x;
   std::uint8_t* const seen = seen_.row(y + reach) + reach;
@@ -309,7 +310,7 @@ void ColorSmoothing::split_row(const Mask& origins, const Image<Bgr>& picture, c
   std::uint8_t* channels[3];
   std::int16_t* words[3];
   for (int c = 0; c < 3; ++c) {
-    channels[c] = values_[c].row(y + reach) + reach;
+    channels[c] = values.row(c) + reach;
     words[c] = words_[c].row(y + reach) + reach;
   }
   HWY_DYNAMIC_DISPATCH(SplitChannels)

@@ -52,7 +52,9 @@ class ColorSmoothing {
 
  private:
   void begin(const Rect& box);
-  void split_row(const Mask& origins, const Image<Bgr>& picture, const Rect& box, int y);
+  /// values: scratch for the channels.
+  void split_row(const Mask& origins, const Image<Bgr>& picture, const Rect& box, int y,
+                 Image<std::uint8_t>& values);
   void guide_row(int y, int width);
   /// The weights of some rows' later neighbours.
   using Weights = Image<std::uint8_t>;
@@ -64,10 +66,10 @@ class ColorSmoothing {
 
   // These cover the box, and `reach` pixels and a few more around it.
   Mask seen_;                               ///< 255 or 0
-  Image<std::uint8_t> values_[3];           ///< channels
-  Image<std::int16_t> words_[3];            ///< likewise
+  Image<std::int16_t> words_[3];            ///< channels
   Image<std::uint8_t> row_means_[3];        ///< with the neighbours to the left and right
   Image<std::uint8_t> guide_[3];            ///< and above and below
+  Image<std::uint8_t> values_[most_bands];  ///< of a row of each band
   Weights weights_[most_bands][reach + 1];  ///< of the last rows of each band
 };
 

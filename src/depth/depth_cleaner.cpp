@@ -76,16 +76,13 @@ void DepthCleaner::remove_hidden(const DepthPart& part, float threshold_m,
 /// the part ends, which another machine may choose otherwise.
 void DepthCleaner::smooth(ImageView<std::uint16_t> depth, const DepthPart& part,
                           bool without_flying, Image<std::uint16_t>& cleaned) {
-  smooth_.resize(depth.width(), depth.height());
+  given_.resize(depth.width(), depth.height());
   around_.grow_from(part, DepthSmoothing::reach, depth.bounds());
   for_each_row(around_, depth.bounds(), [&](int y, const DepthPart::Columns& columns) {
-    std::copy_n(depth.row(y) + columns.first, columns.count(), smooth_.row(y) + columns.first);
+    std::copy_n(depth.row(y) + columns.first, columns.count(), given_.row(y) + columns.first);
   });
-  if (without_flying) remove_flying(depth, around_, smooth_);
-  smoothing_.smooth(depth, part, smooth_);
-  for_each_row(part, depth.bounds(), [&](int y, const DepthPart::Columns& columns) {
-    std::copy_n(smooth_.row(y) + columns.first, columns.count(), cleaned.row(y) + columns.first);
-  });
+  if (without_flying) remove_flying(depth, around_, given_);
+  smoothing_.smooth(depth, given_, part, cleaned);
 }
 
 depth_rows::Row DepthCleaner::row(ImageView<std::uint16_t> depth, int y,

@@ -49,7 +49,7 @@ class DepthCleaner {
   Scratch scratch_[most_bands];
   DepthSmoothing smoothing_;
   DepthPart around_;
-  Image<std::uint16_t> smooth_;
+  Image<std::uint16_t> given_;  ///< to be smoothed
   EdgeSnapping edge_snapping_;
 };
 

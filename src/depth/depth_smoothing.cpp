@@ -24,25 +24,22 @@ Columns windows_around(const Columns& columns, const Rect& middles) {
               middles.right());
 }
 
-/// Calls visit(y, band, columns around the row) for rows of a part and those around it.
-template <class Visit>
-void for_rows_around(const DepthPart& part, const Rect& middles, const Visit& visit) {
-  const Rect bounds = intersect(grow(part.bounds(), window_reach), middles);
-  for_rows(bounds.height, [&](Rows rows) {
-    for (int y = bounds.y + rows.first; y < bounds.y + rows.last; ++y) {
-      const Columns columns = part.columns_between(y - window_reach, y + window_reach + 1);
-      if (columns.count() > 0) visit(y, rows.band, columns);
-    }
-  });
+/// The middles of windows that do not reach beyond the image.
+template <class Image>
+Rect middles_of(const Image& depth) {
+  return grow(depth.bounds(), -window_reach);
 }
 
 }  // namespace
 
-plane_windows::Planes DepthSmoothing::planes(int y, int x) {
-  return {depth_.row(y) + x, slope_x_.row(y) + x, slope_y_.row(y) + x, variance_.row(y) + x};
+plane_windows::Planes DepthSmoothing::Scratch::planes_at(int y, int x) {
+  const int row = y % plane_windows::side;
+  return {planes[0].row(row) + x, planes[1].row(row) + x, planes[2].row(row) + x,
+          planes[3].row(row) + x};
 }
-plane_windows::Sums DepthSmoothing::sums(int y, int x) {
-  return {variance_.row(y) + x, depth_.row(y) + x, slope_y_.row(y) + x};
+plane_windows::Sums DepthSmoothing::Scratch::sums_at(int y, int x) {
+  const plane_windows::Planes there = planes_at(y, x);
+  return {there.variance, there.depth, there.slope_y};
 }
 
 /// The median of the windows' variances; 0 if there is no window. Of all of the image, whatever
@@ -51,9 +48,11 @@ float DepthSmoothing::usual_variance(ImageView<std::uint16_t> measured) {
   const int windows = measured.width() - 2 * window_reach;
   const auto pitch = measured.stride() / std::ptrdiff_t{sizeof(std::uint16_t)};
   samples_.clear();
+  float* const scratch = scratch_[0].row.data();
+  const plane_windows::Planes row_planes{scratch, scratch + windows, scratch + 2 * windows,
+                                         scratch + 3 * windows};
   for (int y = window_reach; y < measured.height() - window_reach; y += sampled_rows) {
     const std::uint16_t* const row = measured.row(y) + window_reach;
-    const plane_windows::Planes row_planes = planes(y, window_reach);
     plane_windows::fit({row, pitch, windows, unit_m_, {}}, row_planes, scratch_[0].columns.data());
     for (int x = 0; x < windows; x += sampled_columns) {
       if (row[x] != 0) samples_.push_back(row_planes.variance[x]);
@@ -65,45 +64,56 @@ float DepthSmoothing::usual_variance(ImageView<std::uint16_t> measured) {
   return *middle;
 }
 
-void DepthSmoothing::smooth(ImageView<std::uint16_t> measured, const DepthPart& part,
-                            Image<std::uint16_t>& depth) {
-  const int width = depth.width();
-  for (Image<float>* image : {&depth_, &slope_x_, &slope_y_, &variance_}) {
-    image->resize(width, depth.height());
-  }
-  // Of windows that do not reach beyond the image.
-  const Rect middles{window_reach, window_reach, width - 2 * window_reach,
-                     depth.height() - 2 * window_reach};
-  if (middles.width <= 0 || middles.height <= 0) return;
-  for (Scratch& scratch : scratch_) {
-    scratch.columns.resize(3 * static_cast<std::size_t>(width));
-    scratch.row.resize(4 * static_cast<std::size_t>(width + 2 * window_reach));
-  }
-  const float variance = usual_variance(measured);
-  if (variance <= 0) return;
-  for_rows_around(part, middles, [&](int y, int band, const Columns& around) {
+/// Rows of the part's bounds. A row's planes are kept until all rows that they reach are done.
+void DepthSmoothing::smooth_band(const Image<std::uint16_t>& given, const DepthPart& part,
+                                 Rows rows, float half_variance, Image<std::uint16_t>& smoothed) {
+  Scratch& scratch = scratch_[static_cast<std::size_t>(rows.band)];
+  const Rect middles = middles_of(given);
+  const auto add_windows = [&](int y) {
+    const Columns around = part.columns_between(y - window_reach, y + window_reach + 1);
     const Columns columns = windows_around(around, middles);
+    if (around.count() <= 0 || columns.count() <= 0) return;
+    plane_windows::fit({given.row(y) + columns.first, given.width(), columns.count(), unit_m_, {}},
+                       scratch.planes_at(y, columns.first), scratch.columns.data());
+    plane_windows::add_up(
+        {scratch.planes_at(y, columns.first), columns.first - around.first, columns.count()},
+        half_variance, around.count(), scratch.sums_at(y, around.first), scratch.row.data());
+  };
+  const auto mix = [&](int y) {
+    const Columns& columns = part.columns(y);
     if (columns.count() <= 0) return;
-    plane_windows::fit({depth.row(y) + columns.first, width, columns.count(), unit_m_, {}},
-                       planes(y, columns.first),
-                       scratch_[static_cast<std::size_t>(band)].columns.data());
-  });
-  for_rows_around(part, middles, [&](int y, int band, const Columns& around) {
-    const Columns columns = windows_around(around, middles);
-    if (columns.count() <= 0) return;
-    plane_windows::add_up({planes(y, columns.first), columns.first - around.first, columns.count()},
-                          much * variance, around.count(), sums(y, around.first),
-                          scratch_[static_cast<std::size_t>(band)].row.data());
-  });
-  for_each_row(part, depth.bounds(), [&](int y, const Columns& columns) {
     plane_windows::Around around{};
     const int first = std::max(y - window_reach, middles.y);
     around.first = first - y;
     for (int row = first; row <= std::min(y + window_reach, middles.bottom() - 1); ++row) {
-      around.rows[static_cast<std::size_t>(around.count++)] = sums(row, columns.first);
+      around.rows[static_cast<std::size_t>(around.count++)] = scratch.sums_at(row, columns.first);
     }
-    plane_windows::mix(around, columns.count(), depth.row(y) + columns.first);
+    plane_windows::mix(around, columns.count(), smoothed.row(y) + columns.first);
+  };
+  const int begin = part.bounds().y + rows.first;
+  const int end = part.bounds().y + rows.last;
+  for (int y = begin - window_reach; y < end + window_reach; ++y) {
+    if (y >= middles.y && y < middles.bottom()) add_windows(y);
+    if (y - window_reach >= begin) mix(y - window_reach);
+  }
+}
+
+void DepthSmoothing::smooth(ImageView<std::uint16_t> measured, const Image<std::uint16_t>& given,
+                            const DepthPart& part, Image<std::uint16_t>& smoothed) {
+  for_each_row(part, given.bounds(), [&](int y, const Columns& columns) {
+    std::copy_n(given.row(y) + columns.first, columns.count(), smoothed.row(y) + columns.first);
   });
+  if (middles_of(given).empty()) return;
+  const int width = given.width();
+  for (Scratch& scratch : scratch_) {
+    scratch.columns.resize(3 * static_cast<std::size_t>(width));
+    scratch.row.resize(4 * static_cast<std::size_t>(width + 2 * window_reach));
+    for (Image<float>& plane : scratch.planes) plane.resize(width, plane_windows::side);
+  }
+  const float variance = usual_variance(measured);
+  if (variance <= 0) return;
+  for_rows(part.bounds().height,
+           [&](Rows rows) { smooth_band(given, part, rows, much * variance, smoothed); });
 }
 
 }  // namespace diminish

@@ -24,23 +24,29 @@ class DepthSmoothing {
   /// What a pixel becomes depends on pixels so far away.
   static constexpr int reach = 2 * plane_windows::reach;
 
-  /// measured: what the noise is measured in. Changes `part` of `depth`, of the same size. Where no
-  /// window fits, and where there is no depth (0), all stays. Cost: 2 ns per pixel of the part.
-  void smooth(ImageView<std::uint16_t> measured, const DepthPart& part,
-              Image<std::uint16_t>& depth);
+  /// measured: what the noise is measured in. given: what is smoothed, of the same size, around
+  /// `part`, too. Writes the part of `smoothed`. Where no window fits, and where there is no depth
+  /// (0), all stays. Cost: 2 ns per pixel of the part.
+  void smooth(ImageView<std::uint16_t> measured, const Image<std::uint16_t>& given,
+              const DepthPart& part, Image<std::uint16_t>& smoothed);
 
  private:
+  /// Of a band of rows.
   struct Scratch {
     std::vector<double> columns;
     std::vector<float> row;
+    /// The last rows' planes, in columns of the image; then the sums that take the place of depths,
+    /// slopes along columns and variances.
+    std::array<Image<float>, 4> planes;
+
+    plane_windows::Planes planes_at(int y, int x);
+    plane_windows::Sums sums_at(int y, int x);
   };
-  plane_windows::Planes planes(int y, int x);
-  plane_windows::Sums sums(int y, int x);
   float usual_variance(ImageView<std::uint16_t> measured);
+  void smooth_band(const Image<std::uint16_t>& given, const DepthPart& part, Rows rows,
+                   float half_variance, Image<std::uint16_t>& smoothed);
 
   float unit_m_;
-  // Sums take the place of the depths, slopes along columns and variances that they come from.
-  Image<float> depth_, slope_x_, slope_y_, variance_;
   std::vector<float> samples_;
   std::array<Scratch, most_bands> scratch_;
 };

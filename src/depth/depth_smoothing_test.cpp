@@ -30,7 +30,7 @@ Image<std::uint16_t> measured(double step, double noise) {
 }
 Image<std::uint16_t> smoothed(const Image<std::uint16_t>& depth) {
   Image<std::uint16_t> result = depth;
-  DepthSmoothing(0.001F).smooth(depth, depth.bounds(), result);
+  DepthSmoothing(0.001F).smooth(depth, depth, depth.bounds(), result);
   return result;
 }
 
@@ -89,7 +89,7 @@ TEST(DepthSmoothing, PartsAreLikeTheWhole) {
   part.begin(8);
   for (int y = 0; y < height; y += 8) part.add_band({y / 2, width - y / 4}, y + 8);
   Image<std::uint16_t> result = depth;
-  DepthSmoothing(0.001F).smooth(depth, part, result);
+  DepthSmoothing(0.001F).smooth(depth, depth, part, result);
   for (int y = 0; y < height; ++y) {
     const DepthPart::Columns& columns = part.columns(y);
     for (int x = 0; x < width; ++x) {
