@@ -22,6 +22,30 @@ Rect coarser_box(const Rect& box) {
   return {x, y, ((box.right() + 1) >> 1) - x, ((box.bottom() + 1) >> 1) - y};
 }
 
+// Of rows, by value, so that the loops are vectorised.
+
+using Kind = SmoothFilling::Kind;
+constexpr Kind open = SmoothFilling::open;
+
+/// Which cells are not open, but beside one that is.
+void find_beside(const Kind* above, const Kind* here, const Kind* below, int width, Kind* beside) {
+  beside[0] = here[1] & open;
+  beside[width - 1] = here[width - 2] & open;
+  for (int x = 1; x < width - 1; ++x) {
+    beside[x] = (above[x] | below[x] | here[x - 1] | here[x + 1]) & ~here[x] & open;
+  }
+}
+/// What is known elsewhere does not matter.
+void leave_out_others(const Kind* kinds, const Kind* beside, int width, Kind* left) {
+  for (int x = 0; x < width; ++x) left[x] = kinds[x] & static_cast<Kind>(open | (beside[x] << 1));
+}
+void find_greater(const Kind* a, const Kind* b, int count, Kind* greater) {
+  for (int x = 0; x < count; ++x) greater[x] = std::max(a[x], b[x]);
+}
+void find_greater_of_pairs(const Kind* pairs, int count, Kind* greater) {
+  for (std::ptrdiff_t x = 0; x < count; ++x) greater[x] = std::max(pairs[2 * x], pairs[2 * x + 1]);
+}
+
 }  // namespace
 
 void SmoothFilling::Grid::begin(const Rect& open_box) {
@@ -61,16 +85,9 @@ void SmoothFilling::Grid::find_known() {
     // In the rim, its own row does for the one beyond: neither holds an open cell.
     const Kind* const above = kinds.row(std::max(y - 1, 0));
     const Kind* const below = kinds.row(std::min(y + 1, height - 1));
-    const Kind* const here = kinds.row(y);
     Kind* const next = next_kinds.row(y);
-    beside[0] = here[1] & open;
-    beside[width - 1] = here[width - 2] & open;
-    for (int x = 1; x < width - 1; ++x) {
-      beside[x] = (above[x] | below[x] | here[x - 1] | here[x + 1]) & ~here[x] & open;
-    }
-    for (int x = 0; x < width; ++x) {
-      next[x] = here[x] & static_cast<Kind>(open | (beside[x] << 1));
-    }
+    find_beside(above, kinds.row(y), below, width, beside);
+    leave_out_others(kinds.row(y), beside, width, next);
     Color* const row_colors = colors.row(y);
     for_each_set(beside, width, [&](int x) {
       if (next[x] == SmoothFilling::known) {
@@ -115,8 +132,8 @@ void SmoothFilling::Grid::coarsen(const Grid& fine) {
       }
       const Kind* const upper = fine.kinds.row(std::max(first_row, 0));
       const Kind* const lower = fine.kinds.row(std::min(first_row + 1, last));
-      for (int x = 0; x < fine_width; ++x) both[x] = std::max(upper[x], lower[x]);
-      for (std::ptrdiff_t x = 0; x < width; ++x) here[x] = std::max(pairs[2 * x], pairs[2 * x + 1]);
+      find_greater(upper, lower, fine_width, both);
+      find_greater_of_pairs(pairs, width, here);
     }
   });
   find_open();

@@ -46,6 +46,19 @@ const BackgroundPlane* find_support(const std::vector<BackgroundPlane>& planes) 
   return best;
 }
 
+/// The nearest of all sides, whichever thread comes first.
+void lower_to(float z_m, float& side_m, std::uint8_t& label) {
+  const std::atomic_ref<float> side(side_m);
+  float before = side.load(std::memory_order_relaxed);
+  if (before != 0 && before <= z_m) return;
+  if (before == 0) {
+    std::atomic_ref<std::uint8_t>(label).store(surface_label::standing, std::memory_order_relaxed);
+  }
+  while ((before == 0 || z_m < before) &&
+         !side.compare_exchange_weak(before, z_m, std::memory_order_relaxed)) {
+  }
+}
+
 }  // namespace
 
 /// What a frame looks like.
@@ -148,18 +161,6 @@ bool StandingThings::is_top(const View& view, int x, int y) const {
   };
   return any([&](int rows) { return is_level(x, y + rows); }) &&
          any([&](int columns) { return is_level(x + columns, y); });
-}
-
-/// The nearest of all sides, whichever thread comes first.
-void lower_to(float z_m, float& side_m, std::uint8_t& label) {
-  const std::atomic_ref<float> side(side_m);
-  float before = side.load(std::memory_order_relaxed);
-  if (before == 0) {
-    std::atomic_ref<std::uint8_t>(label).store(surface_label::standing, std::memory_order_relaxed);
-  }
-  while ((before == 0 || z_m < before) &&
-         !side.compare_exchange_weak(before, z_m, std::memory_order_relaxed)) {
-  }
 }
 
 /// Labels what is below a pixel of a top's edge.
