@@ -126,12 +126,12 @@ bool exclude_each_other(const BarViews& views, const Bar& bar, const Bar& other)
 
 }  // namespace
 
-void BarSearch::judge(const Input& input, const RimLine& a, const RimLine& b,
-                      std::vector<Bar>& found) {
-  const BarViews& views = input.views;
+/// What two lines are the edges of, if they lie like those of a bar.
+std::optional<BarSearch::Pair> BarSearch::pair_of(const Input& input, const RimLine& a,
+                                                  const RimLine& b) {
   const Eigen::Vector2f between = b.entry - a.entry;
   if (std::abs(a.outward.dot(b.outward)) < least_parallel || a.outward.dot(b.outward) < 0) {
-    return;
+    return std::nullopt;
   }
   Bar bar;
   bar.inward = -(weight(a) * a.outward + weight(b) * b.outward).normalized();
@@ -139,20 +139,23 @@ void BarSearch::judge(const Input& input, const RimLine& a, const RimLine& b,
   const float apart = bar.inward.dot(between);
   if (bar.width_px < narrowest_px || bar.width_px > widest_px ||
       std::abs(apart) > farthest_apart_px) {
-    return;
+    return std::nullopt;
   }
   bar.entry = (a.entry + b.entry) / 2 - std::abs(apart) / 2 * bar.inward;
   int steps = 0;
   while (!is_hidden(input.occlusion, bar.at(1, 0))) {
-    if (++steps > static_cast<int>(farthest_apart_px)) return;
+    if (++steps > static_cast<int>(farthest_apart_px)) return std::nullopt;
     bar.entry += bar.inward;
   }
   const BackgroundPlane* const behind = plane_behind(input, bar);
-  if (behind == nullptr) return;
-
+  if (behind == nullptr) return std::nullopt;
   const auto outside = static_cast<float>(std::min({outside_px, a.length, b.length}));
-  const float end = std::max(std::abs(apart), depth_inside(input.occlusion, bar));
-  const BarHole hole(views, bar, -outside, end);
+  return Pair{bar, -outside, std::max(std::abs(apart), depth_inside(input.occlusion, bar)), behind};
+}
+
+void BarSearch::judge(const Input& input, const Pair& pair, std::vector<Bar>& found) {
+  const auto& [bar, outer_end, inner_end, behind] = pair;
+  const BarHole hole(input.views, bar, outer_end, inner_end);
   std::optional<BarEdges> edges;  ///< of few that may be bars
   std::array<float, distances> margins{};
   for (int i = 0; i < distances; ++i) {
@@ -176,7 +179,7 @@ void BarSearch::judge(const Input& input, const RimLine& a, const RimLine& b,
     }
     begin = last;
     // Where exactly: as the RGB-D camera's picture shows its edges.
-    if (!edges) edges.emplace(views, bar, -outside, end);
+    if (!edges) edges.emplace(input.views, bar, outer_end, inner_end);
     float contrast = 0;
     Bar placed = bar;
     for (int i = -refined_steps; i <= refined_steps; ++i) {
@@ -197,16 +200,20 @@ void BarSearch::judge(const Input& input, const RimLine& a, const RimLine& b,
 void BarSearch::find(const Input& input) {
   found_.clear();
   bars_.clear();
-  const std::size_t lines = input.lines.size();
-  if (found_by_line_.size() < lines) found_by_line_.resize(lines);
-  for_tasks(lines, [&](std::size_t i) {
-    found_by_line_[i].clear();
-    for (std::size_t k = i + 1; k < lines; ++k) {
-      judge(input, input.lines[i], input.lines[k], found_by_line_[i]);
+  pairs_.clear();
+  for (std::size_t i = 0; i < input.lines.size(); ++i) {
+    for (std::size_t k = i + 1; k < input.lines.size(); ++k) {
+      const auto pair = pair_of(input, input.lines[i], input.lines[k]);
+      if (pair) pairs_.push_back(*pair);
     }
+  }
+  if (found_by_pair_.size() < pairs_.size()) found_by_pair_.resize(pairs_.size());
+  for_tasks(pairs_.size(), [&](std::size_t i) {
+    found_by_pair_[i].clear();
+    judge(input, pairs_[i], found_by_pair_[i]);
   });
-  for (std::size_t i = 0; i < lines; ++i) {
-    found_.insert(found_.end(), found_by_line_[i].begin(), found_by_line_[i].end());
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    found_.insert(found_.end(), found_by_pair_[i].begin(), found_by_pair_[i].end());
   }
   // Ends with what tells any two apart, so that the order does not depend on the library.
   std::sort(found_.begin(), found_.end(), [](const Bar& a, const Bar& b) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -28,11 +29,17 @@ class BarSearch {
   void clear() { bars_.clear(); }
 
  private:
+  struct Pair {
+    Bar bar;                     ///< at no distance yet
+    float outer_end, inner_end;  ///< what is looked at, along it
+    const BackgroundPlane* behind;
+  };
+  static std::optional<Pair> pair_of(const Input& input, const RimLine& a, const RimLine& b);
   /// Adds what the pair may be to `found`.
-  static void judge(const Input& input, const RimLine& a, const RimLine& b,
-                    std::vector<Bar>& found);
+  static void judge(const Input& input, const Pair& pair, std::vector<Bar>& found);
 
-  std::vector<std::vector<Bar>> found_by_line_;  ///< by the pair's first line
+  std::vector<Pair> pairs_;
+  std::vector<std::vector<Bar>> found_by_pair_;  ///< there may be more
   std::vector<Bar> found_, bars_;
 };
 

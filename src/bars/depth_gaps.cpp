@@ -30,7 +30,7 @@ constexpr float confirmed_error = 15;
 constexpr float not_looked_at = -1;
 
 /// Rows of nodes.
-constexpr int node_rows_together = 12;
+constexpr int node_rows_together = 4;
 
 }  // namespace
 

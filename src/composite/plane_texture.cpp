@@ -36,6 +36,7 @@ constexpr float strength = 0.7F;
 constexpr int segment = 16;
 /// For differences of places on the plane, bricks.
 constexpr float step = 0.5F;
+constexpr int rows_at_once = 32;
 
 std::uint32_t scramble(std::uint32_t value) {
   value = (value ^ (value >> 16)) * 0x7feb352dU;
@@ -79,8 +80,9 @@ void PlaneTexture::find(const Inputs& inputs, const DiminishedFrame& result) {
 void PlaneTexture::add(const Inputs& inputs, DiminishedFrame& result) {
   for (std::size_t k = 0; k < found_; ++k) {
     Grain& grain = grains_[k];
-    for (const Brick& brick : grain.bricks) make_tile(brick, inputs, result.picture, grain);
-    for_rows(part_.height, [&](Rows rows) { add_rows(grain, rows, result); });
+    for (const Brick& brick : grain.bricks) make_tile(brick, result.picture, grain);
+    grain.example.find_grain(inputs.camera);
+    for_row_groups(part_.height, rows_at_once, [&](Rows rows) { add_rows(grain, rows, result); });
   }
 }
 
@@ -273,8 +275,7 @@ const PlaneTexture::Block* PlaneTexture::choose(const Grain& grain, Brick brick,
   return best;
 }
 
-void PlaneTexture::make_tile(Brick brick, const Inputs& inputs, const Image<Bgr>& picture,
-                             Grain& grain) const {
+void PlaneTexture::make_tile(Brick brick, const Image<Bgr>& picture, Grain& grain) const {
   const Axes& axes = grain.axes;
   const float a = static_cast<float>(brick.i) + 0.5F - row_shift(brick.j);
   const float b = static_cast<float>(brick.j) + 0.5F;
@@ -303,8 +304,7 @@ void PlaneTexture::make_tile(Brick brick, const Inputs& inputs, const Image<Bgr>
       shown_sides.cwiseAbs().rowwise().sum() / 2 + Eigen::Vector2f::Ones();
   const Pixel corner = nearest_pixel(*shown - reach);
   const Pixel end = nearest_pixel(*shown + reach);
-  grain.example.prepare(inputs.camera,
-                        {corner.x, corner.y, end.x - corner.x + 1, end.y - corner.y + 1});
+  grain.example.want_grain({corner.x, corner.y, end.x - corner.x + 1, end.y - corner.y + 1});
 }
 
 /// Rows of the part.

@@ -95,7 +95,7 @@ class PlaneTexture {
   void add_block(int i, int j, Grain& grain) const;
   static const Block* choose(const Grain& grain, Brick brick, const Eigen::Array3f& color,
                              float area_px);
-  void make_tile(Brick brick, const Inputs& inputs, const Image<Bgr>& picture, Grain& grain) const;
+  void make_tile(Brick brick, const Image<Bgr>& picture, Grain& grain) const;
   void add_rows(const Grain& grain, Rows rows, DiminishedFrame& result) const;
   void add_run(const Grain& grain, int first, int last, int y, Bgr* colors) const;
   static void add_tile(const Grain& grain, const Tile& tile, int first, int last, int y,

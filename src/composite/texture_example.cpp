@@ -7,6 +7,7 @@
 #include "core/channels.h"
 #include "core/quick_brightness.h"
 #include "core/robust.h"
+#include "core/rows.h"
 
 namespace diminish {
 namespace {
@@ -19,6 +20,7 @@ constexpr int sample_step = 4;
 constexpr int clearance = 1;
 /// Fewer cells have no typical contrast.
 constexpr std::size_t fewest_for_median = 4;
+constexpr int cell_rows_at_once = 4;
 
 }  // namespace
 
@@ -114,17 +116,25 @@ void TextureExample::choose(ImageView<Bgr> camera) {
   for (Cell& chosen : cells_) chosen.is_example = chosen.is_example && chosen.contrast <= most;
 }
 
-void TextureExample::prepare(ImageView<Bgr> camera, const Rect& touched) {
+void TextureExample::want_grain(const Rect& touched) {
   const Rect inside = intersect(touched, part());
   if (inside.empty()) return;
   for (int row = inside.y / cell; row <= (inside.bottom() - 1) / cell; ++row) {
     for (int column = inside.x / cell; column <= (inside.right() - 1) / cell; ++column) {
       Cell& wanted = cells_(column - first_column_, row - first_row_);
-      if (!wanted.is_example || wanted.has_grain) continue;
-      find_grain(camera, column - first_column_, row - first_row_);
-      wanted.has_grain = true;
+      wanted.needs_grain = wanted.is_example;
     }
   }
+}
+
+void TextureExample::find_grain(ImageView<Bgr> camera) {
+  for_row_groups(cells_.height(), cell_rows_at_once, [&](Rows rows) {
+    for (int row = rows.first; row < rows.last; ++row) {
+      for (int column = 0; column < cells_.width(); ++column) {
+        if (cells_(column, row).needs_grain) find_grain(camera, column, row);
+      }
+    }
+  });
 }
 
 void TextureExample::find_grain(ImageView<Bgr> camera, int column, int row) {

@@ -36,9 +36,11 @@ class TextureExample {
   /// The mean colour of that cell.
   const Eigen::Array3f& mean(int x, int y) const { return at(x, y).mean; }
 
-  /// Computes the grain of all cells that a part of the picture touches. Cost: 1 us a cell.
-  void prepare(ImageView<Bgr> camera, const Rect& touched);
-  /// In sixteenths of a level; 0 in cells that are none or not prepared, and beyond the part. x, y:
+  /// The grain of all cells that a part of the picture touches will be needed.
+  void want_grain(const Rect& touched);
+  /// Computes what is needed. Cost: 1 us a cell.
+  void find_grain(ImageView<Bgr> camera);
+  /// In sixteenths of a level; 0 in cells that are none or not needed, and beyond the part. x, y:
   /// from the part's first pixel on.
   int grain(int x, int y) const { return grain_.bounds().contains(x, y) ? grain_(x, y) : 0; }
 
@@ -47,7 +49,7 @@ class TextureExample {
     Eigen::Array3f mean = Eigen::Array3f::Zero();
     float contrast = 0;
     bool on_plane = false, off_plane = false, has_object = false;
-    bool is_example = false, has_grain = false;
+    bool is_example = false, needs_grain = false;
   };
   Cell& at(int x, int y) { return cells_(x / cell - first_column_, y / cell - first_row_); }
   const Cell& at(int x, int y) const {
