@@ -48,30 +48,37 @@ auto MemoryStage::in_turn(const Work& work) {
   return work();
 }
 
-void MemoryStage::recall(const RecallInputs& inputs, const SceneSamples& samples,
-                         const std::vector<OccluderReport>& objects,
-                         const std::function<void()>& sample, MemoryReport& report) {
+void MemoryStage::recall(const RecallInputs& inputs) {
   recalled_ = 0;
   anchor(inputs.poses, poses_);
   if (!poses_.color_from_world) return;
+  turn_.wait(shared_->turns);
+  if (!shared_->memory) shared_->memory.emplace(shared_->rig);
+  const bool is_anchored = !inputs.poses.color_from_world;
+  recalled_ = shared_->memory->recall(with_poses(inputs, poses_), is_anchored, recollections_);
+}
+
+void MemoryStage::learn(const RecallInputs& inputs, const SceneSamples& samples,
+                        const std::vector<OccluderReport>& objects,
+                        const std::function<void()>& sample, MemoryReport& report) {
+  if (!poses_.color_from_world) return;
   const RecallInputs anchored_inputs = with_poses(inputs, poses_);
-  recalled_ = in_turn([&] {
-    if (!shared_->memory) shared_->memory.emplace(shared_->rig);
-    SceneMemory& memory = *shared_->memory;
-    const bool is_anchored = !inputs.poses.color_from_world;
-    const std::size_t recalled = memory.recall(anchored_inputs, is_anchored, recollections_);
+  const auto learn_now = [&] {
     const auto sample_and_anchor = [&] {
       sample();
       anchor(inputs.poses, poses_);
     };
     std::function<void()> sample_first;
     if (sample) sample_first = std::ref(sample_and_anchor);
+    SceneMemory& memory = *shared_->memory;
     memory.learn(anchored_inputs, samples, objects, sample_first);
     report.keyframes = memory.keyframes();
     report.bytes = memory.bytes();
-    return recalled;
+    turn_.end();
+  };
+  do_all(learn_now, [&] {
+    for_tasks(recalled_, [&](std::size_t i) { recollections_[i].draw(anchored_inputs); });
   });
-  for_tasks(recalled_, [&](std::size_t i) { recollections_[i].draw(anchored_inputs); });
 }
 
 void MemoryStage::merge(const RecallInputs& inputs, ColorMapsBySource color_maps,

@@ -25,13 +25,14 @@ class MemoryStage {
   /// Does nothing if there is none.
   void end_turn() { turn_.end(); }
 
-  /// Recalls and learns when it is this frame's turn, and ends it. Then draws what it recalls, at
-  /// the same time as other frames. samples, objects: of this frame, to learn from. sample: makes
-  /// the samples and refines inputs.poses; called if this frame is learnt from. Empty: that is
-  /// done. report: comes empty.
-  void recall(const RecallInputs& inputs, const SceneSamples& samples,
-              const std::vector<OccluderReport>& objects, const std::function<void()>& sample,
-              MemoryReport& report);
+  /// Waits for this frame's turn and recalls.
+  void recall(const RecallInputs& inputs);
+  /// Then learns and ends the turn; at the same time draws what was recalled. inputs: as in
+  /// recall(). samples, objects: of this frame. sample: makes the samples and refines inputs.poses;
+  /// called if this frame is learnt from. Empty: that is done. report: comes empty.
+  void learn(const RecallInputs& inputs, const SceneSamples& samples,
+             const std::vector<OccluderReport>& objects, const std::function<void()>& sample,
+             MemoryReport& report);
   /// Stage::merging. inputs: as in recall(). color_maps: of the RGB-D cameras.
   void merge(const RecallInputs& inputs, ColorMapsBySource color_maps,
              Reconstruction& reconstruction, MemoryReport& report);

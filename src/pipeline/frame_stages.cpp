@@ -238,6 +238,11 @@ void FrameStages::process(const FrameSet& given, DiminishedFrame& result) {
   };
   const auto recall = [&] {
     stage(Stage::memory, [&] {
+      if (methods.remembers) memory.recall(recalling);
+    });
+  };
+  const auto remember = [&] {
+    stage(Stage::memory, [&] {
       if (!methods.remembers) return;
       // Where nothing is drawn, depth is estimated and samples are taken only for a keyframe.
       const auto sample_now = [&] {
@@ -248,7 +253,7 @@ void FrameStages::process(const FrameSet& given, DiminishedFrame& result) {
       // Held by reference, it allocates nothing.
       std::function<void()> sample_later;
       if (!looks) sample_later = std::ref(sample_now);
-      memory.recall(recalling, samples, report.occluders, sample_later, report.memory);
+      memory.learn(recalling, samples, report.occluders, sample_later, report.memory);
     });
   };
   const auto prepare = [&] {
@@ -269,8 +274,12 @@ void FrameStages::process(const FrameSet& given, DiminishedFrame& result) {
         });
   }
   const auto judge_and_recall = [&] {
-    if (looks) judge();
-    recall();
+    do_all(
+        [&] {
+          if (looks) judge();
+        },
+        recall);
+    remember();  // what is in doubt is not learnt from
   };
   narrow_region();
   // Nobody may read the masks meanwhile.
