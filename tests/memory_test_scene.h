@@ -94,7 +94,8 @@ class MemoryTest : public ::testing::Test {
     if (moment.is_lost) report.message = "board: not found";
     const RecallInputs inputs{now.frame, now.poses,         masks, moment.object, region,
                               options,   moment.is_in_doubt};
-    memory.recall(inputs, samples, {report}, nullptr, memory_report = {});
+    memory.recall(inputs);
+    memory.learn(inputs, samples, {report}, nullptr, memory_report = {});
     memory.merge(inputs, maps, result, memory_report);
     return result;
   }

@@ -27,6 +27,19 @@ TEST(Rows, BandsHoldEveryRowOnce) {
   }
 }
 
+TEST(Rows, GroupsHoldEveryRowOnce) {
+  for (const int height : {1, 4, 16}) {
+    for (int rows = 0; rows < 100; ++rows) {
+      std::vector<int> visits(static_cast<std::size_t>(rows), 0);
+      for_row_groups(rows, height, [&](Rows group) {
+        EXPECT_EQ(group.first, group.band * height);
+        for (int y = group.first; y < group.last; ++y) ++visits[static_cast<std::size_t>(y)];
+      });
+      EXPECT_EQ(visits, std::vector<int>(visits.size(), 1)) << rows;
+    }
+  }
+}
+
 TEST(Rows, FewRowsAreOneBand) {
   EXPECT_EQ(band_height(127), 127);
   EXPECT_EQ(band_height(128), 64);

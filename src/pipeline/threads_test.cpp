@@ -5,7 +5,9 @@
 #include <cstdlib>
 #include <filesystem>
 #include <future>
+#include <string>
 #include <thread>
+#include <tuple>
 
 #include "diminish/frame_source.h"
 #include "diminish/pipeline.h"
@@ -50,19 +52,24 @@ TEST(PipelineThreads, AreThoseOfTheCallersArena) {
   EXPECT_EXIT(std::_Exit(threads_started_in_arena_of(2)), ::testing::ExitedWithCode(1), "");
 }
 
-class ManyThreads : public ::testing::TestWithParam<const char*> {};
+/// A recording, and whether shadows are removed: then less is done at the same time.
+class ManyThreads : public ::testing::TestWithParam<std::tuple<const char*, bool>> {};
 INSTANTIATE_TEST_SUITE_P(Recordings, ManyThreads,
-                         ::testing::Values("calendar", "ball", "workbench"),
-                         [](const auto& test) { return std::string(test.param); });
+                         ::testing::Combine(::testing::Values("calendar", "ball", "workbench"),
+                                            ::testing::Bool()),
+                         [](const auto& test) {
+                           const auto& [name, remove_shadows] = test.param;
+                           return std::string(name) + (remove_shadows ? "_without_shadows" : "");
+                         });
 
 // More of them than there are cores, so that they are taken away from one another.
 TEST_P(ManyThreads, MakeTheSameBytes) {
   namespace tbb = oneapi::tbb;
   const tbb::global_control enough(tbb::global_control::max_allowed_parallelism, 16);
-  const Recording recording =
-      load_recording(std::filesystem::path(testing::recordings_dir()) / GetParam());
+  const auto& [name, remove_shadows] = GetParam();
+  const Recording recording = load_recording(testing::recordings / name);
   Options options;
-  options.remove_shadows = true;
+  options.remove_shadows = remove_shadows;
   FrameSet frame;
   ASSERT_TRUE(open_recording(recording, options)->next(frame));
   DiminishedFrame expected;
@@ -79,6 +86,7 @@ TEST_P(ManyThreads, MakeTheSameBytes) {
     EXPECT_EQ(result.mask, expected.mask) << threads;
     EXPECT_EQ(result.reconstruction.color, expected.reconstruction.color) << threads;
     EXPECT_EQ(result.reconstruction.depth_m, expected.reconstruction.depth_m) << threads;
+    EXPECT_EQ(result.surfaces.label, expected.surfaces.label) << threads;
     EXPECT_EQ(result.surfaces.light, expected.surfaces.light) << threads;
   }
 }
