@@ -58,8 +58,9 @@ INSTANTIATE_TEST_SUITE_P(Recordings, ManyThreads,
                          ::testing::Combine(::testing::Values("calendar", "ball", "workbench"),
                                             ::testing::Bool()),
                          [](const auto& test) {
-                           const auto& [name, remove_shadows] = test.param;
-                           return std::string(name) + (remove_shadows ? "_without_shadows" : "");
+                           const char* const how =
+                               std::get<1>(test.param) ? "_without_shadows" : "";
+                           return std::string(std::get<0>(test.param)) + how;
                          });
 
 // More of them than there are cores, so that they are taken away from one another.
