@@ -180,11 +180,12 @@ void SmoothRow(const SmoothedRow& row, int width, std::uint8_t* picture) {
       result[c] = hn::IfThenElse(is_seen, hn::DemoteTo(bytes, level), hn::DemoteTo(bytes, value));
     }
     if (x + lanes <= width) {
-      hn::StoreInterleaved3(result[0], result[1], result[2], bytes, &picture[3 * x]);
+      hn::StoreInterleaved3(result[0], result[1], result[2], bytes,
+                            picture + 3 * std::ptrdiff_t{x});
     } else {
       std::uint8_t last[3 * padding];
       hn::StoreInterleaved3(result[0], result[1], result[2], bytes, last);
-      std::copy_n(last, 3 * (width - x), &picture[3 * x]);
+      std::copy_n(last, 3 * (width - x), picture + 3 * std::ptrdiff_t{x});
     }
   }
 }
@@ -230,7 +231,7 @@ void SplitChannels(const std::uint8_t* pixels, int width, std::uint8_t* const* b
   int x = 0;
   for (; x + lanes <= width; x += lanes) {
     hn::Vec<Bytes> values[3];
-    hn::LoadInterleaved3(d, &pixels[3 * x], values[0], values[1], values[2]);
+    hn::LoadInterleaved3(d, pixels + 3 * std::ptrdiff_t{x}, values[0], values[1], values[2]);
     for (int c = 0; c < 3; ++c) {
       hn::StoreU(values[c], d, bytes[c] + x);
       hn::StoreU(hn::PromoteTo(Words(), values[c]), Words(), words[c] + x);

@@ -33,9 +33,9 @@ Rect middles_of(const Image& depth) {
 }  // namespace
 
 plane_windows::Planes DepthSmoothing::Scratch::planes_at(int y, int x) {
-  const int row = y % plane_windows::side;
-  return {planes[0].row(row) + x, planes[1].row(row) + x, planes[2].row(row) + x,
-          planes[3].row(row) + x};
+  const int kept = y % plane_windows::side;
+  return {planes[0].row(kept) + x, planes[1].row(kept) + x, planes[2].row(kept) + x,
+          planes[3].row(kept) + x};
 }
 plane_windows::Sums DepthSmoothing::Scratch::sums_at(int y, int x) {
   const plane_windows::Planes there = planes_at(y, x);
@@ -45,7 +45,7 @@ plane_windows::Sums DepthSmoothing::Scratch::sums_at(int y, int x) {
 /// The median of the windows' variances; 0 if there is no window. Of all of the image, whatever
 /// part of it is smoothed: another machine that smooths another part measures the same.
 float DepthSmoothing::usual_variance(ImageView<std::uint16_t> measured) {
-  const int windows = measured.width() - 2 * window_reach;
+  const std::ptrdiff_t windows = measured.width() - 2 * window_reach;
   const auto pitch = measured.stride() / std::ptrdiff_t{sizeof(std::uint16_t)};
   samples_.clear();
   float* const scratch = scratch_[0].row.data();
@@ -53,7 +53,8 @@ float DepthSmoothing::usual_variance(ImageView<std::uint16_t> measured) {
                                          scratch + 3 * windows};
   for (int y = window_reach; y < measured.height() - window_reach; y += sampled_rows) {
     const std::uint16_t* const row = measured.row(y) + window_reach;
-    plane_windows::fit({row, pitch, windows, unit_m_, {}}, row_planes, scratch_[0].columns.data());
+    plane_windows::fit({row, pitch, static_cast<int>(windows), unit_m_, {}}, row_planes,
+                       scratch_[0].columns.data());
     for (int x = 0; x < windows; x += sampled_columns) {
       if (row[x] != 0) samples_.push_back(row_planes.variance[x]);
     }

@@ -310,8 +310,7 @@ void StandingThings::find(const Input& input, const Surfaces& seen, Surfaces& su
   surfaces.standing_depth_m.resize(surfaces.label.width(), surfaces.label.height());
   surfaces.standing_depth_m.fill(view.part, 0);
   const Rect inner = intersect(view.part, grow(drawn, -1));
-  edges_.resize(
-      static_cast<std::size_t>(surfaces.label.height() / rows_together + 1));  // of any part
+  edges_.resize(static_cast<std::size_t>(surfaces.label.height() / rows_together) + 1);
   for_row_groups(inner.height, rows_together, [&](Rows rows) {
     std::vector<std::uint8_t>& edges = edges_[static_cast<std::size_t>(rows.band)];
     edges.resize(static_cast<std::size_t>(surfaces.label.width()));
