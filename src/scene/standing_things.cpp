@@ -50,12 +50,10 @@ const BackgroundPlane* find_support(const std::vector<BackgroundPlane>& planes) 
 void lower_to(float z_m, float& side_m, std::uint8_t& label) {
   const std::atomic_ref<float> side(side_m);
   float before = side.load(std::memory_order_relaxed);
-  if (before != 0 && before <= z_m) return;
-  if (before == 0) {
+  while (before == 0 || z_m < before) {
+    if (!side.compare_exchange_weak(before, z_m, std::memory_order_relaxed)) continue;
     std::atomic_ref<std::uint8_t>(label).store(surface_label::standing, std::memory_order_relaxed);
-  }
-  while ((before == 0 || z_m < before) &&
-         !side.compare_exchange_weak(before, z_m, std::memory_order_relaxed)) {
+    return;
   }
 }
 
