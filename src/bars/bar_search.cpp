@@ -36,6 +36,9 @@ constexpr float step_m = 0.005F;
 constexpr int distances = 29;  ///< so many steps
 constexpr float refined_step_m = 0.004F;
 constexpr int refined_steps = 3;  ///< to both sides
+/// Of one that is known, from where it was.
+constexpr float known_nearest_m = -0.01F;
+constexpr int known_distances = 5;
 
 /// The share of places without depth is this much larger on the bar than beside it.
 constexpr float least_share = 0.5F;
@@ -44,6 +47,11 @@ constexpr float plateau = 0.95F;  ///< of the largest share, where it is as good
 /// Both edges are seen in the RGB-D camera's picture, as grey levels.
 constexpr float least_contrast = 10;
 constexpr float most_contrast = 30;  ///< more do not make it surer
+
+// One that is known from an earlier frame may be less clear, and is preferred.
+constexpr float known_share = 0.35F;
+constexpr float known_contrast = 8;
+constexpr float known_gain = 1.2F;
 
 bool is_hidden(const Mask& occlusion, const Eigen::Vector2f& at) {
   const auto [x, y] = nearest_pixel(at);
@@ -71,10 +79,6 @@ const BackgroundPlane* plane_behind(const BarSearch::Input& input, const Bar& ba
   return *best == 0 ? nullptr : &input.planes[static_cast<std::size_t>(best - counts.begin())];
 }
 
-constexpr float distance_at(int i) {
-  return nearest_m + static_cast<float>(i) * step_m;
-}
-
 BackgroundPlane in_front(const BackgroundPlane& plane, float distance_m) {
   return {plane.normal, plane.distance_m + distance_m};
 }
@@ -96,9 +100,12 @@ bool goes_on(std::span<const RimLine> lines, const Bar& bar) {
   });
 }
 
-/// Whether both lie over each other in the user's picture, or hide the same from an RGB-D camera,
-/// which then has one hole for both.
+}  // namespace
+
 bool exclude_each_other(const BarViews& views, const Bar& bar, const Bar& other) {
+  // Bars that cross share one place only.
+  constexpr float crossing_cosine = 0.9F;
+  if (std::abs(bar.inward.dot(other.inward)) < crossing_cosine) return false;
   constexpr float places[] = {0, 20, 40, 60, 80};
   int overlaps = 0;
   for (const float along : places) {
@@ -124,7 +131,22 @@ bool exclude_each_other(const BarViews& views, const Bar& bar, const Bar& other)
   return false;
 }
 
-}  // namespace
+bool is_between(const Bar& bar, std::span<const Bar> others) {
+  constexpr float parallel = 0.99F;
+  constexpr float place_px = 20;    ///< along it, where they are compared
+  constexpr float touching_px = 3;  ///< from edge to edge
+  float left = 0;
+  float right = 0;
+  for (const Bar& other : others) {
+    if (std::abs(bar.inward.dot(other.inward)) < parallel) continue;
+    const float side = bar.side(other.at(other.along(bar.at(place_px, 0)), 0));
+    const float gap = std::abs(side) - (bar.width_px + other.width_px) / 2;
+    if (std::abs(gap) > touching_px) continue;
+    float& score = side < 0 ? left : right;
+    score = std::max(score, other.score);
+  }
+  return left > 0 && right > 0 && left + right > bar.score;
+}
 
 /// What two lines are the edges of, if they lie like those of a bar.
 std::optional<BarSearch::Pair> BarSearch::pair_of(const Input& input, const RimLine& a,
@@ -150,49 +172,56 @@ std::optional<BarSearch::Pair> BarSearch::pair_of(const Input& input, const RimL
   const BackgroundPlane* const behind = plane_behind(input, bar);
   if (behind == nullptr) return std::nullopt;
   const auto outside = static_cast<float>(std::min({outside_px, a.length, b.length}));
-  return Pair{bar, -outside, std::max(std::abs(apart), depth_inside(input.occlusion, bar)), behind};
+  return Pair{bar, -outside, std::max(std::abs(apart), depth_inside(input.occlusion, bar)),
+              *behind};
 }
 
 void BarSearch::judge(const Input& input, const Pair& pair, std::vector<Bar>& found) {
-  const auto& [bar, outer_end, inner_end, behind] = pair;
-  const BarHole hole(input.views, bar, outer_end, inner_end);
+  const Bar& bar = pair.bar;
+  const float first_m = pair.is_known ? known_nearest_m : nearest_m;
+  const float enough = pair.is_known ? known_share : least_share;
+  const auto distance_at = [&](std::ptrdiff_t i) {
+    return first_m + static_cast<float>(i) * step_m;
+  };
+  const BarHole hole(input.views, bar, pair.outer_end, pair.inner_end);
   std::optional<BarEdges> edges;  ///< of few that may be bars
   std::array<float, distances> margins{};
-  for (int i = 0; i < distances; ++i) {
-    margins[static_cast<std::size_t>(i)] =
-        hole.margin(in_front(*behind, distance_at(i)), least_share);
+  const auto end = margins.begin() + (pair.is_known ? known_distances : distances);
+  for (auto at = margins.begin(); at != end; ++at) {
+    *at = hole.margin(in_front(pair.behind, distance_at(at - margins.begin())), enough);
   }
   // Every range of distances is a bar that may be there: one that an RGB-D camera sees beside the
   // hole of another seems to be further in front.
-  for (auto begin = margins.begin(); begin != margins.end();) {
-    const auto is_enough = [](float margin) { return margin >= least_share; };
-    begin = std::find_if(begin, margins.end(), is_enough);
-    const auto last = std::find_if_not(begin, margins.end(), is_enough);
+  for (auto begin = margins.begin(); begin != end;) {
+    const auto is_enough = [&](float margin) { return margin >= enough; };
+    begin = std::find_if(begin, end, is_enough);
+    const auto last = std::find_if_not(begin, end, is_enough);
     if (begin == last) break;
     const float most = *std::max_element(begin, last);
     int count = 0;
     float sum_m = 0;
     for (auto at = begin; at != last; ++at) {
       if (*at < plateau * most) continue;
-      sum_m += distance_at(static_cast<int>(at - margins.begin()));
+      sum_m += distance_at(at - margins.begin());
       ++count;
     }
     begin = last;
     // Where exactly: as the RGB-D camera's picture shows its edges.
-    if (!edges) edges.emplace(input.views, bar, outer_end, inner_end);
+    if (!edges) edges.emplace(input.views, bar, pair.outer_end, pair.inner_end);
     float contrast = 0;
     Bar placed = bar;
     for (int i = -refined_steps; i <= refined_steps; ++i) {
       const float shift_m = static_cast<float>(i) * refined_step_m;
-      const BackgroundPlane plane = in_front(*behind, sum_m / static_cast<float>(count) + shift_m);
+      const BackgroundPlane plane =
+          in_front(pair.behind, sum_m / static_cast<float>(count) + shift_m);
       const float its = edges->contrast(plane, contrast);
       if (its <= contrast) continue;
       contrast = its;
       placed.plane = plane;
     }
-    if (contrast < least_contrast) continue;
+    if (contrast < (pair.is_known ? known_contrast : least_contrast)) continue;
     placed.goes_on = goes_on(input.lines, placed);
-    placed.score = most * most * most * std::min(contrast, most_contrast);
+    placed.score = most * std::min(contrast, most_contrast) * (pair.is_known ? known_gain : 1);
     found.push_back(placed);
   }
 }
@@ -206,6 +235,10 @@ void BarSearch::find(const Input& input) {
       const auto pair = pair_of(input, input.lines[i], input.lines[k]);
       if (pair) pairs_.push_back(*pair);
     }
+  }
+  for (const Bar& bar : input.known) {
+    pairs_.push_back({bar, -static_cast<float>(outside_px), depth_inside(input.occlusion, bar),
+                      bar.plane, true});
   }
   if (found_by_pair_.size() < pairs_.size()) found_by_pair_.resize(pairs_.size());
   for_tasks(pairs_.size(), [&](std::size_t i) {
@@ -221,6 +254,7 @@ void BarSearch::find(const Input& input) {
            std::tuple(a.score, b.entry.y(), b.entry.x(), b.width_px);
   });
   for (const Bar& bar : found_) {
+    if (is_between(bar, found_)) continue;
     const bool is_free = std::none_of(bars_.begin(), bars_.end(), [&](const Bar& other) {
       return exclude_each_other(input.views, bar, other);
     });

@@ -14,6 +14,7 @@ namespace diminish {
 /// Finds bars that depth sensors do not see, such as steel pipes. Two parallel edges that run into
 /// the mask are the sides of one if, at some distance in front of the plane behind them, an RGB-D
 /// camera has no depth between them and has depth beside them, and its picture shows both edges.
+/// One that an earlier frame showed needs no edges in the user's picture.
 class BarSearch {
  public:
   struct Input {
@@ -21,7 +22,8 @@ class BarSearch {
     const BarViews& views;
     const std::vector<BackgroundPlane>& planes;
     const Surfaces& surfaces;
-    const Mask& occlusion;  ///< of the colour camera
+    const Mask& occlusion;       ///< of the colour camera
+    std::span<const Bar> known;  ///< of earlier frames: looked for where they were
   };
   /// The surest first. Deterministic. Cost: 20 us for each pair of edges that may be a bar.
   void find(const Input& input);
@@ -32,7 +34,8 @@ class BarSearch {
   struct Pair {
     Bar bar;                     ///< at no distance yet
     float outer_end, inner_end;  ///< what is looked at, along it
-    const BackgroundPlane* behind;
+    BackgroundPlane behind;      ///< in front of which it is looked for
+    bool is_known = false;       ///< in an earlier frame, about there
   };
   static std::optional<Pair> pair_of(const Input& input, const RimLine& a, const RimLine& b);
   /// Adds what the pair may be to `found`.
@@ -42,5 +45,12 @@ class BarSearch {
   std::vector<std::vector<Bar>> found_by_pair_;  ///< there may be more
   std::vector<Bar> found_, bars_;
 };
+
+/// Whether both lie over each other in the user's picture, or hide the same from an RGB-D camera,
+/// which then has one hole for both.
+bool exclude_each_other(const BarViews& views, const Bar& bar, const Bar& other);
+
+/// Whether it is but the space between two others, which have its edges and together are surer.
+bool is_between(const Bar& bar, std::span<const Bar> others);
 
 }  // namespace diminish

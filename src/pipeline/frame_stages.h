@@ -51,7 +51,8 @@ struct FrameStages {
   void process(const FrameSet& frame, DiminishedFrame& result);
   /// What the frames of one sequence share, each in its turn.
   auto shared() {
-    return std::tie(memory, occluders, doubt, evidence.delay(), inventions.steady());
+    return std::tie(memory, occluders, doubt, evidence.delay(), inventions.steady(),
+                    inventions.known_bars());
   }
 
   Rig rig;

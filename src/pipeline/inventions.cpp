@@ -30,8 +30,15 @@ void Inventions::find_structure(const Inputs& inputs, DiminishedFrame& result) {
                           result.surfaces, with_sides_);
   }
   if (finds_bars(inputs)) {
+    // Without a pose it is not known where earlier frames' bars are.
+    const auto& pose = inputs.poses.color_from_world;
+    const bool remembers = wanted_.steady && pose;
+    recalled_bars_.clear();
+    if (remembers) known_bars_.recall(*pose, inputs.views, inputs.masks.color, recalled_bars_);
     bar_search_.find({rim_lines_.lines(), inputs.views, *inputs.planes,
-                      has_sides ? with_sides_ : result.surfaces, inputs.masks.color});
+                      has_sides ? with_sides_ : result.surfaces, inputs.masks.color,
+                      recalled_bars_});
+    if (remembers) known_bars_.keep(*pose, inputs.views, bar_search_.bars());
   }
 }
 

@@ -6,6 +6,7 @@
 #include "bars/bar_painting.h"
 #include "bars/bar_search.h"
 #include "bars/bar_views.h"
+#include "bars/known_bars.h"
 #include "composite/compositor.h"
 #include "composite/plane_texture.h"
 #include "composite/steady_inventions.h"
@@ -62,6 +63,7 @@ class Inventions {
 
   /// What the frames of one sequence share.
   SteadyInventions& steady() { return steady_; }
+  KnownBars& known_bars() { return known_bars_; }
 
  private:
   bool finds_sides(const Inputs& inputs) const { return wanted_.sides && inputs.planes != nullptr; }
@@ -73,6 +75,8 @@ class Inventions {
   RimLines rim_lines_;
   StandingThings standing_things_;
   Surfaces with_sides_;  ///< labels and depth, once sides were found
+  KnownBars known_bars_;
+  std::vector<Bar> recalled_bars_;
   BarSearch bar_search_;
   BarPainting bar_painting_;
   PlaneTexture plane_texture_;

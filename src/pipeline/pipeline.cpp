@@ -62,6 +62,7 @@ void Pipeline::forget() {
   implementation_->memory.forget();
   implementation_->doubt.forget();
   implementation_->inventions.steady().forget();
+  implementation_->inventions.known_bars().forget();
 }
 
 void Pipeline::set_background(const Scan& scan) {
