@@ -68,7 +68,8 @@ class BarScene : public ::testing::Test {
     views->begin(seen->frame, seen->poses, masks);
   }
   void paint() {
-    const BarPainting::Input input{find(), *views, planes, seen->frame.color, masks.color, hidden};
+    const BarPainting::Input input{find(),      *views,          planes, seen->frame.color,
+                                   masks.color, result.surfaces, hidden};
     painting.lay_out(input);
     painting.paint(input, result);
   }

@@ -4,35 +4,51 @@
 #include <atomic>
 #include <cmath>
 
-#include "core/channels.h"
 #include "core/rows.h"
 #include "geometry/point_projection.h"
 
 namespace diminish {
 namespace {
 
-/// Colours are those of so many pixels along the bar, and known so far beyond its edges.
-constexpr int colors_px = 20;
-constexpr float margin_px = 2;
-constexpr int reach_px = 60;  ///< the mask may begin so much earlier or later beside the middle
+constexpr int reach_px = BarProfile::reach_px;
 /// A bar ends where so many places in a row show what would be behind it.
 constexpr int seen_px = 16;
 /// Colours from one end only: a mirror shows something else further along. At its other end a bar
 /// hides so much less of what is invented or seen behind it.
 constexpr float far_fade = 0.4F;
+/// The outer part of what is beside a bar, over which it fades.
+constexpr float soft_share = 0.5F;
+/// Beside two bars the darker counts, as shadows do, if neither weighs so much less.
+constexpr float least_rival = 0.5F;
 /// Something this much nearer hides it.
 constexpr float nearer_m = 0.03F;
 constexpr float nearer_side_m = 0.02F;
 constexpr int rows_together = 32;
+constexpr float parallel = 0.98F;  ///< cosine, of planes
 
 struct Columns {
   int begin, end;
 };
 
+/// So far from a bar's edges the wall beside it goes on with it.
+float beside_px(const Bar& bar) {
+  constexpr float widths = 2;
+  constexpr float most_px = 25;
+  return std::min(widths * bar.width_px, most_px);
+}
+
+/// Whether the place is on the plane behind the bar.
+bool is_behind(const BarPainting::Input& input, const Bar& bar, int x, int y) {
+  if (!input.surfaces.region.contains(x, y)) return false;
+  const int plane = input.surfaces.label(x, y) - surface_label::first_plane;
+  return plane >= 0 && plane < static_cast<int>(input.planes.size()) &&
+         input.planes[static_cast<std::size_t>(plane)].normal.dot(bar.plane.normal) > parallel;
+}
+
 /// Of a row: all that may show the bar, and little more.
-Columns columns_of(const Bar& bar, int y, const Rect& box) {
+Columns columns_of(const Bar& bar, float half, int y, const Rect& box) {
   const Eigen::Vector2f across = bar.across();
-  const float wide = bar.width_px / 2 + 1;
+  const float wide = half + 1;
   constexpr float level = 1e-3F;
   if (std::abs(across.x()) < level) return {box.x, box.right()};
   const float middle =
@@ -46,28 +62,6 @@ Columns columns_of(const Bar& bar, int y, const Rect& box) {
 }
 
 }  // namespace
-
-/// The mean colours across the bar, from `begin` on along it, in the direction of `sign`.
-bool BarPainting::collect(const Input& input, const Bar& bar, float begin, float sign,
-                          Profile& profile) {
-  const int size = static_cast<int>(std::ceil(bar.width_px + 2 * margin_px)) + 1;
-  profile.assign(static_cast<std::size_t>(size), Eigen::Array4f::Zero());
-  for (int i = 0; i < size; ++i) {
-    const float side = static_cast<float>(i) - bar.width_px / 2 - margin_px;
-    int count = 0;
-    Eigen::Array4f& color = profile[static_cast<std::size_t>(i)];
-    for (int k = 1; k <= reach_px + colors_px && count < colors_px; ++k) {
-      const auto [x, y] = nearest_pixel(bar.at(begin + sign * static_cast<float>(k), side));
-      if (!input.camera.bounds().contains(x, y)) break;
-      if (input.occlusion(x, y) != 0) continue;
-      color.head<3>() += to_channels(input.camera(x, y));
-      ++count;
-    }
-    if (count < colors_px / 4) return false;
-    color /= static_cast<float>(count);
-  }
-  return true;
-}
 
 BarPainting::End BarPainting::find_end(const Input& input, const Bar& bar) {
   int seen = 0;
@@ -96,12 +90,7 @@ void BarPainting::paint_row(const Input& input, const Bar& bar, const Stroke& st
   const float half = bar.width_px / 2;
   const Reconstruction& drawn = result.reconstruction;
   const Surfaces& surfaces = result.surfaces;
-  const auto color_at = [](const Profile& profile, float position) -> Eigen::Array4f {
-    const auto first = std::min(static_cast<std::size_t>(position), profile.size() - 2);
-    const float share = position - static_cast<float>(first);
-    return profile[first] + share * (profile[first + 1] - profile[first]);
-  };
-  const Columns columns = columns_of(bar, y, box);
+  const Columns columns = columns_of(bar, half, y, box);
   for (int x = columns.begin; x < columns.end; ++x) {
     std::uint8_t& origin = result.provenance(x, y);
     if (input.occlusion(x, y) == 0 || origin == provenance::witnessed ||
@@ -123,10 +112,9 @@ void BarPainting::paint_row(const Input& input, const Bar& bar, const Stroke& st
         surfaces.standing_depth_m(x, y) < z_m - nearer_side_m) {
       continue;
     }
-    const float position = side + half + margin_px;
-    Eigen::Array4f color = color_at(stroke.near_colors, position);
+    Eigen::Array4f color = stroke.near_colors.at(side);
     const float share = std::clamp(along / stroke.length, 0.0F, 1.0F);
-    if (stroke.has_far) color += share * (color_at(stroke.far_colors, position) - color);
+    if (stroke.has_far) color += share * (stroke.far_colors.at(side) - color);
     Bgr& pixel = result.picture(x, y);
     const Eigen::Array4f below(pixel.b, pixel.g, pixel.r, 0);
     const float fade = stroke.has_far ? 1 : 1 - far_fade * share;
@@ -138,12 +126,59 @@ void BarPainting::paint_row(const Input& input, const Bar& bar, const Stroke& st
   }
 }
 
+BarPainting::Paint BarPainting::beside(const Bar& bar, const Stroke& stroke,
+                                       const Eigen::Vector2f& at) {
+  const float along = bar.along(at);
+  const float side = bar.side(at);
+  const float reach = beside_px(bar);
+  const float rest = reach + bar.width_px / 2 - std::abs(side);
+  if (rest <= 0 || along < -reach_px || along > stroke.end) return {};
+  Paint paint{0, stroke.near_colors.at(side)};
+  const float share = std::clamp(along / stroke.length, 0.0F, 1.0F);
+  if (stroke.has_far) paint.color += share * (stroke.far_colors.at(side) - paint.color);
+  if (paint.color[3] < 1) return {};
+  const float fade = stroke.has_far ? 1 : 1 - far_fade * share;
+  paint.weight = fade * std::min(1.F, rest / (soft_share * reach));
+  return paint;
+}
+
+void BarPainting::paint_beside(const Input& input, DiminishedFrame& result) const {
+  const Rect& box = input.objects;
+  for_row_groups(box.height, rows_together, [&](Rows rows) {
+    for (int y = box.y + rows.first; y < box.y + rows.last; ++y) {
+      for (int x = box.x; x < box.right(); ++x) {
+        if (result.provenance(x, y) != provenance::inpainted) continue;
+        const Eigen::Vector2f at(static_cast<float>(x), static_cast<float>(y));
+        Paint best;
+        for (std::size_t i = 0; i < input.bars.size(); ++i) {
+          if (!strokes_[i].is_painted) continue;
+          const Paint paint = beside(input.bars[i], strokes_[i], at);
+          if (paint.weight <= 0 || !is_behind(input, input.bars[i], x, y)) continue;
+          if (paint.weight > least_rival * best.weight) {
+            const bool both = best.weight > least_rival * paint.weight;
+            best.color = both ? best.color.min(paint.color).eval() : paint.color;
+          }
+          best.weight = std::max(best.weight, paint.weight);
+        }
+        if (best.weight <= 0) continue;
+        Bgr& pixel = result.picture(x, y);
+        const Eigen::Array4f below(pixel.b, pixel.g, pixel.r, 0);
+        pixel = to_color((below + best.weight * (best.color - below)).head<3>());
+      }
+    }
+  });
+}
+
 void BarPainting::lay_out(const Input& input, const Bar& bar, Stroke& stroke) {
   const auto [length, leaves_mask] = find_end(input, bar);
-  stroke.is_painted = length > 0 && collect(input, bar, 0, -1, stroke.near_colors);
+  const auto collect = [&](float begin, float sign, BarProfile& colors) {
+    return colors.collect(input.camera, input.occlusion, bar, begin, sign, beside_px(bar),
+                          [&](int x, int y) { return is_behind(input, bar, x, y); });
+  };
+  stroke.is_painted = length > 0 && collect(0, -1, stroke.near_colors);
   if (!stroke.is_painted) return;
   stroke.length = length;
-  stroke.has_far = bar.goes_on && leaves_mask && collect(input, bar, length, 1, stroke.far_colors);
+  stroke.has_far = bar.goes_on && leaves_mask && collect(length, 1, stroke.far_colors);
   stroke.end = leaves_mask ? length + reach_px : length;
 }
 
@@ -181,6 +216,7 @@ void BarPainting::paint(const Input& input, const Bar& bar, const Stroke& stroke
 }
 
 void BarPainting::paint(const Input& input, DiminishedFrame& result) const {
+  paint_beside(input, result);
   for (std::size_t i = 0; i < input.bars.size(); ++i) {
     if (strokes_[i].is_painted) paint(input, input.bars[i], strokes_[i], result);
   }

@@ -6,23 +6,25 @@
 #include <vector>
 
 #include "bars/bar.h"
+#include "bars/bar_profile.h"
 #include "bars/bar_views.h"
 #include "diminish/diminished_frame.h"
 #include "diminish/image.h"
 
 namespace diminish {
 
-/// Draws bars into the mask, over what is invented and over what an RGB-D camera sees behind them:
-/// lay_out, then paint.
+/// Draws bars into the mask, over what is invented and over what an RGB-D camera sees behind them;
+/// before, the wall beside them with their shadows, over what is invented: lay_out, then paint.
 class BarPainting {
  public:
   struct Input {
     std::span<const Bar> bars;  ///< the surest first
     const BarViews& views;
     const std::vector<BackgroundPlane>& planes;
-    ImageView<Bgr> camera;  ///< the user's picture
-    const Mask& occlusion;  ///< of the colour camera
-    const Rect& objects;    ///< its box
+    ImageView<Bgr> camera;     ///< the user's picture
+    const Mask& occlusion;     ///< of the colour camera
+    const Surfaces& surfaces;  ///< of the user's picture
+    const Rect& objects;       ///< its box
   };
   /// Where bars end, and their colours: those that the user's camera sees beside the mask, of both
   /// ends where a bar goes on beyond. A bar ends where it leaves the mask, meets another plane, or
@@ -33,14 +35,17 @@ class BarPainting {
   void paint(const Input& input, DiminishedFrame& result) const;
 
  private:
-  /// A fourth channel, 0, makes it a vector.
-  using Profile = std::vector<Eigen::Array4f>;
   struct Stroke {
     bool is_painted = false;
-    float length = 0;                 ///< in the mask
-    float end = 0;                    ///< the last place along it
-    bool has_far = false;             ///< colours of its other end
-    Profile near_colors, far_colors;  ///< across it
+    float length = 0;                    ///< in the mask
+    float end = 0;                       ///< the last place along it
+    bool has_far = false;                ///< colours of its other end
+    BarProfile near_colors, far_colors;  ///< across it
+  };
+  /// How much of a place is painted, and in which colour.
+  struct Paint {
+    float weight = 0;
+    Eigen::Array4f color = Eigen::Array4f::Zero();
   };
   /// How far a bar goes on, pixels; and whether it ends only because the mask does.
   struct End {
@@ -52,10 +57,11 @@ class BarPainting {
     std::size_t estimated = 0, inpainted = 0;
   };
 
-  static bool collect(const Input& input, const Bar& bar, float begin, float sign,
-                      Profile& profile);
   static End find_end(const Input& input, const Bar& bar);
   static void lay_out(const Input& input, const Bar& bar, Stroke& stroke);
+  /// The wall beside the bar.
+  static Paint beside(const Bar& bar, const Stroke& stroke, const Eigen::Vector2f& at);
+  void paint_beside(const Input& input, DiminishedFrame& result) const;
   static void paint(const Input& input, const Bar& bar, const Stroke& stroke,
                     DiminishedFrame& result);
   /// box: what of the objects' box may show the bar.

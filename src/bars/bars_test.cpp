@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 
 #include "bar_scene.h"
@@ -130,6 +131,72 @@ TEST_F(Bars, ABrokenPipeEnds) {
   paint();
   EXPECT_GT(count(provenance::estimated, true), count(provenance::inpainted, true) / 2);
   EXPECT_GT(count(provenance::inpainted, true), count(provenance::estimated, true) / 4);
+}
+
+/// The wall on the right of a bar lies in its shadow.
+void cast_shadow(const Mask& on_bar, Image<Bgr>& picture, int shadow_px) {
+  for (int y = 0; y < picture.height(); ++y) {
+    int x = 0;
+    while (on_bar(x, y) == 0) ++x;
+    while (on_bar(x, y) != 0) ++x;
+    for (int i = 0; i < shadow_px; ++i) {
+      Bgr& pixel = picture(x + i, y);
+      pixel = {static_cast<std::uint8_t>(pixel.b / 2), static_cast<std::uint8_t>(pixel.g / 2),
+               static_cast<std::uint8_t>(pixel.r / 2)};
+    }
+  }
+}
+
+TEST_F(Bars, ThrowTheirShadowsOnInventedWalls) {
+  constexpr int shadow_px = 8;
+  look();
+  Image<Bgr> truth;
+  copy(seen->frame.color.view(), truth);
+  cast_shadow(on_bar, truth, shadow_px);
+  seen->frame.color = truth;
+  const auto darkest_beside = [&](int shift) {
+    int least = 255;
+    for (int y = hidden.y + 4; y < hidden.bottom() - 4; ++y) {
+      int x = hidden.right() - 1;
+      while (on_bar(x, y) == 0) --x;
+      least = std::min<int>(least, result.picture(x + shift, y).g);
+    }
+    return least;
+  };
+  const int wall = darkest_beside(shadow_px / 2);
+  const double before = testing::psnr_db(result.picture, truth, masks.color);
+  paint();
+  EXPECT_NEAR(darkest_beside(shadow_px / 2), wall / 2, 6);
+  EXPECT_NEAR(darkest_beside(3 * shadow_px), wall, 6);
+  EXPECT_GT(testing::psnr_db(result.picture, truth, masks.color), before + 8);
+  EXPECT_GT(count(provenance::inpainted, false), 20 * count(provenance::estimated, false));
+}
+
+// Nor on what stands in front of the wall.
+TEST_F(Bars, ThrowNoShadowsOnWhatIsSeen) {
+  look();
+  Image<Bgr> truth;
+  copy(seen->frame.color.view(), truth);
+  cast_shadow(on_bar, truth, 8);
+  seen->frame.color = truth;
+  for (int y = 0; y < on_bar.height(); ++y) {
+    for (int x = 0; x < on_bar.width(); ++x) {
+      if (on_bar(x, y) == 0 && y < 125) result.provenance(x, y) = provenance::camera;
+      if (on_bar(x, y) == 0 && y >= 125) result.surfaces.label(x, y) = surface_label::foreground;
+    }
+  }
+  Image<Bgr> before;
+  copy(ImageView<Bgr>(result.picture), before);
+  paint();
+  EXPECT_EQ(search.bars().size(), 1U);
+  for (int y = hidden.y; y < hidden.bottom(); ++y) {
+    for (int x = hidden.x; x < hidden.right(); ++x) {
+      if (result.provenance(x, y) != provenance::estimated) {
+        ASSERT_NEAR(result.picture(x, y).g, before(x, y).g, 3 + 40 * on_bar(x, y))
+            << x << ", " << y;
+      }
+    }
+  }
 }
 
 // Each with a hole of its own.

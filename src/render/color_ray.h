@@ -8,7 +8,7 @@
 
 namespace diminish {
 
-/// How far from a gap, in depth pixels.
+/// How far from a hole, in depth pixels.
 inline constexpr float color_ray_shift = 0.6F;
 
 /// The ray on which the colour of a depth pixel's point is looked up, as deep as the point: the
@@ -28,15 +28,11 @@ inline Eigen::Vector2f color_ray(ImageView<std::uint16_t> depth, const RayTable&
       return ray;
     }
   }
-  const auto has_depth = [&](int x, int y) {
-    return x >= 0 && x < depth.width() && y >= 0 && y < depth.height() && depth(x, y) != 0;
+  const auto is_hole = [&](int dx, int dy) {
+    return depth.bounds().contains(column + dx, row + dy) && depth(column + dx, row + dy) == 0;
   };
-  const auto is_gap = [&](int dx, int dy) {
-    return !has_depth(column + dx, row + dy) &&
-           (has_depth(column + 2 * dx, row + 2 * dy) || has_depth(column + 3 * dx, row + 3 * dy));
-  };
-  const int right = (is_gap(-1, 0) ? 1 : 0) - (is_gap(1, 0) ? 1 : 0);
-  const int down = (is_gap(0, -1) ? 1 : 0) - (is_gap(0, 1) ? 1 : 0);
+  const int right = (is_hole(-1, 0) ? 1 : 0) - (is_hole(1, 0) ? 1 : 0);
+  const int down = (is_hole(0, -1) ? 1 : 0) - (is_hole(0, 1) ? 1 : 0);
   Eigen::Vector2f result = ray;
   if (right != 0 && column + right >= 0 && column + right < depth.width()) {
     result += color_ray_shift * (rays(column + right, row) - ray);

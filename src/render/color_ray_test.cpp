@@ -8,21 +8,21 @@ namespace {
 const Intrinsics sensor{64, 48, 50, 50, 31.5, 23.5, {}};
 
 /// By how much the ray at a pixel differs from the pixel's own, in pixels, with columns and rows
-/// of `gap` without depth.
-Eigen::Vector2f shift(const Rect& gap, int column, int row) {
+/// of `hole` without depth.
+Eigen::Vector2f shift(const Rect& hole, int column, int row) {
   Image<std::uint16_t> depth(sensor.width, sensor.height, std::uint16_t{1000});
-  depth.fill(gap, 0);
+  depth.fill(hole, 0);
   const RayTable rays(sensor);
   return (color_ray(depth, rays, column, row) - rays(column, row)) * 50;
 }
 
-TEST(ColorRay, IsFurtherFromThinGaps) {
-  for (const int width : {1, 2}) {
-    const Rect gap{30, 0, width, 48};
-    EXPECT_TRUE(shift(gap, 29, 20).isApprox(Eigen::Vector2f(-0.6F, 0), 1e-4F));
-    EXPECT_TRUE(shift(gap, 30 + width, 20).isApprox(Eigen::Vector2f(0.6F, 0), 1e-4F));
-    EXPECT_EQ(shift(gap, 28, 20).norm(), 0);
-    EXPECT_EQ(shift(gap, 31 + width, 20).norm(), 0);
+TEST(ColorRay, IsFurtherFromHoles) {
+  for (const int width : {1, 2, 9}) {
+    const Rect hole{30, 0, width, 48};
+    EXPECT_TRUE(shift(hole, 29, 20).isApprox(Eigen::Vector2f(-0.6F, 0), 1e-4F));
+    EXPECT_TRUE(shift(hole, 30 + width, 20).isApprox(Eigen::Vector2f(0.6F, 0), 1e-4F));
+    EXPECT_EQ(shift(hole, 28, 20).norm(), 0);
+    EXPECT_EQ(shift(hole, 31 + width, 20).norm(), 0);
     EXPECT_TRUE(shift({0, 30, 64, width}, 20, 29).isApprox(Eigen::Vector2f(0, -0.6F), 1e-4F));
     EXPECT_TRUE(
         shift({0, 30, 64, width}, 20, 30 + width).isApprox(Eigen::Vector2f(0, 0.6F), 1e-4F));
@@ -30,13 +30,13 @@ TEST(ColorRay, IsFurtherFromThinGaps) {
 }
 
 TEST(ColorRay, IsThePixelsOwnElsewhere) {
-  EXPECT_EQ(shift({30, 0, 3, 48}, 29, 20).norm(), 0) << "a wide hole";
-  EXPECT_EQ(shift({62, 0, 2, 48}, 61, 20).norm(), 0) << "nothing beyond";
+  EXPECT_EQ(shift({30, 0, 3, 48}, 0, 20).norm(), 0) << "at the image's rim";
+  EXPECT_EQ(shift({30, 10, 3, 3}, 29, 9).norm(), 0) << "at a corner of the hole";
   EXPECT_EQ(shift({1, 0, 2, 48}, 0, 20).norm(), 0) << "no pixel further away";
 }
 
-// Between two gaps there is no better place.
-TEST(ColorRay, IsThePixelsOwnBetweenGaps) {
+// Between two holes there is no better place.
+TEST(ColorRay, IsThePixelsOwnBetweenHoles) {
   Image<std::uint16_t> depth(sensor.width, sensor.height, std::uint16_t{1000});
   depth.fill({30, 0, 1, 48}, 0);
   depth.fill({32, 0, 1, 48}, 0);

@@ -15,13 +15,9 @@ bool project(Lens lens, Transform camera_from_depth, vec3 point, out vec2 pixel,
   return z > NEAR_PLANE_M && is_inside;
 }
 
-bool has_depth(ivec2 pixel) {
+bool is_hole(ivec2 pixel) {
   return all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, depth_size)) &&
-         read_short(depth_at, uint(pixel.y * depth_size.x + pixel.x)) != 0u;
-}
-
-bool is_gap(ivec2 pixel, ivec2 side) {
-  return !has_depth(pixel + side) && (has_depth(pixel + 2 * side) || has_depth(pixel + 3 * side));
+         read_short(depth_at, uint(pixel.y * depth_size.x + pixel.x)) == 0u;
 }
 
 vec2 ray_of(ivec2 pixel) {
@@ -31,8 +27,10 @@ vec2 ray_of(ivec2 pixel) {
 // color_ray.h
 vec2 color_ray(uint index) {
   ivec2 pixel = ivec2(int(index) % depth_size.x, int(index) / depth_size.x);
-  ivec2 right = pixel + ivec2(int(is_gap(pixel, ivec2(-1, 0))) - int(is_gap(pixel, ivec2(1, 0))), 0);
-  ivec2 down = pixel + ivec2(0, int(is_gap(pixel, ivec2(0, -1))) - int(is_gap(pixel, ivec2(0, 1))));
+  ivec2 right = pixel;
+  right.x += int(is_hole(pixel - ivec2(1, 0))) - int(is_hole(pixel + ivec2(1, 0)));
+  ivec2 down = pixel;
+  down.y += int(is_hole(pixel - ivec2(0, 1))) - int(is_hole(pixel + ivec2(0, 1)));
   vec2 ray = ray_of(pixel);
   precise vec2 result = ray;
   if (right.x != pixel.x && right.x >= 0 && right.x < depth_size.x) {
