@@ -133,12 +133,21 @@ BarPainting::Paint BarPainting::beside(const Bar& bar, const Stroke& stroke,
   const float reach = beside_px(bar);
   const float rest = reach + bar.width_px / 2 - std::abs(side);
   if (rest <= 0 || along < -reach_px || along > stroke.end) return {};
-  Paint paint{0, stroke.near_colors.at(side)};
   const float share = std::clamp(along / stroke.length, 0.0F, 1.0F);
-  if (stroke.has_far) paint.color += share * (stroke.far_colors.at(side) - paint.color);
-  if (paint.color[3] < 1) return {};
-  const float fade = stroke.has_far ? 1 : 1 - far_fade * share;
-  paint.weight = fade * std::min(1.F, rest / (soft_share * reach));
+  const Eigen::Array4f near = stroke.near_colors.at(side);
+  const Eigen::Array4f far =
+      stroke.has_far ? stroke.far_colors.at(side) : Eigen::Array4f(Eigen::Array4f::Zero());
+  const bool has_near = near[3] >= 1;
+  const bool has_far = far[3] >= 1;
+  Paint paint;
+  if (has_near && has_far) {
+    paint = {1, near + share * (far - near)};
+  } else if (has_near) {
+    paint = {1 - far_fade * share, near};
+  } else if (has_far) {
+    paint = {1 - far_fade * (1 - share), far};
+  }
+  paint.weight *= std::min(1.F, rest / (soft_share * reach));
   return paint;
 }
 
