@@ -1,6 +1,7 @@
 #include "bars/bar_painting.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 
@@ -20,6 +21,7 @@ constexpr float far_fade = 0.4F;
 constexpr float soft_share = 0.5F;
 /// Beside two bars the darker counts, as shadows do, if neither weighs so much less.
 constexpr float least_rival = 0.5F;
+constexpr std::size_t most_beside = 16;  ///< bars that are looked at in a row
 /// Something this much nearer hides it.
 constexpr float nearer_m = 0.03F;
 constexpr float nearer_side_m = 0.02F;
@@ -37,15 +39,23 @@ float beside_px(const Bar& bar) {
   return std::min(widths * bar.width_px, most_px);
 }
 
-/// Whether the place is on the plane behind the bar.
-bool is_behind(const BarPainting::Input& input, const Bar& bar, int x, int y) {
-  if (!input.surfaces.region.contains(x, y)) return false;
-  const int plane = input.surfaces.label(x, y) - surface_label::first_plane;
-  return plane >= 0 && plane < static_cast<int>(input.planes.size()) &&
-         input.planes[static_cast<std::size_t>(plane)].normal.dot(bar.plane.normal) > parallel;
+/// Labels of planes that are parallel to the bar's, bit by bit.
+unsigned labels_behind(const BarPainting::Input& input, const Bar& bar) {
+  unsigned labels = 0;
+  for (std::size_t i = 0; i < input.planes.size(); ++i) {
+    if (input.planes[i].normal.dot(bar.plane.normal) > parallel) {
+      labels |= 1U << (surface_label::first_plane + i);
+    }
+  }
+  return labels;
 }
 
-/// Of a row: all that may show the bar, and little more.
+/// The label's bit; 0 where there is none.
+unsigned label_at(const Surfaces& surfaces, int x, int y) {
+  return surfaces.region.contains(x, y) ? 1U << std::min<unsigned>(surfaces.label(x, y), 31) : 0;
+}
+
+/// Of a row: all that may be within `half` of the bar's middle, and little more.
 Columns columns_of(const Bar& bar, float half, int y, const Rect& box) {
   const Eigen::Vector2f across = bar.across();
   const float wide = half + 1;
@@ -155,34 +165,59 @@ void BarPainting::paint_beside(const Input& input, DiminishedFrame& result) cons
   const Rect& box = input.objects;
   for_row_groups(box.height, rows_together, [&](Rows rows) {
     for (int y = box.y + rows.first; y < box.y + rows.last; ++y) {
-      for (int x = box.x; x < box.right(); ++x) {
-        if (result.provenance(x, y) != provenance::inpainted) continue;
-        const Eigen::Vector2f at(static_cast<float>(x), static_cast<float>(y));
-        Paint best;
-        for (std::size_t i = 0; i < input.bars.size(); ++i) {
-          if (!strokes_[i].is_painted) continue;
-          const Paint paint = beside(input.bars[i], strokes_[i], at);
-          if (paint.weight <= 0 || !is_behind(input, input.bars[i], x, y)) continue;
-          if (paint.weight > least_rival * best.weight) {
-            const bool both = best.weight > least_rival * paint.weight;
-            best.color = both ? best.color.min(paint.color).eval() : paint.color;
-          }
-          best.weight = std::max(best.weight, paint.weight);
-        }
-        if (best.weight <= 0) continue;
-        Bgr& pixel = result.picture(x, y);
-        const Eigen::Array4f below(pixel.b, pixel.g, pixel.r, 0);
-        pixel = to_color((below + best.weight * (best.color - below)).head<3>());
-      }
+      paint_beside(input, y, result);
     }
   });
+}
+
+void BarPainting::paint_beside(const Input& input, int y, DiminishedFrame& result) const {
+  // The surest of those that reach this row.
+  struct Reach {
+    std::size_t bar;
+    unsigned labels;
+    Columns columns;
+  };
+  std::array<Reach, most_beside> reaches;
+  std::size_t count = 0;
+  Columns all{input.objects.right(), input.objects.x};
+  for (std::size_t i = 0; i < input.bars.size() && count < reaches.size(); ++i) {
+    if (!strokes_[i].is_painted) continue;
+    const Bar& bar = input.bars[i];
+    const Columns columns = columns_of(bar, bar.width_px / 2 + beside_px(bar), y, input.objects);
+    if (columns.begin >= columns.end) continue;
+    reaches[count++] = {i, labels_behind(input, bar), columns};
+    all = {std::min(all.begin, columns.begin), std::max(all.end, columns.end)};
+  }
+  for (int x = all.begin; x < all.end; ++x) {
+    if (result.provenance(x, y) != provenance::inpainted) continue;
+    const unsigned label = label_at(input.surfaces, x, y);
+    const Eigen::Vector2f at(static_cast<float>(x), static_cast<float>(y));
+    Paint best;
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto& [i, labels, columns] = reaches[k];
+      if (x < columns.begin || x >= columns.end || (label & labels) == 0) continue;
+      const Paint paint = beside(input.bars[i], strokes_[i], at);
+      if (paint.weight <= 0) continue;
+      if (paint.weight > least_rival * best.weight) {
+        const bool both = best.weight > least_rival * paint.weight;
+        best.color = both ? best.color.min(paint.color).eval() : paint.color;
+      }
+      best.weight = std::max(best.weight, paint.weight);
+    }
+    if (best.weight <= 0) continue;
+    Bgr& pixel = result.picture(x, y);
+    const Eigen::Array4f below(pixel.b, pixel.g, pixel.r, 0);
+    pixel = to_color((below + best.weight * (best.color - below)).head<3>());
+  }
 }
 
 void BarPainting::lay_out(const Input& input, const Bar& bar, Stroke& stroke) {
   const auto [length, leaves_mask] = find_end(input, bar);
   const auto collect = [&](float begin, float sign, BarProfile& colors) {
     return colors.collect(input.camera, input.occlusion, bar, begin, sign, beside_px(bar),
-                          [&](int x, int y) { return is_behind(input, bar, x, y); });
+                          [&, labels = labels_behind(input, bar)](int x, int y) {
+                            return (label_at(input.surfaces, x, y) & labels) != 0;
+                          });
   };
   stroke.is_painted = length > 0 && collect(0, -1, stroke.near_colors);
   if (!stroke.is_painted) return;

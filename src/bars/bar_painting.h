@@ -62,6 +62,7 @@ class BarPainting {
   /// The wall beside the bar.
   static Paint beside(const Bar& bar, const Stroke& stroke, const Eigen::Vector2f& at);
   void paint_beside(const Input& input, DiminishedFrame& result) const;
+  void paint_beside(const Input& input, int y, DiminishedFrame& result) const;
   static void paint(const Input& input, const Bar& bar, const Stroke& stroke,
                     DiminishedFrame& result);
   /// box: what of the objects' box may show the bar.
