@@ -166,7 +166,7 @@ TEST_F(Bars, ThrowTheirShadowsOnInventedWalls) {
   const int wall = darkest_beside(shadow_px / 2);
   const double before = testing::psnr_db(result.picture, truth, masks.color);
   paint();
-  EXPECT_NEAR(darkest_beside(shadow_px / 2), wall / 2, 6);
+  EXPECT_NEAR(darkest_beside(shadow_px / 2), wall / 2.0, 6);
   EXPECT_NEAR(darkest_beside(3 * shadow_px), wall, 6);
   EXPECT_GT(testing::psnr_db(result.picture, truth, masks.color), before + 8);
   EXPECT_GT(count(provenance::inpainted, false), 20 * count(provenance::estimated, false));
