@@ -68,8 +68,14 @@ class BarScene : public ::testing::Test {
     views->begin(seen->frame, seen->poses, masks);
   }
   void paint() {
-    const BarPainting::Input input{find(),      *views,          planes, seen->frame.color,
-                                   masks.color, result.surfaces, hidden};
+    const BarPainting::Input input{find(),
+                                   *views,
+                                   planes,
+                                   seen->frame.color,
+                                   masks.color,
+                                   result.surfaces,
+                                   result.reconstruction,
+                                   hidden};
     painting.lay_out(input);
     painting.paint(input, result);
   }

@@ -55,6 +55,12 @@ unsigned label_at(const Surfaces& surfaces, int x, int y) {
   return surfaces.region.contains(x, y) ? 1U << std::min<unsigned>(surfaces.label(x, y), 31) : 0;
 }
 
+/// Whether an RGB-D camera sees something in front of the bar, which is z_m away there.
+bool is_covered(const Reconstruction& drawn, int x, int y, float z_m) {
+  return drawn.region.contains(x, y) && drawn.depth_m(x, y) > 0 &&
+         drawn.depth_m(x, y) < z_m - nearer_m;
+}
+
 /// Of a row: all that may be within `half` of the bar's middle, and little more.
 Columns columns_of(const Bar& bar, float half, int y, const Rect& box) {
   const Eigen::Vector2f across = bar.across();
@@ -116,8 +122,7 @@ void BarPainting::paint_row(const Input& input, const Bar& bar, const Stroke& st
     const float inverse = bar.plane.inverse_depth(ray.x(), ray.y());
     if (!(inverse > 0)) continue;
     const float z_m = 1 / inverse;
-    const bool has_drawn = drawn.region.contains(x, y) && drawn.depth_m(x, y) > 0;
-    if (has_drawn && drawn.depth_m(x, y) < z_m - nearer_m) continue;
+    if (is_covered(drawn, x, y, z_m)) continue;
     if (!surfaces.standing_depth_m.empty() && surfaces.label(x, y) == surface_label::standing &&
         surfaces.standing_depth_m(x, y) < z_m - nearer_side_m) {
       continue;
@@ -213,16 +218,22 @@ void BarPainting::paint_beside(const Input& input, int y, DiminishedFrame& resul
 
 void BarPainting::lay_out(const Input& input, const Bar& bar, Stroke& stroke) {
   const auto [length, leaves_mask] = find_end(input, bar);
+  const unsigned labels = labels_behind(input, bar);
   const auto collect = [&](float begin, float sign, BarProfile& colors) {
-    return colors.collect(input.camera, input.occlusion, bar, begin, sign, beside_px(bar),
-                          [&, labels = labels_behind(input, bar)](int x, int y) {
-                            return (label_at(input.surfaces, x, y) & labels) != 0;
-                          });
+    return colors.collect(
+        input.camera, input.occlusion, bar, begin, sign, beside_px(bar),
+        [&](int x, int y) {
+          const Eigen::Vector3f ray = input.views.ray(x, y);
+          const float inverse = bar.plane.inverse_depth(ray.x(), ray.y());
+          return inverse > 0 && !is_covered(input.drawn, x, y, 1 / inverse);
+        },
+        [&](int x, int y) { return (label_at(input.surfaces, x, y) & labels) != 0; });
   };
   stroke.is_painted = length > 0 && collect(0, -1, stroke.near_colors);
   if (!stroke.is_painted) return;
   stroke.length = length;
   stroke.has_far = bar.goes_on && leaves_mask && collect(length, 1, stroke.far_colors);
+  if (stroke.has_far) stroke.far_colors.leave_out_unlike(stroke.near_colors, bar);
   stroke.end = leaves_mask ? length + reach_px : length;
 }
 

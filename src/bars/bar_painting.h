@@ -24,7 +24,8 @@ class BarPainting {
     ImageView<Bgr> camera;     ///< the user's picture
     const Mask& occlusion;     ///< of the colour camera
     const Surfaces& surfaces;  ///< of the user's picture
-    const Rect& objects;       ///< its box
+    const Reconstruction& drawn;
+    const Rect& objects;  ///< its box
   };
   /// Where bars end, and their colours: those that the user's camera sees beside the mask, of both
   /// ends where a bar goes on beyond. A bar ends where it leaves the mask, meets another plane, or

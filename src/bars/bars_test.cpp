@@ -133,6 +133,34 @@ TEST_F(Bars, ABrokenPipeEnds) {
   EXPECT_GT(count(provenance::inpainted, true), count(provenance::estimated, true) / 4);
 }
 
+// Where something else stands in front of its other end, in other colours.
+TEST_F(Bars, AreNotPaintedInTheColorsOfWhatHidesThem) {
+  look();
+  Image<Bgr> picture;
+  copy(seen->frame.color.view(), picture);
+  result.reconstruction.region = seen->rig.color.bounds();
+  result.reconstruction.depth_m = Image<float>(on_bar.width(), on_bar.height(), 0.F);
+  for (int y = hidden.bottom(); y < on_bar.height(); ++y) {
+    for (int x = 0; x < on_bar.width(); ++x) {
+      if (on_bar(x, y) == 0) continue;
+      picture(x, y) = {30, 220, 30};
+      result.reconstruction.depth_m(x, y) = 0.6F;
+    }
+  }
+  seen->frame.color = picture;
+  paint();
+  ASSERT_EQ(search.bars().size(), 1U);
+  EXPECT_TRUE(search.bars()[0].goes_on);
+  int painted = 0;
+  for (int x = hidden.x; x < hidden.right(); ++x) {
+    if (result.provenance(x, hidden.bottom() - 2) != provenance::estimated) continue;
+    const Bgr& pixel = result.picture(x, hidden.bottom() - 2);
+    EXPECT_LT(pixel.g, pixel.r + 40) << x;
+    ++painted;
+  }
+  EXPECT_GT(painted, 4);
+}
+
 /// The wall on the right of a bar lies in its shadow.
 void cast_shadow(const Mask& on_bar, Image<Bgr>& picture, int shadow_px) {
   for (int y = 0; y < picture.height(); ++y) {

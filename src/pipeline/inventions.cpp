@@ -58,9 +58,9 @@ void Inventions::fill(const Inputs& inputs, const Compositor::Inputs& composed,
   };
   const bool has_bars = finds_bars(inputs) && !bar_search_.bars().empty();
   const auto bars = [&] {
-    return BarPainting::Input{bar_search_.bars(), inputs.views,       *inputs.planes,
-                              inputs.frame.color, inputs.masks.color, result.surfaces,
-                              inputs.objects};
+    return BarPainting::Input{bar_search_.bars(),    inputs.views,       *inputs.planes,
+                              inputs.frame.color,    inputs.masks.color, result.surfaces,
+                              result.reconstruction, inputs.objects};
   };
   bool is_filled = false;
   do_all([&] { is_filled = compositor.inpaint(composed, inpainter, result); },
