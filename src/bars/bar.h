@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 
+#include "diminish/image.h"
+#include "geometry/point_projection.h"
 #include "scene/background_planes.h"
 
 namespace diminish {
@@ -25,5 +27,11 @@ struct Bar {
   float along(const Eigen::Vector2f& at) const { return inward.dot(at - entry); }
   float side(const Eigen::Vector2f& at) const { return across().dot(at - entry); }
 };
+
+/// Whether an object hides the place in the user's picture.
+inline bool is_hidden(const Mask& occlusion, const Eigen::Vector2f& at) {
+  const auto [x, y] = nearest_pixel(at);
+  return occlusion.bounds().contains(x, y) && occlusion(x, y) != 0;
+}
 
 }  // namespace diminish

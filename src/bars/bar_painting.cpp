@@ -61,6 +61,12 @@ bool is_covered(const Reconstruction& drawn, int x, int y, float z_m) {
          drawn.depth_m(x, y) < z_m - nearer_m;
 }
 
+/// The color takes the pixel's place as far as the weight says.
+void mix(const Eigen::Array4f& color, float weight, Bgr& pixel) {
+  const Eigen::Array4f below(pixel.b, pixel.g, pixel.r, 0);
+  pixel = to_color((below + weight * (color - below)).head<3>());
+}
+
 /// Of a row: all that may be within `half` of the bar's middle, and little more.
 Columns columns_of(const Bar& bar, float half, int y, const Rect& box) {
   const Eigen::Vector2f across = bar.across();
@@ -84,10 +90,7 @@ BarPainting::End BarPainting::find_end(const Input& input, const Bar& bar) {
   float along = 1;
   for (;; ++along) {
     const Eigen::Vector2f at = bar.at(along, 0);
-    const auto [x, y] = nearest_pixel(at);
-    if (!input.occlusion.bounds().contains(x, y) || input.occlusion(x, y) == 0) {
-      return {along, true};
-    }
+    if (!is_hidden(input.occlusion, at)) return {along, true};
     const Eigen::Vector3f ray = input.views.ray(at);
     const float inverse = bar.plane.inverse_depth(ray.x(), ray.y());
     if (!(inverse > 0)) return {along, false};
@@ -104,8 +107,7 @@ BarPainting::End BarPainting::find_end(const Input& input, const Bar& bar) {
 void BarPainting::paint_row(const Input& input, const Bar& bar, const Stroke& stroke, int y,
                             const Rect& box, DiminishedFrame& result, Counts& counts) {
   const float half = bar.width_px / 2;
-  const Reconstruction& drawn = result.reconstruction;
-  const Surfaces& surfaces = result.surfaces;
+  const Surfaces& surfaces = input.surfaces;
   const Columns columns = columns_of(bar, half, y, box);
   for (int x = columns.begin; x < columns.end; ++x) {
     std::uint8_t& origin = result.provenance(x, y);
@@ -122,7 +124,7 @@ void BarPainting::paint_row(const Input& input, const Bar& bar, const Stroke& st
     const float inverse = bar.plane.inverse_depth(ray.x(), ray.y());
     if (!(inverse > 0)) continue;
     const float z_m = 1 / inverse;
-    if (is_covered(drawn, x, y, z_m)) continue;
+    if (is_covered(input.drawn, x, y, z_m)) continue;
     if (!surfaces.standing_depth_m.empty() && surfaces.label(x, y) == surface_label::standing &&
         surfaces.standing_depth_m(x, y) < z_m - nearer_side_m) {
       continue;
@@ -130,10 +132,8 @@ void BarPainting::paint_row(const Input& input, const Bar& bar, const Stroke& st
     Eigen::Array4f color = stroke.near_colors.at(side);
     const float share = std::clamp(along / stroke.length, 0.0F, 1.0F);
     if (stroke.has_far) color += share * (stroke.far_colors.at(side) - color);
-    Bgr& pixel = result.picture(x, y);
-    const Eigen::Array4f below(pixel.b, pixel.g, pixel.r, 0);
     const float fade = stroke.has_far ? 1 : 1 - far_fade * share;
-    pixel = to_color((below + fade * weight * (color - below)).head<3>());
+    mix(color, fade * weight, result.picture(x, y));
     if (weight < 0.5F) continue;
     counts.inpainted += origin == provenance::inpainted ? 1 : 0;
     ++counts.estimated;
@@ -179,7 +179,6 @@ void BarPainting::paint_beside(const Input& input, int y, DiminishedFrame& resul
   // The surest of those that reach this row.
   struct Reach {
     std::size_t bar;
-    unsigned labels;
     Columns columns;
   };
   std::array<Reach, most_beside> reaches;
@@ -190,7 +189,7 @@ void BarPainting::paint_beside(const Input& input, int y, DiminishedFrame& resul
     const Bar& bar = input.bars[i];
     const Columns columns = columns_of(bar, bar.width_px / 2 + beside_px(bar), y, input.objects);
     if (columns.begin >= columns.end) continue;
-    reaches[count++] = {i, labels_behind(input, bar), columns};
+    reaches[count++] = {i, columns};
     all = {std::min(all.begin, columns.begin), std::max(all.end, columns.end)};
   }
   for (int x = all.begin; x < all.end; ++x) {
@@ -199,8 +198,10 @@ void BarPainting::paint_beside(const Input& input, int y, DiminishedFrame& resul
     const Eigen::Vector2f at(static_cast<float>(x), static_cast<float>(y));
     Paint best;
     for (std::size_t k = 0; k < count; ++k) {
-      const auto& [i, labels, columns] = reaches[k];
-      if (x < columns.begin || x >= columns.end || (label & labels) == 0) continue;
+      const auto& [i, columns] = reaches[k];
+      if (x < columns.begin || x >= columns.end || (label & strokes_[i].labels) == 0) {
+        continue;
+      }
       const Paint paint = beside(input.bars[i], strokes_[i], at);
       if (paint.weight <= 0) continue;
       if (paint.weight > least_rival * best.weight) {
@@ -210,15 +211,13 @@ void BarPainting::paint_beside(const Input& input, int y, DiminishedFrame& resul
       best.weight = std::max(best.weight, paint.weight);
     }
     if (best.weight <= 0) continue;
-    Bgr& pixel = result.picture(x, y);
-    const Eigen::Array4f below(pixel.b, pixel.g, pixel.r, 0);
-    pixel = to_color((below + best.weight * (best.color - below)).head<3>());
+    mix(best.color, best.weight, result.picture(x, y));
   }
 }
 
 void BarPainting::lay_out(const Input& input, const Bar& bar, Stroke& stroke) {
   const auto [length, leaves_mask] = find_end(input, bar);
-  const unsigned labels = labels_behind(input, bar);
+  stroke.labels = labels_behind(input, bar);
   const auto collect = [&](float begin, float sign, BarProfile& colors) {
     return colors.collect(
         input.camera, input.occlusion, bar, begin, sign, beside_px(bar),
@@ -227,7 +226,7 @@ void BarPainting::lay_out(const Input& input, const Bar& bar, Stroke& stroke) {
           const float inverse = bar.plane.inverse_depth(ray.x(), ray.y());
           return inverse > 0 && !is_covered(input.drawn, x, y, 1 / inverse);
         },
-        [&](int x, int y) { return (label_at(input.surfaces, x, y) & labels) != 0; });
+        [&](int x, int y) { return (label_at(input.surfaces, x, y) & stroke.labels) != 0; });
   };
   stroke.is_painted = length > 0 && collect(0, -1, stroke.near_colors);
   if (!stroke.is_painted) return;

@@ -31,8 +31,8 @@ class BarPainting {
   /// ends where a bar goes on beyond. A bar ends where it leaves the mask, meets another plane, or
   /// where an RGB-D camera sees what would be behind it. Needs nothing that is invented.
   void lay_out(const Input& input);
-  /// Paints them. Changes picture, provenance and counts of `result`. What stands in front hides a
-  /// bar; what the user's camera has seen itself stays. Cost: 30 ns a pixel.
+  /// Paints them. Changes only picture, provenance and counts of `result`. What stands in front
+  /// hides a bar; what the user's camera has seen itself stays. Cost: 30 ns a pixel.
   void paint(const Input& input, DiminishedFrame& result) const;
 
  private:
@@ -40,6 +40,7 @@ class BarPainting {
     bool is_painted = false;
     float length = 0;                    ///< in the mask
     float end = 0;                       ///< the last place along it
+    unsigned labels = 0;                 ///< of what may be behind it, bit by bit
     bool has_far = false;                ///< colours of its other end
     BarProfile near_colors, far_colors;  ///< across it
   };

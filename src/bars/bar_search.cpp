@@ -53,11 +53,6 @@ constexpr float known_share = 0.35F;
 constexpr float known_contrast = 8;
 constexpr float known_gain = 1.2F;
 
-bool is_hidden(const Mask& occlusion, const Eigen::Vector2f& at) {
-  const auto [x, y] = nearest_pixel(at);
-  return occlusion.bounds().contains(x, y) && occlusion(x, y) != 0;
-}
-
 /// Of an edge's direction: the inverse of its variance.
 float weight(const RimLine& line) {
   const auto length = static_cast<float>(line.length);

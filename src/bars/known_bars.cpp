@@ -18,17 +18,16 @@ constexpr int longest_px = 400;  ///< from there to where it enters the mask in 
 
 /// Moves its entry to where it enters the mask. False if it does not.
 bool find_entry(const Mask& occlusion, Bar& bar) {
-  const auto is_hidden = [&](int along) {
-    const auto [x, y] = nearest_pixel(bar.at(static_cast<float>(along), 0));
-    return occlusion.bounds().contains(x, y) && occlusion(x, y) != 0;
+  const auto hidden = [&](int along) {
+    return is_hidden(occlusion, bar.at(static_cast<float>(along), 0));
   };
   int along = 0;
-  if (is_hidden(0)) {
-    while (is_hidden(along)) {
+  if (hidden(0)) {
+    while (hidden(along)) {
       if (--along < -longest_px) return false;
     }
   } else {
-    while (!is_hidden(along + 1)) {
+    while (!hidden(along + 1)) {
       if (++along > longest_px) return false;
     }
   }

@@ -12,11 +12,11 @@ namespace diminish {
 inline constexpr float color_ray_shift = 0.6F;
 
 /// The ray on which the colour of a depth pixel's point is looked up, as deep as the point: the
-/// pixel's own; beside a gap, `color_ray_shift` further from it (rule 1 of sdct.h).
+/// pixel's own; beside a hole, `color_ray_shift` further from it (rule 1 of sdct.h).
 ///
-/// A gap is one or two pixels without depth, with depth beyond. Something ends there, or something
-/// thin stands there, and the colour image shows half of it in the pixels beside it: its lens and
-/// its demosaicing spread an edge, and depth and colour are registered to a pixel at best.
+/// Where depth is missing, something ends, or something stands that depth sensors do not see. The
+/// colour image shows half of it in the pixels beside the hole: its lens and its demosaicing spread
+/// an edge, and depth and colour are registered to a pixel at best.
 inline Eigen::Vector2f color_ray(ImageView<std::uint16_t> depth, const RayTable& rays, int column,
                                  int row) {
   Eigen::Vector2f ray = rays(column, row);

@@ -11,7 +11,7 @@ namespace diminish::sdct {
 //
 // 1. A depth pixel is a vertex if it has a measurement, lies on no object to remove, and its place
 //    in the RGB-D camera's colour image exists and shows no object to remove. That place is where
-//    the point lies or, beside a gap in the depth image, a little further from it (color_ray.h).
+//    the point lies or, beside a hole in the depth image, a little further from it (color_ray.h).
 // 2. The four vertices of a 2x2 cell make two triangles:
 //      (x, y), (x + 1, y), (x, y + 1)   and   (x + 1, y), (x + 1, y + 1), (x, y + 1).
 // 3. A triangle is drawn if it has three vertices, `joined` says so, and `faces_forward`.

@@ -221,7 +221,7 @@ VertexRows::VertexRows(const RgbdCamera& camera, const Intrinsics& color)
   static_assert(RayTable::block % VertexRow::block == 0);
 }
 
-bool VertexRows::may_have_gaps(ImageView<std::uint16_t> depth, int first, int row) const {
+bool VertexRows::may_have_holes(ImageView<std::uint16_t> depth, int first, int row) const {
   const bool at_rim = first < 1 || first + VertexRow::block + 1 > depth.width() || row < 1 ||
                       row + 1 >= depth.height();
   return at_rim ||
@@ -242,7 +242,7 @@ void VertexRows::project(const Frame& frame, int row, VertexRow& vertices) const
     float x[VertexRow::block], y[VertexRow::block];
     const float* ray_x = rays_->x(row) + first + start;
     const float* ray_y = rays_->y(row) + first + start;
-    if (may_have_gaps(frame.depth, first + start, row)) {
+    if (may_have_holes(frame.depth, first + start, row)) {
       for (int i = 0; i < VertexRow::block; ++i) {
         const Eigen::Vector2f ray = inverse_z[i] > 0
                                         ? color_ray(frame.depth, *rays_, first + start + i, row)

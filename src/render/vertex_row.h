@@ -76,7 +76,7 @@ class VertexRows {
 
  private:
   /// Whether color_ray may not be a pixel's own, for a block of a row.
-  bool may_have_gaps(ImageView<std::uint16_t> depth, int first, int row) const;
+  bool may_have_holes(ImageView<std::uint16_t> depth, int first, int row) const;
 
   std::shared_ptr<const RayTable> rays_;
   Constants constants_;
